@@ -1,0 +1,149 @@
+//! One clearance joint: a round journal inside a round bearing ring, both of them rigid apart from
+//! the local give that the force law describes.
+
+use super::{CoulombFriction, ForceLaw};
+use nalgebra::{Vector2, Vector3};
+use std::sync::Arc;
+
+/// What a clearance joint is made of.
+#[derive(Clone, Debug)]
+pub struct Clearance {
+    /// Inner radius of the bearing ring in m.
+    pub bearing_radius: f64,
+    /// Radius of the journal in m, smaller than the bearing's.
+    pub journal_radius: f64,
+    /// Normal force as a function of penetration and its rate.
+    pub law: Arc<dyn ForceLaw>,
+    /// Friction at the contact point, if any.
+    pub friction: Option<CoulombFriction>,
+}
+
+impl Clearance {
+    /// Radial clearance c in m: how far the journal's centre can move before it touches.
+    pub fn radial(&self) -> f64 {
+        self.bearing_radius - self.journal_radius
+    }
+}
+
+/// Where a ring or a journal is, and how it moves, in world coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// Centre of the ring or journal in m.
+    pub centre: Vector2<f64>,
+    /// The centre's position relative to its body's centre of mass, in m.
+    pub arm: Vector2<f64>,
+    /// Velocity of the centre in m/s.
+    pub velocity: Vector2<f64>,
+    /// Angular velocity of the body in rad/s.
+    pub spin: f64,
+}
+
+/// State of one clearance joint at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contact {
+    /// Eccentricity vector e: journal centre − bearing centre, in m, world directions.
+    pub eccentricity: Vector2<f64>,
+    /// Penetration δ = |e| − c in m, negative while the journal flies.
+    pub penetration: f64,
+    /// Normal force in N, zero while the journal flies.
+    pub normal_force: f64,
+    /// Friction force in N on the bearing, along the normal turned by +90°.
+    pub friction_force: f64,
+}
+
+/// A circle inside a ring, in closed form: penetration δ = |e| − c (m, negative inside) and the
+/// outward normal n = e/|e|, where e is the eccentricity vector and c the radial clearance.
+///
+/// With centred circles every direction is as good as any other; +x is returned. Both the force
+/// law and the collision shape of the engine rest on this one function.
+pub fn circle_in_ring(eccentricity: Vector2<f64>, clearance: f64) -> (f64, Vector2<f64>) {
+    let distance = eccentricity.norm();
+    let normal = if distance > 0.0 { eccentricity / distance } else { Vector2::x() };
+    (distance - clearance, normal)
+}
+
+impl Clearance {
+    /// Forces in the joint: its [`Contact`], and the wrenches (N, N, N·m about each centre of mass)
+    /// on the bearing's and on the journal's body.
+    ///
+    /// `F_N` acts along the line of centres, −n on the journal and +n on the bearing; friction at
+    /// the journal's surface point, with arms `R_j` from the journal's centre and `R_j + |e|` from
+    /// the bearing's. Both forces are opposite, so momentum and moment of momentum are kept.
+    pub fn forces(&self, bearing: &Frame, journal: &Frame) -> (Contact, Option<[Vector3<f64>; 2]>) {
+        let eccentricity = journal.centre - bearing.centre;
+        let (penetration, normal) = circle_in_ring(eccentricity, self.radial());
+        let mut contact = Contact { eccentricity, penetration, ..Contact::default() };
+        if penetration <= 0.0 {
+            return (contact, None);
+        }
+        let relative = journal.velocity - bearing.velocity;
+        contact.normal_force = self.law.normal_force(penetration, relative.dot(&normal));
+        let tangent = Vector2::new(-normal.y, normal.x);
+        let to_surface = [self.journal_radius + penetration + self.radial(), self.journal_radius];
+        if let Some(friction) = &self.friction {
+            let sliding = relative.dot(&tangent) + journal.spin * to_surface[1]
+                - bearing.spin * to_surface[0];
+            contact.friction_force = friction.force(contact.normal_force, sliding);
+        }
+        let force = normal * contact.normal_force + tangent * contact.friction_force;
+        let wrench = |arm: Vector2<f64>, f: Vector2<f64>| Vector3::new(f.x, f.y, arm.perp(&f));
+        let on_bearing = wrench(bearing.arm + normal * to_surface[0], force);
+        let on_journal = wrench(journal.arm + normal * to_surface[1], -force);
+        (contact, Some([on_bearing, on_journal]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::HertzStep;
+    use super::*;
+
+    fn joint(friction: Option<CoulombFriction>) -> Clearance {
+        let law =
+            HertzStep { stiffness: 3.7e9, exponent: 1.5, c_max: 500.0, d_max: 1e-5, clip: true };
+        Clearance { bearing_radius: 0.01, journal_radius: 0.0095, law: Arc::new(law), friction }
+    }
+
+    fn frame(centre: [f64; 2], arm: [f64; 2], velocity: [f64; 2], spin: f64) -> Frame {
+        Frame { centre: centre.into(), arm: arm.into(), velocity: velocity.into(), spin }
+    }
+
+    #[test]
+    fn a_flying_journal_feels_nothing() {
+        let ring = frame([0.1, 0.2], [0.05, 0.0], [0.0, 0.0], 0.0);
+        let journal = frame([0.1003, 0.2], [-0.1, 0.0], [0.3, 0.0], 1.0);
+        let (contact, wrenches) = joint(None).forces(&ring, &journal);
+        assert!((contact.penetration + 2e-4).abs() < 1e-15);
+        assert!(contact.normal_force == 0.0 && wrenches.is_none());
+    }
+
+    #[test]
+    fn action_equals_reaction_in_force_and_in_moment_about_the_origin() {
+        let friction = CoulombFriction { coefficient: 0.2, velocity: 1e-3 };
+        let ring = frame([0.1, 0.2], [0.05, -0.02], [0.02, 0.1], 0.7);
+        let journal = frame([0.1004, 0.20031], [-0.1, 0.03], [0.3, -0.2], -2.0);
+        let (contact, wrenches) = joint(Some(friction)).forces(&ring, &journal);
+        let [on_bearing, on_journal] = wrenches.expect("in contact");
+        assert!(contact.normal_force > 0.0 && contact.friction_force != 0.0);
+        assert!((on_bearing.xy() + on_journal.xy()).norm() < 1e-12);
+        let about_origin = |f: &Frame, w: &Vector3<f64>| w.z + (f.centre - f.arm).perp(&w.xy());
+        let total = about_origin(&ring, &on_bearing) + about_origin(&journal, &on_journal);
+        assert!(total.abs() < 1e-12, "{total}");
+    }
+
+    #[test]
+    fn friction_takes_energy_at_the_contact_point() {
+        let friction = CoulombFriction { coefficient: 0.2, velocity: 1e-3 };
+        let ring = frame([0.0, 0.0], [0.0, 0.0], [0.0, 0.0], 0.0);
+        for spin in [-3.0, 3.0] {
+            let journal = frame([0.000505, 0.0], [0.0, 0.0], [0.0, 0.01], spin);
+            let (_, wrenches) = joint(Some(friction)).forces(&ring, &journal);
+            let [_, on_journal] = wrenches.expect("in contact");
+            let (_, normal_only) = joint(None).forces(&ring, &journal);
+            let [_, plain] = normal_only.expect("in contact");
+            let extra = on_journal - plain;
+            let power = extra.xy().dot(&journal.velocity) + extra.z * spin;
+            assert!(power < 0.0, "{power}");
+        }
+    }
+}

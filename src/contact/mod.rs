@@ -1,0 +1,28 @@
+//! What happens where a journal touches its bearing: force laws as functions of plain numbers, and
+//! the forces that one clearance joint puts on its two bodies.
+//!
+//! Nothing here knows an engine, a mechanism or a file.
+
+mod friction;
+mod hertz_step;
+mod joint;
+mod stiffness;
+
+pub use friction::CoulombFriction;
+pub use hertz_step::{HertzStep, step};
+pub use joint::{Clearance, Contact, Frame, circle_in_ring};
+pub use stiffness::{Material, StiffnessForm, hertz_stiffness};
+
+/// Normal force of a contact as a function of how deep and how fast the surfaces interpenetrate.
+///
+/// A law sees plain numbers only, so that any engine can ask it and any test can tabulate it.
+pub trait ForceLaw: std::fmt::Debug + Send + Sync {
+    /// Normal force in N, positive when the surfaces push each other apart.
+    ///
+    /// `penetration` δ in m (only asked for δ > 0), `rate` δ̇ in m/s, positive while approaching.
+    fn normal_force(&self, penetration: f64, rate: f64) -> f64;
+
+    /// The longest step in s (fixed step, explicit) that resolves a hit of `mass` kg at `speed`
+    /// m/s under this law. Users are told when their step is longer.
+    fn longest_step(&self, mass: f64, speed: f64) -> f64;
+}

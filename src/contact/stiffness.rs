@@ -1,0 +1,62 @@
+//! Hertz stiffness of two round bodies, paper eq. 5, in its two readings.
+
+/// Elastic constants of one body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Young's modulus E in Pa.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio ν, dimensionless.
+    pub poisson_ratio: f64,
+}
+
+/// Which radius enters the stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StiffnessForm {
+    /// `R_i + R_j`, as the paper prints it: two convex bodies.
+    Printed,
+    /// `R_i − R_j`: a journal inside a bearing. Grows without bound as the clearance vanishes.
+    Conformal,
+}
+
+/// Stiffness K in N/m^1.5 of a journal in a bearing of the same material (paper eq. 5):
+///
+/// `K = 4 / (3π (h_i + h_j)) · √(R_i R_j / (R_i ± R_j))`, `h = (1 − ν²)/(π E)`,
+///
+/// with `+` as printed and `−` in the conformal reading. Radii in m.
+pub fn hertz_stiffness(
+    form: StiffnessForm,
+    material: Material,
+    bearing_radius: f64,
+    journal_radius: f64,
+) -> f64 {
+    use std::f64::consts::PI;
+    let nu = material.poisson_ratio;
+    let h = (1.0 - nu * nu) / (PI * material.youngs_modulus);
+    let sum = match form {
+        StiffnessForm::Printed => bearing_radius + journal_radius,
+        StiffnessForm::Conformal => bearing_radius - journal_radius,
+    };
+    4.0 / (3.0 * PI * 2.0 * h) * (bearing_radius * journal_radius / sum).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAPER: Material = Material { youngs_modulus: 73e9, poisson_ratio: 0.3 };
+
+    #[test]
+    fn printed_form_gives_the_papers_stiffness() {
+        let k = hertz_stiffness(StiffnessForm::Printed, PAPER, 10e-3, 9.5e-3);
+        assert!((k / 3.7327999e9 - 1.0).abs() < 1e-7, "{k}");
+    }
+
+    #[test]
+    fn conformal_form_grows_as_the_clearance_vanishes() {
+        let k = |c: f64| hertz_stiffness(StiffnessForm::Conformal, PAPER, 10e-3, 10e-3 - c);
+        assert!(k(5e-4) > 3.7e9);
+        // K² ∝ 1/c where c is small.
+        let ratio = (k(1e-8) / k(1e-6)).powi(2);
+        assert!((ratio / 100.0 - 1.0).abs() < 1e-3, "{ratio}");
+    }
+}

@@ -1,0 +1,127 @@
+//! A [`Mechanism`] as bodies, joints and motors of a rapier world.
+
+use super::leapfrog::read;
+use super::{JointColliders, Solver, physics_world, to_rapier};
+use crate::mechanism::{Attachment, Bearing, BodyState, Drive, Mechanism};
+use nalgebra::Vector3;
+use rapier2d_f64::dynamics::{
+    ImpulseJointHandle, JointAxis, MassProperties, MotorModel, PrismaticJointBuilder,
+    RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle,
+};
+use rapier2d_f64::math::{Pose, Rotation, Vector};
+use rapier2d_f64::pipeline::PhysicsWorld;
+
+/// Largest motor force in N: practically none. (`f64::MAX` overflows when rapier multiplies it.)
+const MOTOR_FORCE: f64 = 1e30;
+
+/// A rapier world that holds one mechanism, gravity included in the wrenches it is given.
+pub(super) struct World {
+    physics: PhysicsWorld,
+    pub handles: Vec<RigidBodyHandle>,
+    motors: Vec<Option<ImpulseJointHandle>>,
+    pub colliders: JointColliders,
+}
+
+impl World {
+    /// Builds the world. `colliders` gives rings and journals a shape each; only rapier's own
+    /// contacts need them.
+    pub fn new(mechanism: &Mechanism, colliders: bool) -> Self {
+        let mut physics = physics_world(0.0);
+        let ground = physics.bodies.insert(RigidBodyBuilder::fixed());
+        let handles: Vec<_> = mechanism
+            .bodies
+            .iter()
+            .map(|body| {
+                let start = &body.start;
+                let rotation =
+                    Rotation::from_cos_sin_unchecked(start.rotation.re, start.rotation.im);
+                let pose = Pose::from_parts(to_rapier(start.position), rotation);
+                physics.bodies.insert(
+                    RigidBodyBuilder::dynamic()
+                        .pose(pose)
+                        .linvel(to_rapier(start.twist.xy()))
+                        .angvel(start.twist.z)
+                        .additional_mass_properties(MassProperties::new(
+                            Vector::ZERO,
+                            body.mass,
+                            body.inertia,
+                        ))
+                        .can_sleep(false)
+                        .allow_fast_rotation(true),
+                )
+            })
+            .collect();
+        let of = |a: &Attachment| a.body.map_or(ground, |i| handles[i]);
+        let motors = mechanism
+            .prismatics
+            .iter()
+            .map(|joint| {
+                let builder = PrismaticJointBuilder::new(Vector::X)
+                    .contacts_enabled(false)
+                    .local_anchor1(to_rapier(joint.cylinder.point))
+                    .local_anchor2(to_rapier(joint.rod.point))
+                    .motor_model(MotorModel::AccelerationBased)
+                    .motor_max_force(MOTOR_FORCE);
+                let (cylinder, rod) = (of(&joint.cylinder), of(&joint.rod));
+                let handle = physics.impulse_joints.insert(cylinder, rod, builder, true);
+                (joint.drive == Drive::Prescribed).then_some(handle)
+            })
+            .collect();
+        let mut joint_colliders = JointColliders::default();
+        for joint in &mechanism.revolutes {
+            let bodies = [of(&joint.ring), of(&joint.journal)];
+            let points = [joint.ring.point, joint.journal.point];
+            let (radii, friction, solver) = match &joint.bearing {
+                Bearing::Ideal => {
+                    let builder = RevoluteJointBuilder::new()
+                        .contacts_enabled(false)
+                        .local_anchor1(to_rapier(points[0]))
+                        .local_anchor2(to_rapier(points[1]));
+                    physics.impulse_joints.insert(bodies[0], bodies[1], builder, true);
+                    continue;
+                }
+                Bearing::Clearance(c) => ([c.bearing_radius, c.journal_radius], 0.0, Solver::Law),
+                Bearing::Native { bearing_radius, journal_radius, friction } => {
+                    ([*bearing_radius, *journal_radius], *friction, Solver::Native)
+                }
+            };
+            if colliders {
+                joint_colliders.insert(&mut physics, bodies, points, radii, friction, solver);
+            }
+        }
+        Self { physics, handles, motors, colliders: joint_colliders }
+    }
+
+    /// The world itself, for reading.
+    pub fn physics(&self) -> &PhysicsWorld {
+        &self.physics
+    }
+
+    /// States as rapier holds them: the twists are those of the last half step.
+    pub fn read(&self, states: &mut [BodyState]) {
+        for (state, &handle) in states.iter_mut().zip(&self.handles) {
+            *state = read(&self.physics.bodies, handle);
+        }
+    }
+
+    /// One rapier step of `dt` s under the given wrench on each body, prescribed drives going to
+    /// `lengths` (m).
+    pub fn step(&mut self, dt: f64, wrenches: &[Vector3<f64>], lengths: impl Fn(usize) -> f64) {
+        for (&handle, wrench) in self.handles.iter().zip(wrenches) {
+            if let Some(body) = self.physics.bodies.get_mut(handle) {
+                body.reset_forces(false);
+                body.reset_torques(false);
+                body.add_force(to_rapier(wrench.xy()), false);
+                body.add_torque(wrench.z, false);
+            }
+        }
+        for (i, motor) in self.motors.iter().enumerate() {
+            if let Some(joint) = motor.and_then(|h| self.physics.impulse_joints.get_mut(h, false)) {
+                // A stiffness far beyond any mass over dt² makes the spring a constraint.
+                joint.data.set_motor(JointAxis::LinX, lengths(i), 0.0, MOTOR_FORCE, 0.0);
+            }
+        }
+        self.physics.integration_parameters.dt = dt;
+        self.physics.step_with_events(&self.colliders, &());
+    }
+}

@@ -1,0 +1,26 @@
+//! # freeplay
+//!
+//! Planar mechanisms whose revolute joints have clearance (free play): a journal flies and hits
+//! inside its bearing ring, and the motion turns chaotic. Links are rapier2d rigid bodies, journals
+//! and rings collide through a force law of their own choosing (Hertz plus STEP damping by
+//! default), prismatic drives follow the inverse kinematics.
+//!
+//! The rooms, bottom to top (each uses only what stands before it):
+//!
+//! | room | holds |
+//! |---|---|
+//! | [`measure`] | thinning of long signals, interpolation, statistics |
+//! | [`contact`] | force laws as plain functions, and the forces in one clearance joint |
+//! | [`mechanism`] | bodies, joints, drives, motions as plain data; the 3-RPR; equations of motion |
+//! | [`engine`] | the only room that knows rapier: ring shape, contact hook, stepping |
+//! | [`scenario`] | the TOML file, validated |
+//! | [`simulate`] | scenario → samples, summary, files |
+//! | [`report`] | pictures and the page |
+//! | [`cli`] | one file per command |
+//!
+//! SI units everywhere.
+
+pub mod contact;
+pub mod engine;
+pub mod measure;
+pub mod mechanism;

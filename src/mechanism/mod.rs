@@ -1,0 +1,203 @@
+//! Mechanisms as plain data: bodies, joints, drives, commands, and what moves them. Builders
+//! ([`three_rpr`]) make a [`Mechanism`]; nothing in it or below it knows how many legs there are.
+//!
+//! Planar vectors with three components hold a linear part (x, y) and an angular part: velocities
+//! (m/s, m/s, rad/s), accelerations (m/s², m/s², rad/s²), wrenches (N, N, N·m about the centre of
+//! mass).
+
+pub mod motion;
+pub mod three_rpr;
+
+mod dynamics;
+mod rows;
+
+pub use dynamics::{Dynamics, Evaluation};
+
+use crate::contact::{Clearance, Frame};
+use nalgebra::{UnitComplex, Vector2, Vector3};
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// Where a body is and how it moves: position and velocity of its centre of mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// Centre of mass in m.
+    pub position: Vector2<f64>,
+    /// Rotation of the body's own axes against the world's.
+    pub rotation: UnitComplex<f64>,
+    /// Velocity (m/s, m/s) and angular velocity (rad/s).
+    pub twist: Vector3<f64>,
+}
+
+impl BodyState {
+    /// The ground: at the origin, at rest.
+    pub fn ground() -> Self {
+        Self {
+            position: Vector2::zeros(),
+            rotation: UnitComplex::identity(),
+            twist: Vector3::zeros(),
+        }
+    }
+
+    /// Position, arm and velocity of a point given in the body's own axes (m, from its centre of
+    /// mass).
+    pub fn frame(&self, local: Vector2<f64>) -> Frame {
+        let arm = self.rotation * local;
+        let spin = self.twist.z;
+        Frame {
+            centre: self.position + arm,
+            arm,
+            velocity: self.twist.xy() + Vector2::new(-arm.y, arm.x) * spin,
+            spin,
+        }
+    }
+}
+
+/// A rigid body and its state at the start.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Name for messages and tables.
+    pub name: String,
+    /// Mass in kg.
+    pub mass: f64,
+    /// Moment of inertia about the centre of mass in kg·m².
+    pub inertia: f64,
+    /// State at t = 0.
+    pub start: BodyState,
+}
+
+/// A point of a body, or of the ground.
+#[derive(Clone, Copy, Debug)]
+pub struct Attachment {
+    /// Index of the body, or `None` for the ground.
+    pub body: Option<usize>,
+    /// The point in the body's own axes, from its centre of mass (ground: world coordinates), m.
+    pub point: Vector2<f64>,
+}
+
+/// How a revolute joint holds its two bodies together.
+#[derive(Clone, Debug)]
+pub enum Bearing {
+    /// The two centres coincide exactly.
+    Ideal,
+    /// The journal moves freely inside the ring and hits it under a force law.
+    Clearance(Clearance),
+    /// The same geometry, left to the contacts of the physics engine.
+    Native {
+        /// Inner radius of the bearing ring in m.
+        bearing_radius: f64,
+        /// Radius of the journal in m.
+        journal_radius: f64,
+        /// Coefficient of friction μ.
+        friction: f64,
+    },
+}
+
+/// A revolute joint: a bearing ring on one body, a journal on another.
+#[derive(Clone, Debug)]
+pub struct Revolute {
+    /// Name, such as `A1`.
+    pub name: String,
+    /// Centre of the bearing ring.
+    pub ring: Attachment,
+    /// Centre of the journal.
+    pub journal: Attachment,
+    /// What the joint does.
+    pub bearing: Bearing,
+}
+
+/// How a prismatic joint is driven along its axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// The length follows the command exactly; the drive force is the reaction.
+    Prescribed,
+    /// `F = k_p (q_cmd − q) + k_d (q̇_cmd − q̇)`.
+    Servo {
+        /// Stiffness k_p in N/m.
+        stiffness: f64,
+        /// Damping k_d in N·s/m.
+        damping: f64,
+    },
+}
+
+/// A prismatic joint: a rod that slides along the x axis of its cylinder, both keeping the same
+/// orientation. Its length is the distance from the cylinder's to the rod's attachment point.
+#[derive(Clone, Debug)]
+pub struct Prismatic {
+    /// Name, such as `P1`.
+    pub name: String,
+    /// The body that carries the axis, and the point from which the length counts.
+    pub cylinder: Attachment,
+    /// The body that slides, and the point to which the length counts.
+    pub rod: Attachment,
+    /// Its drive; the command with the same index is what it follows.
+    pub drive: Drive,
+}
+
+/// Commanded length of one prismatic joint at one time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Command {
+    /// Length q in m.
+    pub length: f64,
+    /// q̇ in m/s.
+    pub rate: f64,
+    /// q̈ in m/s².
+    pub acceleration: f64,
+}
+
+/// Commands of all prismatic joints of a mechanism as functions of time.
+pub trait Commands: Debug + Send + Sync {
+    /// Writes the command of each prismatic joint at time `t` (s).
+    fn at(&self, t: f64, commands: &mut [Command]);
+}
+
+/// A planar mechanism, ready to be simulated.
+#[derive(Clone, Debug)]
+pub struct Mechanism {
+    /// The moving bodies.
+    pub bodies: Vec<Body>,
+    /// The revolute joints, in the order of the result columns.
+    pub revolutes: Vec<Revolute>,
+    /// The prismatic joints, in the order of the result columns.
+    pub prismatics: Vec<Prismatic>,
+    /// What the prismatic joints are told.
+    pub commands: Arc<dyn Commands>,
+    /// Uniform gravity in m/s².
+    pub gravity: Vector2<f64>,
+    /// Index of the body whose pose is the mechanism's output.
+    pub output: usize,
+}
+
+impl Mechanism {
+    /// The longest fixed step in s that resolves every clearance joint's hits at `speed` m/s and
+    /// every servo, or `None` where nothing limits the step.
+    ///
+    /// A joint is as light as its two bodies are in the direction in which they give way most
+    /// easily: `1/m_eff = Σ (1/m + r²/I)`, r the distance of the joint from the centre of mass.
+    /// A servo on two bodies of reduced mass μ needs `h ≤ √(μ/k_p)` and `h ≤ μ/k_d` (explicit).
+    pub fn longest_step(&self, speed: f64) -> Option<f64> {
+        let lightness = |attachment: &Attachment, turning: bool| {
+            attachment.body.map_or(0.0, |i| {
+                let body = &self.bodies[i];
+                let turn = attachment.point.norm_squared() / body.inertia;
+                1.0 / body.mass + if turning { turn } else { 0.0 }
+            })
+        };
+        let joints = self.revolutes.iter().filter_map(|joint| {
+            let Bearing::Clearance(clearance) = &joint.bearing else { return None };
+            let mass = 1.0 / (lightness(&joint.ring, true) + lightness(&joint.journal, true));
+            Some(clearance.law.longest_step(mass, speed))
+        });
+        let servos = self.prismatics.iter().filter_map(|joint| {
+            let Drive::Servo { stiffness, damping } = joint.drive else { return None };
+            let mass = 1.0 / (lightness(&joint.cylinder, false) + lightness(&joint.rod, false));
+            Some((mass / stiffness).sqrt().min(mass / damping))
+        });
+        joints.chain(servos).reduce(f64::min)
+    }
+}
+
+/// State of the body that an attachment belongs to.
+pub(crate) fn state_of(states: &[BodyState], attachment: &Attachment) -> BodyState {
+    attachment.body.map_or_else(BodyState::ground, |i| states[i])
+}

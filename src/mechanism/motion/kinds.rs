@@ -1,0 +1,169 @@
+//! Motions in closed form.
+
+use super::{Motion, PathPoint};
+use nalgebra::{Vector2, Vector3};
+use std::f64::consts::TAU;
+
+fn planar(v: Vector2<f64>, phi: f64) -> Vector3<f64> {
+    Vector3::new(v.x, v.y, phi)
+}
+
+/// A circle at constant speed and constant orientation: centre + r [cos, sin](2πt/T + ψ).
+#[derive(Clone, Debug)]
+pub struct Circle {
+    /// Centre in m.
+    pub center: Vector2<f64>,
+    /// Radius r in m.
+    pub radius: f64,
+    /// Period T in s; negative runs clockwise.
+    pub period: f64,
+    /// Start phase ψ in rad.
+    pub phase: f64,
+    /// Orientation φ in rad.
+    pub phi: f64,
+}
+
+impl Motion for Circle {
+    fn at(&self, t: f64) -> PathPoint {
+        let omega = TAU / self.period;
+        let (sin, cos) = (omega * t + self.phase).sin_cos();
+        let (out, along) = (Vector2::new(cos, sin), Vector2::new(-sin, cos));
+        PathPoint {
+            pose: planar(self.center + out * self.radius, self.phi),
+            rate: planar(along * (self.radius * omega), 0.0),
+            acceleration: planar(-out * (self.radius * omega * omega), 0.0),
+        }
+    }
+}
+
+/// A straight line at constant velocity and orientation.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Position at t = 0 in m.
+    pub start: Vector2<f64>,
+    /// Velocity in m/s.
+    pub velocity: Vector2<f64>,
+    /// Orientation φ in rad.
+    pub phi: f64,
+}
+
+impl Motion for Line {
+    fn at(&self, t: f64) -> PathPoint {
+        PathPoint {
+            pose: planar(self.start + self.velocity * t, self.phi),
+            rate: planar(self.velocity, 0.0),
+            acceleration: Vector3::zeros(),
+        }
+    }
+}
+
+/// Point to point from rest to rest, `s(τ) = 10τ³ − 15τ⁴ + 6τ⁵` with τ = t/T (the lowest polynomial
+/// with no jump in acceleration), and rest before and after.
+#[derive(Clone, Debug)]
+pub struct Quintic {
+    /// Pose at the start (m, m, rad).
+    pub from: Vector3<f64>,
+    /// Pose at the end (m, m, rad).
+    pub to: Vector3<f64>,
+    /// Duration T in s.
+    pub time: f64,
+}
+
+impl Motion for Quintic {
+    fn at(&self, t: f64) -> PathPoint {
+        let tau = (t / self.time).clamp(0.0, 1.0);
+        let way = self.to - self.from;
+        let s = tau * tau * tau * (10.0 + tau * (6.0 * tau - 15.0));
+        let ds = 30.0 * (tau * (1.0 - tau)).powi(2) / self.time;
+        let dds = 60.0 * tau * (1.0 - tau) * (1.0 - 2.0 * tau) / (self.time * self.time);
+        PathPoint { pose: self.from + way * s, rate: way * ds, acceleration: way * dds }
+    }
+}
+
+/// One term of a [`MultiSine`].
+#[derive(Clone, Debug)]
+pub struct SineTerm {
+    /// Amplitude (m, m, rad).
+    pub amplitude: Vector3<f64>,
+    /// Frequency f in Hz.
+    pub frequency: f64,
+    /// Phase in rad.
+    pub phase: f64,
+}
+
+/// A sum of sines about a centre: centre + Σ amplitude sin(2πft + phase). It excites many
+/// frequencies at once, which tells effects apart.
+#[derive(Clone, Debug)]
+pub struct MultiSine {
+    /// Mean pose (m, m, rad).
+    pub center: Vector3<f64>,
+    /// The terms of the sum.
+    pub terms: Vec<SineTerm>,
+}
+
+impl Motion for MultiSine {
+    fn at(&self, t: f64) -> PathPoint {
+        let mut point = PathPoint { pose: self.center, ..PathPoint::default() };
+        for term in &self.terms {
+            let omega = TAU * term.frequency;
+            let (sin, cos) = (omega * t + term.phase).sin_cos();
+            point.pose += term.amplitude * sin;
+            point.rate += term.amplitude * (omega * cos);
+            point.acceleration -= term.amplitude * (omega * omega * sin);
+        }
+        point
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every motion's rate and acceleration against central differences of its pose and rate.
+    #[test]
+    fn derivatives_belong_to_the_pose() {
+        let term =
+            |a: [f64; 3], frequency, phase| SineTerm { amplitude: a.into(), frequency, phase };
+        let motions: [Box<dyn Motion>; 4] = [
+            Box::new(Circle {
+                center: [0.01, 0.02].into(),
+                radius: 0.05,
+                period: 0.7,
+                phase: 0.3,
+                phi: 0.5,
+            }),
+            Box::new(Line { start: [0.0, 0.1].into(), velocity: [0.2, -0.1].into(), phi: 0.4 }),
+            Box::new(Quintic {
+                from: [0.0, 0.0, 0.4].into(),
+                to: [0.03, -0.02, 0.6].into(),
+                time: 0.8,
+            }),
+            Box::new(MultiSine {
+                center: [0.0, 0.0, 0.5].into(),
+                terms: vec![term([0.01, 0.0, 0.1], 1.0, 0.2), term([0.0, 0.02, 0.05], 2.3, 1.0)],
+            }),
+        ];
+        let h = 1e-5;
+        for motion in &motions {
+            for t in [0.1, 0.25, 0.5, 0.77] {
+                let (before, now, after) = (motion.at(t - h), motion.at(t), motion.at(t + h));
+                let rate = (after.pose - before.pose) / (2.0 * h);
+                let acceleration = (after.rate - before.rate) / (2.0 * h);
+                assert!((rate - now.rate).norm() < 1e-8, "{motion:?} at {t}");
+                assert!((acceleration - now.acceleration).norm() < 1e-7, "{motion:?} at {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn quintic_rests_at_both_ends() {
+        let motion = Quintic { from: [0.0; 3].into(), to: [1.0, 2.0, 3.0].into(), time: 2.0 };
+        for (t, pose) in
+            [(-1.0, [0.0; 3]), (0.0, [0.0; 3]), (2.0, [1.0, 2.0, 3.0]), (9.0, [1.0, 2.0, 3.0])]
+        {
+            let point = motion.at(t);
+            assert_eq!(point.pose, Vector3::from(pose));
+            assert_eq!((point.rate.norm(), point.acceleration.norm()), (0.0, 0.0));
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! One self-contained HTML page: nothing is fetched, everything is inline.
+
+use super::{Fact, Picture};
+
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// Builds the page: headline, lead sentence, table of contents, table of facts, the pictures in the
+/// given order, and where the numbers come from as (label, value) pairs.
+///
+/// All texts are escaped; the pictures' SVG goes in as it is.
+pub fn page(
+    title: &str,
+    lead: &str,
+    facts: &[Fact],
+    pictures: &[Picture],
+    provenance: &[(String, String)],
+) -> String {
+    let title = escaped(title);
+    let lead = escaped(lead);
+    let contents = contents(facts, pictures, provenance);
+    let facts = facts_section(facts);
+    let figures: String = (1..).zip(pictures).map(|(n, p)| figure(n, p)).collect();
+    let provenance = provenance_section(provenance);
+    format!(
+        "<!DOCTYPE html>\n\
+         <html lang=\"en\">\n\
+         <head>\n\
+         <meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{title}</title>\n\
+         <style>\n{STYLE}</style>\n\
+         </head>\n\
+         <body>\n\
+         <header>\n<h1>{title}</h1>\n<p class=\"lead\">{lead}</p>\n</header>\n\
+         {contents}<main>\n{facts}{figures}{provenance}</main>\n\
+         <script>\n{SCRIPT}</script>\n\
+         </body>\n\
+         </html>\n"
+    )
+}
+
+fn contents(facts: &[Fact], pictures: &[Picture], provenance: &[(String, String)]) -> String {
+    let mut entries = String::new();
+    let mut entry = |id: &str, text: &str| {
+        entries += &format!("<li><a href=\"#{id}\">{text}</a></li>\n");
+    };
+    if !facts.is_empty() {
+        entry("facts", "Results");
+    }
+    for (n, picture) in (1..).zip(pictures) {
+        entry(&format!("figure-{n}"), &escaped(&picture.title));
+    }
+    if !provenance.is_empty() {
+        entry("provenance", "Provenance");
+    }
+    format!("<nav aria-label=\"Contents\">\n<ul>\n{entries}</ul>\n</nav>\n")
+}
+
+fn facts_section(facts: &[Fact]) -> String {
+    if facts.is_empty() {
+        return String::new();
+    }
+    let row = |fact: &Fact| {
+        format!(
+            "<tr><th scope=\"row\">{}</th><td class=\"value\">{}</td><td class=\"note\">{}</td></tr>\n",
+            escaped(&fact.label),
+            escaped(&fact.value),
+            escaped(&fact.note)
+        )
+    };
+    let rows: String = facts.iter().map(row).collect();
+    format!(
+        "<section id=\"facts\">\n<h2>Results</h2>\n<div class=\"table\"><table>\n{rows}</table></div>\n\
+         </section>\n"
+    )
+}
+
+fn figure(n: usize, picture: &Picture) -> String {
+    let title = escaped(&picture.title);
+    format!(
+        "<section id=\"figure-{n}\">\n<h2>{title}</h2>\n<figure>\n\
+         <div class=\"card\" role=\"img\" aria-label=\"{title}\">\n{}</div>\n\
+         <figcaption><b>Figure {n}.</b> {} <code>{}</code></figcaption>\n</figure>\n</section>\n",
+        picture.svg,
+        escaped(&picture.caption),
+        escaped(&picture.file)
+    )
+}
+
+fn provenance_section(provenance: &[(String, String)]) -> String {
+    if provenance.is_empty() {
+        return String::new();
+    }
+    let row = |(label, value): &(String, String)| {
+        let (label, value) = (escaped(label), escaped(value));
+        format!("<tr><th scope=\"row\">{label}</th><td><code>{value}</code></td></tr>\n")
+    };
+    let rows: String = provenance.iter().map(row).collect();
+    format!(
+        "<section id=\"provenance\">\n<h2>Provenance</h2>\n<div class=\"table\"><table>\n{rows}</table>\
+         </div>\n</section>\n"
+    )
+}
+
+/// `text` with everything that HTML would read as markup written as entities.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            '"' => escaped += "&quot;",
+            '\'' => escaped += "&#39;",
+            _ => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MARKUP: &str = "<script>alert('a') & \"b\"</script>";
+
+    fn picture(svg: String) -> Picture {
+        Picture {
+            file: MARKUP.to_owned(),
+            title: MARKUP.to_owned(),
+            caption: MARKUP.to_owned(),
+            svg,
+        }
+    }
+
+    fn sample() -> String {
+        let fact = Fact {
+            label: MARKUP.to_owned(),
+            value: MARKUP.to_owned(),
+            note: MARKUP.to_owned(),
+        };
+        let orbits = super::super::orbits_svg(&[]).unwrap();
+        let pictures = [picture(orbits), picture("<svg>second</svg>".to_owned())];
+        let provenance = [(MARKUP.to_owned(), MARKUP.to_owned())];
+        page(MARKUP, MARKUP, &[fact], &pictures, &provenance)
+    }
+
+    #[test]
+    fn all_text_is_escaped() {
+        let html = sample();
+        assert!(!html.contains("<script>alert"));
+        assert_eq!(
+            html.matches("&lt;script&gt;alert(&#39;a&#39;) &amp; &quot;b&quot;")
+                .count(),
+            18
+        );
+    }
+
+    #[test]
+    fn every_picture_is_in_the_page_and_in_its_contents() {
+        let html = sample();
+        assert!(html.contains("no data") && html.contains("<svg>second</svg>"));
+        for id in ["facts", "figure-1", "figure-2", "provenance"] {
+            assert!(html.contains(&format!("href=\"#{id}\"")));
+            assert!(html.contains(&format!("id=\"{id}\"")));
+        }
+    }
+
+    #[test]
+    fn nothing_is_fetched() {
+        let html = sample().replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+        for fetch in ["http", "src=", "url(", "@import", "<link"] {
+            assert!(!html.contains(fetch), "{fetch}");
+        }
+    }
+
+    #[test]
+    fn a_page_without_content_is_still_a_page() {
+        let html = page("Nothing", "", &[], &[], &[]);
+        assert!(html.starts_with("<!DOCTYPE html>") && html.ends_with("</html>\n"));
+        assert!(!html.contains("<table>"));
+    }
+}

@@ -1,0 +1,257 @@
+//! The text of a scenario as a tree of values, each of which remembers where it was written.
+
+use std::collections::BTreeMap;
+
+use toml::de::{DeTable, DeValue};
+use toml::{Table, Value};
+
+use super::problem::{Location, Problem};
+
+/// A TOML text after `--set` overrides, not yet given a meaning.
+pub(super) struct Document {
+    pub(super) table: Table,
+    pub(super) origins: Origins,
+}
+
+/// Where each dotted path of a [`Document`] was written.
+#[derive(Debug, Clone)]
+pub(super) struct Origins {
+    source: String,
+    places: BTreeMap<String, Place>,
+}
+
+#[derive(Debug, Clone)]
+enum Place {
+    Line(u32),
+    Set(String),
+}
+
+impl Document {
+    /// Parses `text`; `source` is the file's name for messages.
+    pub(super) fn parse(text: &str, source: &str) -> Result<Self, Problem> {
+        let table = toml::from_str(text).map_err(|error| syntax_problem(&error, text, source))?;
+        let mut origins = Origins { source: source.to_owned(), places: BTreeMap::new() };
+        // `Table` has no positions, so a second parse collects them; the first saw every error.
+        let (positions, _) = DeTable::parse_recoverable(text);
+        origins.record_table("", positions.get_ref(), text);
+        Ok(Document { table, origins })
+    }
+
+    /// Applies one `PATH=VALUE`.
+    ///
+    /// Missing sections are made on the way. A number in the path counts the elements of a list
+    /// from 0. A new `kind` starts its section afresh: what the file gave for the old kind (but
+    /// not what earlier overrides gave) is dropped, because it means nothing to the new one.
+    pub(super) fn set(&mut self, assignment: &str) -> Result<(), Problem> {
+        let (path, value) = assignment.split_once('=').unwrap_or((assignment, ""));
+        let path = path.trim();
+        let problem = |message: String, help: &str| Problem {
+            path: path.to_owned(),
+            message,
+            help: help.to_owned(),
+            location: Location::Set { path: path.to_owned() },
+        };
+        let keys: Vec<&str> = path.split('.').map(str::trim).collect();
+        if !assignment.contains('=') || keys.iter().any(|key| key.is_empty()) {
+            return Err(problem(
+                format!("`{assignment}` is not an assignment"),
+                "write PATH=VALUE, for example joints.clearance=1e-4",
+            ));
+        }
+        let value = parse_value(value.trim()).map_err(|reason| {
+            problem(
+                format!("the value is not TOML ({reason})"),
+                "write a number, a word, or a list such as [0,-9.81]",
+            )
+        })?;
+
+        let path = keys.join(".");
+        if let Some(section) = path.strip_suffix(".kind") {
+            self.forget_other_kind(section, &value);
+        }
+        let mut node = child_of_table(&mut self.table, keys[0]);
+        let mut so_far = keys[0].to_owned();
+        self.origins.record_set(&so_far, &path);
+        for key in &keys[1..] {
+            node = child(node, key).map_err(|reason| {
+                problem(
+                    format!("`{so_far}` {reason}"),
+                    &format!("set the whole of it: --set {so_far}=…"),
+                )
+            })?;
+            so_far = format!("{so_far}.{key}");
+            self.origins.record_set(&so_far, &path);
+        }
+        *node = value;
+        self.origins.replace(&path);
+        Ok(())
+    }
+
+    fn forget_other_kind(&mut self, section: &str, new_kind: &Value) {
+        let Some(Value::Table(table)) = self.table.get_mut(section) else {
+            return;
+        };
+        if table.get("kind").is_none_or(|kind| kind == new_kind) {
+            return;
+        }
+        let origins = &mut self.origins;
+        table.retain(|key, _| {
+            let path = format!("{section}.{key}");
+            let keep = matches!(origins.places.get(&path), Some(Place::Set(_)));
+            if !keep {
+                origins.forget(&path);
+            }
+            keep
+        });
+    }
+
+    /// The paths of all numbers that are infinite or not a number, which TOML allows.
+    pub(super) fn not_finite(&self) -> Vec<(String, f64)> {
+        let mut found = Vec::new();
+        for (key, value) in &self.table {
+            collect_not_finite(key, value, &mut found);
+        }
+        found
+    }
+}
+
+impl Origins {
+    /// Where `path` was written, or else the nearest section around it that was.
+    pub(super) fn locate(&self, path: &str) -> Location {
+        let mut around = path;
+        loop {
+            match self.places.get(around) {
+                Some(Place::Line(line)) => return self.in_file(Some(*line)),
+                // A section that an override only passed through says nothing of its other keys.
+                Some(Place::Set(set)) if around == path || around == set => {
+                    return Location::Set { path: set.clone() };
+                }
+                _ => {}
+            }
+            match around.rsplit_once('.') {
+                Some((parent, _)) => around = parent,
+                None => return self.in_file(None),
+            }
+        }
+    }
+
+    fn in_file(&self, line: Option<u32>) -> Location {
+        Location::File { name: self.source.clone(), line, column: None }
+    }
+
+    fn record_table(&mut self, prefix: &str, table: &DeTable<'_>, text: &str) {
+        for (key, value) in table {
+            let path = join(prefix, key.get_ref());
+            let line = line_and_column(text, key.span().start).0;
+            self.places.insert(path.clone(), Place::Line(line));
+            self.record_value(&path, value.get_ref(), text);
+        }
+    }
+
+    fn record_value(&mut self, path: &str, value: &DeValue<'_>, text: &str) {
+        match value {
+            DeValue::Table(table) => self.record_table(path, table, text),
+            DeValue::Array(elements) => {
+                for (i, element) in elements.iter().enumerate() {
+                    let path = join(path, &i.to_string());
+                    let line = line_and_column(text, element.span().start).0;
+                    self.places.insert(path.clone(), Place::Line(line));
+                    self.record_value(&path, element.get_ref(), text);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// `path` was reached by the override of `set`; a place it already has stays.
+    fn record_set(&mut self, path: &str, set: &str) {
+        self.places.entry(path.to_owned()).or_insert_with(|| Place::Set(set.to_owned()));
+    }
+
+    /// `path` and all below it now come from an override.
+    fn replace(&mut self, path: &str) {
+        self.forget(path);
+        self.places.insert(path.to_owned(), Place::Set(path.to_owned()));
+    }
+
+    fn forget(&mut self, path: &str) {
+        let below = format!("{path}.");
+        self.places.retain(|place, _| place != path && !place.starts_with(&below));
+    }
+}
+
+/// `prefix.key`, or `key` at the top.
+pub(super) fn join(prefix: &str, key: &str) -> String {
+    if prefix.is_empty() { key.to_owned() } else { format!("{prefix}.{key}") }
+}
+
+fn child_of_table<'a>(table: &'a mut Table, key: &str) -> &'a mut Value {
+    table.entry(key).or_insert_with(|| Value::Table(Table::new()))
+}
+
+fn child<'a>(node: &'a mut Value, key: &str) -> Result<&'a mut Value, String> {
+    match node {
+        Value::Table(table) => Ok(child_of_table(table, key)),
+        Value::Array(elements) => {
+            let count = elements.len();
+            key.parse()
+                .ok()
+                .and_then(|i: usize| elements.get_mut(i))
+                .ok_or_else(|| format!("is a list of {count}, counted from 0: it has no {key}"))
+        }
+        other => Err(format!("is one {}, neither section nor list", other.type_str())),
+    }
+}
+
+/// A bare word is a string; what begins like a list, a table or a quoted string must be one.
+fn parse_value(text: &str) -> Result<Value, String> {
+    match text.parse() {
+        Ok(value) => Ok(value),
+        Err(_) if !text.is_empty() && !text.starts_with(['[', '{', '"', '\'']) => {
+            Ok(Value::String(text.to_owned()))
+        }
+        Err(error) => Err(one_line(error.message())),
+    }
+}
+
+fn collect_not_finite(path: &str, value: &Value, found: &mut Vec<(String, f64)>) {
+    match value {
+        Value::Float(number) if !number.is_finite() => found.push((path.to_owned(), *number)),
+        Value::Table(table) => {
+            for (key, value) in table {
+                collect_not_finite(&join(path, key), value, found);
+            }
+        }
+        Value::Array(elements) => {
+            for (i, value) in elements.iter().enumerate() {
+                collect_not_finite(&join(path, &i.to_string()), value, found);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn syntax_problem(error: &toml::de::Error, text: &str, source: &str) -> Problem {
+    let position = error.span().map(|span| line_and_column(text, span.start));
+    Problem {
+        path: String::new(),
+        message: one_line(error.message()),
+        help: "the file must be TOML: `key = value` lines under `[section]` headers".to_owned(),
+        location: Location::File {
+            name: source.to_owned(),
+            line: position.map(|(line, _)| line),
+            column: position.map(|(_, column)| column),
+        },
+    }
+}
+
+fn one_line(message: &str) -> String {
+    message.trim().replace('\n', ", ")
+}
+
+/// Line and column of a byte offset, both counted from 1.
+fn line_and_column(text: &str, offset: usize) -> (u32, u32) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+    (before.matches('\n').count() as u32 + 1, before[line_start..].chars().count() as u32 + 1)
+}

@@ -1,0 +1,138 @@
+//! From the tree of values to typed sections, collecting what does not fit.
+
+use serde::de::DeserializeOwned;
+use serde_path_to_error::{Path, Segment};
+use toml::{Table, Value};
+
+use super::document::{Origins, join};
+use super::problem::Problem;
+
+/// Reads sections one by one and keeps all their problems.
+pub(super) struct Reader<'a> {
+    origins: &'a Origins,
+    pub(super) problems: Vec<Problem>,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(origins: &'a Origins) -> Self {
+        Reader { origins, problems: Vec::new() }
+    }
+
+    /// Reads `table` as a `T`. serde stops at its first complaint, so the key it complained about
+    /// is taken out and the rest read again, until nothing is left to complain about.
+    pub(super) fn read<T: DeserializeOwned + Default>(
+        &mut self,
+        section: &str,
+        mut table: Table,
+    ) -> T {
+        loop {
+            let error = match serde_path_to_error::deserialize(Value::Table(table.clone())) {
+                Ok(value) => return value,
+                Err(error) => error,
+            };
+            let keys = dotted(error.path());
+            let path = join(section, &keys);
+            let (message, help) = explain(&path, error.inner().message());
+            self.complain(&path, message, help);
+            let first = keys.split('.').next().unwrap_or_default();
+            if table.remove(first).is_none() {
+                return T::default();
+            }
+        }
+    }
+
+    /// Takes `kind` out of a section; `None` when it is not there or not one of `known`.
+    pub(super) fn take_kind(
+        &mut self,
+        section: &str,
+        table: &mut Table,
+        known: &[&'static str],
+    ) -> Option<&'static str> {
+        let kind = table.remove("kind")?;
+        let found = known.iter().find(|name| kind.as_str() == Some(name));
+        if found.is_none() {
+            self.complain(
+                &format!("{section}.kind"),
+                format!("{kind} is not a kind of {section}"),
+                suggest(kind.as_str().unwrap_or_default(), known),
+            );
+        }
+        found.copied()
+    }
+
+    pub(super) fn complain(&mut self, path: &str, message: String, help: String) {
+        self.problems.push(Problem {
+            path: path.to_owned(),
+            message,
+            help,
+            location: self.origins.locate(path),
+        });
+    }
+}
+
+/// `terms[0].frequency` of serde as `terms.0.frequency`.
+fn dotted(path: &Path) -> String {
+    path.iter().fold(String::new(), |so_far, segment| {
+        let key = match segment {
+            Segment::Seq { index } => index.to_string(),
+            Segment::Map { key } => key.clone(),
+            // The name of a value such as `law = "nativ"` is no part of the key's path.
+            Segment::Enum { .. } | Segment::Unknown => return so_far,
+        };
+        join(&so_far, &key)
+    })
+}
+
+/// serde's message as (what is wrong, what would be right) in the words of a user.
+fn explain(path: &str, message: &str) -> (String, String) {
+    if message.starts_with("unknown field ") || message.starts_with("unknown variant ") {
+        // "unknown field `a`, expected one of `b`, `c`": the first quoted word is the stranger.
+        let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+        if let [stranger, known @ ..] = quoted.as_slice() {
+            let message = if message.starts_with("unknown field ") {
+                format!("unknown key `{path}`")
+            } else {
+                format!("unknown value \"{stranger}\"")
+            };
+            return (message, suggest(stranger, known));
+        }
+    }
+    match message.split_once(", expected ") {
+        Some((found, expected)) => {
+            let found = found
+                .replace("invalid length ", "a list of ")
+                .replace("invalid type: ", "")
+                .replace("invalid value: ", "");
+            (format!("found {found}"), format!("expected {}", in_words(expected)))
+        }
+        None => (message.to_owned(), "see the built-in default scenario".to_owned()),
+    }
+}
+
+/// The nearest of the known names, or all of them when none is near.
+fn suggest(stranger: &str, known: &[&str]) -> String {
+    // 0.8 accepts a wrong, missing or swapped letter or two and refuses unrelated words.
+    let nearest = known
+        .iter()
+        .map(|name| (strsim::jaro_winkler(stranger, name), name))
+        .filter(|(similarity, _)| *similarity > 0.8)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    match nearest {
+        Some((_, name)) => format!("did you mean `{name}`?"),
+        None => format!("known here: {}", known.join(", ")),
+    }
+}
+
+fn in_words(expected: &str) -> &str {
+    match expected {
+        "f64" => "a number",
+        "u64" => "a whole number, 0 or more",
+        "a boolean" => "true or false",
+        "a string" => "a string, in quotes",
+        "a sequence" => "a list",
+        "fewer elements in array" => "fewer elements",
+        "a map" => "a section with keys",
+        _ if expected.starts_with("struct ") => "a table with keys",
+        _ => expected,
+    }
+}

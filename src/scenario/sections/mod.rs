@@ -1,0 +1,22 @@
+//! The sections of a scenario file, one type each. SI units; every number's meaning, unit, default
+//! and the reason for that default stand at its field.
+
+mod contact;
+mod drive;
+mod environment;
+mod joints;
+mod legs;
+mod mechanism;
+mod motion;
+mod sensors;
+mod simulation;
+
+pub use contact::{Contact, Law, StiffnessForm};
+pub use drive::{Drive, DriveMode};
+pub use environment::Environment;
+pub use joints::{JOINTS, Joints};
+pub use legs::Legs;
+pub use mechanism::{Mechanism, ThreeRpr};
+pub use motion::{Circle, Line, Motion, Multisine, Quintic, Table, Term};
+pub use sensors::Sensors;
+pub use simulation::{Simulation, StepControl};

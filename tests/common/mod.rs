@@ -1,0 +1,120 @@
+//! The paper's machine and the independent solver's curves, for tests.
+
+use freeplay::contact::{
+    Clearance, CoulombFriction, HertzStep, Material, StiffnessForm, hertz_stiffness,
+};
+use freeplay::engine::{Instant, Schedule, StepControl, Work, run};
+use freeplay::mechanism::motion::Circle;
+use freeplay::mechanism::three_rpr::{Geometry, InverseKinematics, LegBars, build};
+use freeplay::mechanism::{Bearing, Drive, Mechanism};
+use nalgebra::Vector2;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Servo gains of the reference curves.
+pub const SERVO: Drive = Drive::Servo { stiffness: 5e5, damping: 300.0 };
+
+/// What the reference curves vary.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    pub clearance: f64,
+    pub drive: Drive,
+    pub gravity: f64,
+    pub phase: f64,
+    pub friction: f64,
+}
+
+impl Default for Case {
+    fn default() -> Self {
+        Self { clearance: 5e-4, drive: Drive::Prescribed, gravity: 0.0, phase: 0.0, friction: 0.0 }
+    }
+}
+
+pub fn hertz(bearing: f64, journal: f64) -> HertzStep {
+    let material = Material { youngs_modulus: 73e9, poisson_ratio: 0.3 };
+    let stiffness = hertz_stiffness(StiffnessForm::Printed, material, bearing, journal);
+    HertzStep { stiffness, exponent: 1.5, c_max: 500.0, d_max: 1e-5, clip: true }
+}
+
+impl Case {
+    pub fn bearing(&self) -> Bearing {
+        let (bearing_radius, journal_radius) = (0.01, 0.01 - self.clearance);
+        Bearing::Clearance(Clearance {
+            bearing_radius,
+            journal_radius,
+            law: Arc::new(hertz(bearing_radius, journal_radius)),
+            friction: (self.friction > 0.0)
+                .then_some(CoulombFriction { coefficient: self.friction, velocity: 1e-3 }),
+        })
+    }
+
+    pub fn mechanism(&self) -> Mechanism {
+        self.with(self.bearing())
+    }
+
+    pub fn with(&self, bearing: Bearing) -> Mechanism {
+        let motion = Circle {
+            center: Vector2::zeros(),
+            radius: 0.05,
+            period: 1.0,
+            phase: self.phase,
+            phi: PI / 6.0,
+        };
+        let kinematics = InverseKinematics {
+            geometry: Geometry { base_side: 0.66, platform_side: 0.1 },
+            motion: Arc::new(motion),
+        };
+        let bars = LegBars { density: 2270.0, cylinder: [0.2, 0.02], rod: [0.2, 0.012] };
+        build(
+            kinematics,
+            (0.2, 0.2 * 0.01 / 12.0),
+            bars,
+            std::array::from_fn(|_| bearing.clone()),
+            self.drive,
+            Vector2::new(0.0, self.gravity),
+        )
+    }
+}
+
+/// A curve of the independent solver: columns by name.
+pub struct Curve {
+    headers: Vec<String>,
+    pub rows: Vec<Vec<f64>>,
+}
+
+impl Curve {
+    pub fn read(name: &str) -> Self {
+        let path = format!("{}/assets/reference/{name}", env!("CARGO_MANIFEST_DIR"));
+        let mut reader = csv::Reader::from_path(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
+        let headers = reader.headers().unwrap().iter().map(str::to_owned).collect();
+        let rows = reader
+            .records()
+            .map(|r| r.unwrap().iter().map(|f| f.parse().unwrap()).collect())
+            .collect();
+        Self { headers, rows }
+    }
+
+    pub fn column(&self, name: &str) -> Vec<f64> {
+        let i = self.headers.iter().position(|h| h == name).unwrap_or_else(|| panic!("{name}"));
+        self.rows.iter().map(|r| r[i]).collect()
+    }
+}
+
+/// Largest distance of the platform from a reference curve, in m, over its rows up to `until` s.
+pub fn platform_error(mechanism: &Mechanism, control: StepControl, curve: &Curve, until: f64) -> (f64, Work) {
+    let (t, x, y) = (curve.column("t"), curve.column("x"), curve.column("y"));
+    let rows = t.iter().take_while(|t| **t <= until + 1e-9).count();
+    let interval = (t[rows - 1] - t[0]) / (rows - 1) as f64;
+    let mut worst = 0.0f64;
+    let mut k = 0;
+    let schedule = Schedule { duration: t[rows - 1], interval };
+    let work = run(mechanism, control, schedule, &mut |instant: &Instant| {
+        assert!((instant.t - t[k]).abs() < 1e-9, "row {k}: {} {}", instant.t, t[k]);
+        let p = instant.states[mechanism.output].position;
+        worst = worst.max((p.x - x[k]).hypot(p.y - y[k]));
+        k += 1;
+    })
+    .unwrap();
+    assert_eq!(k, rows);
+    (worst, work)
+}
