@@ -14,8 +14,9 @@
 //! | [`mechanism`] | bodies, joints, drives, motions as plain data; the 3-RPR; equations of motion |
 //! | [`engine`] | the only room that knows rapier: ring shape, contact hook, stepping |
 //! | [`scenario`] | the TOML file, validated |
-//! | [`simulate`] | scenario → samples, summary, files |
-//! | [`report`] | pictures and the page |
+//! | [`simulate`] | scenario → mechanism → samples and summary |
+//! | [`report`] | pictures and the page, from plain data |
+//! | `study` | what users come for: a run and its files |
 //! | [`cli`] | one file per command |
 //!
 //! SI units everywhere.
@@ -24,3 +25,6 @@ pub mod contact;
 pub mod engine;
 pub mod measure;
 pub mod mechanism;
+pub mod report;
+pub mod scenario;
+pub mod simulate;

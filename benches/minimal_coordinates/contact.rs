@@ -50,7 +50,8 @@ impl ContactLaw {
     pub fn load(&self, meeting: &Meeting) -> Load {
         let ([ex, ey], [vx, vy]) = (meeting.e, meeting.v);
         let distance = (ex * ex + ey * ey).sqrt();
-        let (nx, ny) = (ex / distance, ey / distance);
+        let inverse = 1.0 / distance;
+        let (nx, ny) = (ex * inverse, ey * inverse);
         let depth = distance - self.clearance;
         let s = (depth * self.inverse_d_max).min(1.0);
         let damping = self.c_max * s * s * (3.0 - 2.0 * s);

@@ -247,10 +247,11 @@ impl<const N: usize> Dynamics<N> {
 
     /// EXPERIMENT: time until the next onset of contact.
     #[inline(always)]
-    pub fn time_to_contact(&self, t: f64, q: &[f64; N], v: &[f64; N], _a: &[f64; N]) -> f64 {
+    pub fn time_to_contact(&self, t: f64, q: &[f64; N], v: &[f64; N], _a: &[f64; N]) -> (f64, f64) {
         let pose = self.pose(t, q, v);
         let limit = self.law.clearance * self.law.clearance;
         let mut soonest = f64::MAX;
+        let mut speed = 0.0;
         for m in [
             self.base_meeting(v, &pose, 0), self.base_meeting(v, &pose, 1), self.base_meeting(v, &pose, 2),
             self.top_meeting(v, &pose, 0), self.top_meeting(v, &pose, 1), self.top_meeting(v, &pose, 2),
@@ -260,10 +261,14 @@ impl<const N: usize> Dynamics<N> {
                 let ev = m.e[0] * m.v[0] + m.e[1] * m.v[1];
                 let vv = m.v[0] * m.v[0] + m.v[1] * m.v[1] + 1e-300;
                 let root = (ev * ev + vv * (limit - ee)).sqrt();
-                soonest = soonest.min((limit - ee) / (root + ev));
+                let time = (limit - ee) / (root + ev);
+                if time < soonest {
+                    soonest = time;
+                    speed = root;
+                }
             }
         }
-        soonest
+        (soonest, speed / self.law.clearance)
     }
 
     /// The right-hand side.

@@ -1,5 +1,7 @@
 //! Hertz stiffness of two round bodies, paper eq. 5, in its two readings.
 
+use serde::{Deserialize, Serialize};
+
 /// Elastic constants of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -10,7 +12,8 @@ pub struct Material {
 }
 
 /// Which radius enters the stiffness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum StiffnessForm {
     /// `R_i + R_j`, as the paper prints it: two convex bodies.
     Printed,

@@ -10,6 +10,7 @@ mod colliders;
 mod dispatcher;
 mod fixed;
 mod leapfrog;
+mod native;
 mod ring;
 mod run;
 mod world;
@@ -18,7 +19,9 @@ pub use clearance_joints::{ClearanceJoint, ClearanceJoints};
 pub use colliders::{JointColliders, Solver};
 pub use dispatcher::RingDispatcher;
 pub use ring::BearingRing;
-pub use run::{Halt, Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Tally, Work, run};
+pub use run::{
+    Halt, Instant, Peaks, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Tally, Work, run,
+};
 
 use nalgebra::Vector2;
 use rapier2d_f64::dynamics::IntegrationParameters;

@@ -1,6 +1,7 @@
 //! A mechanism from start to end: what a run is asked for, what it hands out, how it can fail.
 
-use super::fixed;
+use super::fixed::Fixed;
+use super::native::Native;
 use crate::contact::Contact;
 use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
 
@@ -9,6 +10,8 @@ use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
 pub enum StepControl {
     /// A fixed step of at most so many seconds: the longest that divides the row interval.
     Fixed(f64),
+    /// As long as this tolerance allows: the velocity error of one step in m/s.
+    Tolerance(f64),
 }
 
 /// Speed in m/s at which journals are taken to hit where the step is checked beforehand: hits in
@@ -50,6 +53,15 @@ pub struct Tally {
     pub touching: bool,
 }
 
+/// Largest values since the row before, over all steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peaks {
+    /// Of the output body's acceleration |(a_x, a_y)| in m/s².
+    pub acceleration: f64,
+    /// Of a drive force |F| in N.
+    pub drive_force: f64,
+}
+
 /// Everything that is known at one instant. States, accelerations and forces belong together:
 /// the forces are those at these positions and velocities, the accelerations follow from them.
 #[derive(Debug)]
@@ -62,6 +74,8 @@ pub struct Instant<'a> {
     pub evaluation: &'a Evaluation,
     /// One per revolute joint.
     pub tallies: &'a [Tally],
+    /// Largest values since the row before.
+    pub peaks: Peaks,
 }
 
 /// What a run took.
@@ -93,44 +107,128 @@ pub struct Halt {
     pub work: Work,
 }
 
+/// A way of stepping. The driver asks it for the present instant, then for a step towards the next
+/// row, in turn.
+pub(super) trait Stepper {
+    /// Makes states and evaluation those of time `t` in s.
+    fn synchronise(&mut self, mechanism: &Mechanism, t: f64);
+    /// States at the instant last synchronised.
+    fn states(&self) -> &[BodyState];
+    /// Forces, accelerations, contacts at that instant.
+    fn evaluation(&self) -> &Evaluation;
+    /// Makes one step from `t` of at most `until − t` s; returns the time reached, exactly `until`
+    /// if it got there.
+    fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
+}
+
 /// Simulates `mechanism` and calls `observe` at each row of the schedule.
+///
+/// # Errors
+/// [`Halt`] when a state turns impossible; the rows handed out before stand.
 pub fn run(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
     observe: &mut dyn FnMut(&Instant),
 ) -> Result<Work, Halt> {
+    let native = mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Native { .. }));
     match control {
-        StepControl::Fixed(step) => fixed::run(mechanism, step, schedule, observe),
+        StepControl::Fixed(step) if native => {
+            drive(&mut Native::new(mechanism, step), mechanism, control, schedule, observe)
+        }
+        StepControl::Fixed(step) => {
+            drive(&mut Fixed::new(mechanism, step), mechanism, control, schedule, observe)
+        }
+        StepControl::Tolerance(_) => todo!(),
     }
 }
 
-/// Keeps account of the joints, and tells an impossible state from a possible one.
+/// Length of the next step from `t` so that steps of equal length, at most `step` s, end exactly at
+/// `until`; and the time reached. (A sliver left over by rounding would give a prescribed drive an
+/// endless force.)
+pub(super) fn equal_step(step: f64, t: f64, until: f64) -> (f64, f64) {
+    let span = until - t;
+    let count = (span / step * (1.0 - 1e-9)).ceil().max(1.0);
+    let dt = span / count;
+    (dt, if count == 1.0 { until } else { t + dt })
+}
+
+fn drive(
+    stepper: &mut dyn Stepper,
+    mechanism: &Mechanism,
+    control: StepControl,
+    schedule: Schedule,
+    observe: &mut dyn FnMut(&Instant),
+) -> Result<Work, Halt> {
+    let mut work = Work { smallest_step: f64::INFINITY, ..Work::default() };
+    let mut watch = Watch::new(mechanism);
+    let mut t = 0.0;
+    for row in 0..=schedule.intervals() {
+        let until = schedule.time(row);
+        loop {
+            stepper.synchronise(mechanism, t);
+            let (states, now) = (stepper.states(), stepper.evaluation());
+            if let Some((place, what)) = impossible(mechanism, states, &now.contacts) {
+                let cause = likely_cause(mechanism, control);
+                return Err(Halt { t, place, what, cause, work });
+            }
+            watch.record(mechanism, now);
+            if t >= until {
+                break;
+            }
+            let reached = stepper.advance(mechanism, t, until);
+            let dt = reached - t;
+            watch.elapse(dt);
+            t = reached;
+            work.steps += 1;
+            work.reached = t;
+            work.smallest_step = work.smallest_step.min(dt);
+            work.largest_step = work.largest_step.max(dt);
+        }
+        let Watch { tallies, peaks } = &watch;
+        let (states, evaluation) = (stepper.states(), stepper.evaluation());
+        observe(&Instant { t, states, evaluation, tallies, peaks: *peaks });
+        watch.new_row();
+    }
+    Ok(work)
+}
+
+/// Keeps account of what happens between rows.
 #[derive(Debug)]
-pub(super) struct Watch {
-    pub tallies: Vec<Tally>,
+struct Watch {
+    tallies: Vec<Tally>,
+    peaks: Peaks,
 }
 
 impl Watch {
-    pub fn new(mechanism: &Mechanism) -> Self {
-        Self { tallies: vec![Tally::default(); mechanism.revolutes.len()] }
+    fn new(mechanism: &Mechanism) -> Self {
+        let tallies = vec![Tally::default(); mechanism.revolutes.len()];
+        Self { tallies, peaks: Peaks::default() }
     }
 
-    /// Takes in the contacts at an instant that stands for `dt` s.
-    pub fn record(&mut self, contacts: &[Contact], dt: f64) {
-        for (tally, contact) in self.tallies.iter_mut().zip(contacts) {
+    fn record(&mut self, mechanism: &Mechanism, now: &Evaluation) {
+        for (tally, contact) in self.tallies.iter_mut().zip(&now.contacts) {
             let touching = contact.normal_force > 0.0;
             tally.peak = tally.peak.max(contact.normal_force);
-            if touching {
-                tally.impacts += u64::from(!tally.touching);
-                tally.contact_time += dt;
-            }
+            tally.impacts += u64::from(touching && !tally.touching);
             tally.touching = touching;
+        }
+        let acceleration = now.accelerations[mechanism.output].xy().norm();
+        self.peaks.acceleration = self.peaks.acceleration.max(acceleration);
+        for force in &now.drive_forces {
+            self.peaks.drive_force = self.peaks.drive_force.max(force.abs());
+        }
+    }
+
+    fn elapse(&mut self, dt: f64) {
+        for tally in self.tallies.iter_mut().filter(|tally| tally.touching) {
+            tally.contact_time += dt;
         }
     }
 
     /// Called after a row was handed out.
-    pub fn new_row(&mut self) {
+    fn new_row(&mut self) {
+        self.peaks = Peaks::default();
         for tally in &mut self.tallies {
             tally.peak = 0.0;
         }
@@ -139,7 +237,7 @@ impl Watch {
 
 /// The first thing that is impossible at an instant, if any: a state that is no number, or a
 /// journal whose penetration exceeds its bearing's radius.
-pub(super) fn impossible(
+fn impossible(
     mechanism: &Mechanism,
     states: &[BodyState],
     contacts: &[Contact],
@@ -159,4 +257,17 @@ pub(super) fn impossible(
     }
     let body = mechanism.bodies.iter().zip(states).find(|(_, s)| !finite(s));
     body.map(|(b, _)| (b.name.clone(), "position or velocity is not a number".to_owned()))
+}
+
+/// Why a run may have broken down, and what to try.
+fn likely_cause(mechanism: &Mechanism, control: StepControl) -> String {
+    match (control, mechanism.longest_step(TYPICAL_IMPACT_SPEED)) {
+        (StepControl::Fixed(step), Some(longest)) if step > longest => format!(
+            "likely the step of {step:.1e} s is too long for the contacts: try simulation.step = \
+             {longest:.1e}"
+        ),
+        _ => "likely hits far harder than usual, or a machine near a singularity: try a shorter \
+              simulation.step, or `freeplay check`"
+            .to_owned(),
+    }
 }

@@ -104,6 +104,21 @@ impl World {
         }
     }
 
+    /// Impulse in N·s that rapier's own contact gave joint `index` in the last step. The index counts
+    /// the joints that have colliders.
+    pub fn contact_impulse(&self, index: usize) -> f64 {
+        let pair = self.colliders.pair(index);
+        let contact = pair.and_then(|[a, b]| self.physics.narrow_phase.contact_pair(a, b));
+        contact.map_or(0.0, |pair| pair.total_impulse_magnitude())
+    }
+
+    /// Impulse in N·s of the motor of prismatic joint `index` on its rod in the last step.
+    pub fn motor_impulse(&self, index: usize) -> f64 {
+        let joint = self.motors[index].and_then(|h| self.physics.impulse_joints.get(h));
+        let motor = joint.and_then(|j| j.data.motor(JointAxis::LinX));
+        motor.map_or(0.0, |motor| -motor.impulse)
+    }
+
     /// One rapier step of `dt` s under the given wrench on each body, prescribed drives going to
     /// `lengths` (m).
     pub fn step(&mut self, dt: f64, wrenches: &[Vector3<f64>], lengths: impl Fn(usize) -> f64) {

@@ -20,6 +20,8 @@ pub struct Dynamics {
     weights: Vec<Vector3<f64>>,
     /// Joints of each group, the joints of a group side by side.
     groups: Vec<Vec<RigidJoint>>,
+    /// State of each prismatic joint at the state last asked for.
+    prismatics: Vec<PrismaticState>,
     rows: Vec<Row>,
     matrix: Vec<f64>,
     multipliers: Vec<f64>,
@@ -69,6 +71,7 @@ impl Dynamics {
     pub fn new(mechanism: &Mechanism) -> Self {
         let inverse = |mass: f64, inertia: f64| Vector3::new(1.0 / mass, 1.0 / mass, 1.0 / inertia);
         let g = mechanism.gravity;
+        let starts: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
         Self {
             inverse_masses: mechanism.bodies.iter().map(|b| inverse(b.mass, b.inertia)).collect(),
             weights: mechanism
@@ -77,6 +80,11 @@ impl Dynamics {
                 .map(|b| Vector3::new(b.mass * g.x, b.mass * g.y, 0.0))
                 .collect(),
             groups: groups(mechanism),
+            prismatics: mechanism
+                .prismatics
+                .iter()
+                .map(|joint| PrismaticState::new(joint, &starts))
+                .collect(),
             rows: Vec::new(),
             matrix: Vec::new(),
             multipliers: Vec::new(),
@@ -90,9 +98,9 @@ impl Dynamics {
 
     /// Fills `out` with commands, wrenches, contacts, lengths and servo forces at time `t` (s) and
     /// the given states. Accelerations and prescribed drive forces are
-    /// [`accelerations`](Self::accelerations)' business.
+    /// [`accelerations`](Self::accelerations)' business, for the same states.
     pub fn forces(
-        &self,
+        &mut self,
         mechanism: &Mechanism,
         t: f64,
         states: &[BodyState],
@@ -122,11 +130,11 @@ impl Dynamics {
         }
         for (i, joint) in mechanism.prismatics.iter().enumerate() {
             if let Drive::Servo { stiffness, damping } = joint.drive {
-                let state = PrismaticState::new(joint, states);
+                let state = &mut self.prismatics[i];
+                *state = PrismaticState::new(joint, states);
                 let command = &out.commands[i];
                 let force = stiffness * (command.length - state.length)
                     + damping * (command.rate - state.rate);
-                out.lengths[i] = state.length;
                 out.drive_forces[i] = force;
                 add(joint.cylinder.body, state.along.jacobians[0] * force);
                 add(joint.rod.body, state.along.jacobians[1] * force);
@@ -151,10 +159,15 @@ impl Dynamics {
             for joint in &self.groups[g] {
                 match *joint {
                     RigidJoint::Prismatic(i) => {
-                        let state = PrismaticState::new(&mechanism.prismatics[i], states);
+                        let joint = &mechanism.prismatics[i];
+                        let prescribed = joint.drive == Drive::Prescribed;
+                        let state = &mut self.prismatics[i];
+                        if prescribed {
+                            *state = PrismaticState::new(joint, states);
+                        }
                         out.lengths[i] = state.length;
                         self.rows.extend(state.locks);
-                        if mechanism.prismatics[i].drive == Drive::Prescribed {
+                        if prescribed {
                             let bias = state.along.bias - out.commands[i].acceleration;
                             self.rows.push(Row { bias, ..state.along });
                         }

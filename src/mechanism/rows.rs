@@ -19,6 +19,13 @@ fn row(direction: Vector2<f64>, moment: f64) -> Vector3<f64> {
     Vector3::new(direction.x, direction.y, moment)
 }
 
+impl Prismatic {
+    /// Length of the joint in m at the given states.
+    pub fn length(&self, states: &[BodyState]) -> f64 {
+        PrismaticState::new(self, states).length
+    }
+}
+
 /// Length, its rate, and the rows of one prismatic joint at one state.
 ///
 /// With u the cylinder's axis, n = u turned by +90°, P and Q the two attachment points, d = Q − P,
@@ -27,6 +34,7 @@ fn row(direction: Vector2<f64>, moment: f64) -> Vector3<f64> {
 /// * length `q = d·u`, `q̇ = ḋ·u + ω d·n`, `q̈ = d̈·u + α d·n + 2ω ḋ·n − ω² d·u`
 /// * sideways `s = d·n`, `s̈ = d̈·n − α d·u − 2ω ḋ·u − ω² d·n = 0`
 /// * angle `α_rod − α_cylinder = 0`.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct PrismaticState {
     /// q in m.
     pub length: f64,

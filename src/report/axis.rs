@@ -38,9 +38,8 @@ impl Axis {
 /// The range that holds all `values`, empty for a constant.
 /// `None` if there is no value that can be drawn.
 pub(super) fn range_of(values: impl Iterator<Item = f64>) -> Option<Range<f64>> {
-    let (min, max) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| {
-        (min.min(v), max.max(v))
-    });
+    let (min, max) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| (min.min(v), max.max(v)));
     (min <= max).then_some(min..max)
 }
 
@@ -92,9 +91,7 @@ impl Ranged for Axis {
         let hair = 2e-3;
         let first = (self.range.start / self.step - hair).ceil();
         let count = ((self.range.end / self.step + hair).floor() - first).max(0.0) as usize;
-        (0..=count)
-            .map(|i| (first + i as f64) * self.step)
-            .collect()
+        (0..=count).map(|i| (first + i as f64) * self.step).collect()
     }
 
     fn range(&self) -> Range<f64> {
@@ -107,11 +104,8 @@ impl ValueFormatter<f64> for Axis {
     /// with an exponent that is the same for the whole axis.
     fn format_ext(&self, value: &f64) -> String {
         let size = self.range.start.abs().max(self.range.end.abs());
-        let exponent = if (1e-3..1e5).contains(&size) {
-            0
-        } else {
-            3 * (size.log10() / 3.0).floor() as i32
-        };
+        let exponent =
+            if (1e-3..1e5).contains(&size) { 0 } else { 3 * (size.log10() / 3.0).floor() as i32 };
         let unit = 10f64.powi(exponent);
         let decimals = (-(self.step / unit).log10() - 1e-9).ceil().max(0.0) as usize;
         let text = format!("{:.decimals$}", value / unit);
@@ -138,10 +132,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_short() {
-        assert_eq!(
-            labels(0.0..0.5, 5.0),
-            ["0", "0.1", "0.2", "0.3", "0.4", "0.5"]
-        );
+        assert_eq!(labels(0.0..0.5, 5.0), ["0", "0.1", "0.2", "0.3", "0.4", "0.5"]);
         assert_eq!(labels(-42.0..42.0, 5.0), ["−40", "−20", "0", "20", "40"]);
         assert_eq!(labels(0.0..0.9999, 2.0), ["0", "0.5", "1.0"]);
         assert_eq!(labels(0.95..1.05, 4.0), ["0.95", "1.00", "1.05"]);

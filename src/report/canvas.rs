@@ -71,16 +71,12 @@ pub(super) fn line(color: &impl Color, width: u32) -> ShapeStyle {
 /// A font of the given size in pixels.
 pub(super) fn font(size: i32, color: RGBColor) -> TextStyle<'static> {
     // The backend divides font sizes by 1.24.
-    ("sans-serif", f64::from(size * PX) * 1.24)
-        .into_font()
-        .color(&color)
+    ("sans-serif", f64::from(size * PX) * 1.24).into_font().color(&color)
 }
 
 /// A bold font for headings, of the given size in pixels.
 pub(super) fn heading(size: i32) -> TextStyle<'static> {
-    ("sans-serif", f64::from(size * PX) * 1.24, FontStyle::Bold)
-        .into_font()
-        .color(&INK)
+    ("sans-serif", f64::from(size * PX) * 1.24, FontStyle::Bold).into_font().color(&INK)
 }
 
 /// Writes text whose anchor, given by `side`, is at the middle of the line's height.

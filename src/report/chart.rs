@@ -135,11 +135,8 @@ impl Chart<'_> {
         let top = header(self.curves);
         match &self.ranges {
             Some(ranges) => {
-                let plot = part(
-                    area,
-                    (EDGE, top),
-                    (WIDTH - EDGE - RIGHT, self.plot_height + BELOW),
-                );
+                let plot =
+                    part(area, (EDGE, top), (WIDTH - EDGE - RIGHT, self.plot_height + BELOW));
                 self.draw_plot(&plot, ranges, &styles)
             }
             None => {
@@ -172,10 +169,8 @@ impl Chart<'_> {
             .x_desc(shortened(self.labels[0], 110))
             .y_desc(shortened(self.labels[1], 40))
             .draw()?;
-        let zero_lines = [
-            (y, vec![(x.start, 0.0), (x.end, 0.0)]),
-            (x, vec![(0.0, y.start), (0.0, y.end)]),
-        ];
+        let zero_lines =
+            [(y, vec![(x.start, 0.0), (x.end, 0.0)]), (x, vec![(0.0, y.start), (0.0, y.end)])];
         for (range, zero_line) in zero_lines {
             if range.start < 0.0 && range.end > 0.0 {
                 chart.draw_series([PathElement::new(zero_line, line(&FRAME, 8))])?;
@@ -209,11 +204,7 @@ mod tests {
     use super::*;
 
     fn curve(name: &str, points: Vec<(f64, f64)>) -> Curve {
-        Curve {
-            name: name.to_owned(),
-            points,
-            style: Style::Solid,
-        }
+        Curve { name: name.to_owned(), points, style: Style::Solid }
     }
 
     fn panel(curves: Vec<Curve>) -> Panel {
@@ -238,10 +229,9 @@ mod tests {
         ];
         for points in odd {
             let curves = vec![curve("a", points.clone()), curve("b", vec![])];
-            for svg in [
-                panels_svg(&[panel(curves.clone())]).unwrap(),
-                path_svg("Path", &curves).unwrap(),
-            ] {
+            for svg in
+                [panels_svg(&[panel(curves.clone())]).unwrap(), path_svg("Path", &curves).unwrap()]
+            {
                 assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
                 assert!(!svg.contains("NaN") && !svg.contains("inf"));
                 let drawable = points.iter().any(|p| drawable(p.0) && drawable(p.1));
@@ -275,16 +265,9 @@ mod tests {
     #[test]
     fn long_signals_stay_small() {
         let wave = |phase: f64| {
-            (0..2000)
-                .map(|i| f64::from(i) * 1e-3)
-                .map(|t| (t, (40.0 * t + phase).sin()))
-                .collect()
+            (0..2000).map(|i| f64::from(i) * 1e-3).map(|t| (t, (40.0 * t + phase).sin())).collect()
         };
-        let curves = vec![
-            curve("a", wave(0.0)),
-            curve("b", wave(1.0)),
-            curve("c", wave(2.0)),
-        ];
+        let curves = vec![curve("a", wave(0.0)), curve("b", wave(1.0)), curve("c", wave(2.0))];
         let svg = panels_svg(&[panel(curves.clone()), panel(curves.clone()), panel(curves)]);
         assert!(svg.unwrap().len() < 400_000);
     }

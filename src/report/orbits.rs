@@ -73,9 +73,7 @@ fn draw_cell(area: &Area, orbit: &Orbit) -> Result<(), DrawError> {
 fn corners(orbit: &Orbit) -> Vec<(i32, i32)> {
     let place = |value: f64| {
         let offset = f64::from(RING) * value / orbit.clearance_m;
-        (f64::from(SQUARE / 2) + offset)
-            .clamp(0.0, f64::from(SQUARE))
-            .round() as i32
+        (f64::from(SQUARE / 2) + offset).clamp(0.0, f64::from(SQUARE)).round() as i32
     };
     let points = orbit.points.iter();
     let mut corners: Vec<_> = points
@@ -107,11 +105,7 @@ mod tests {
     use super::*;
 
     fn orbit(clearance_m: f64, points: Vec<[f64; 2]>) -> Orbit {
-        Orbit {
-            joint: "crank & rod".to_owned(),
-            clearance_m,
-            points,
-        }
+        Orbit { joint: "crank & rod".to_owned(), clearance_m, points }
     }
 
     #[test]

@@ -135,11 +135,8 @@ mod tests {
     }
 
     fn sample() -> String {
-        let fact = Fact {
-            label: MARKUP.to_owned(),
-            value: MARKUP.to_owned(),
-            note: MARKUP.to_owned(),
-        };
+        let fact =
+            Fact { label: MARKUP.to_owned(), value: MARKUP.to_owned(), note: MARKUP.to_owned() };
         let orbits = super::super::orbits_svg(&[]).unwrap();
         let pictures = [picture(orbits), picture("<svg>second</svg>".to_owned())];
         let provenance = [(MARKUP.to_owned(), MARKUP.to_owned())];
@@ -151,8 +148,7 @@ mod tests {
         let html = sample();
         assert!(!html.contains("<script>alert"));
         assert_eq!(
-            html.matches("&lt;script&gt;alert(&#39;a&#39;) &amp; &quot;b&quot;")
-                .count(),
+            html.matches("&lt;script&gt;alert(&#39;a&#39;) &amp; &quot;b&quot;").count(),
             18
         );
     }

@@ -29,14 +29,8 @@ pub fn path_svg(title: &str, curves: &[Curve]) -> Result<String, ReportError> {
         }
         None => (PANEL_PLOT_HEIGHT, None),
     };
-    let chart = Chart {
-        title,
-        labels: ["x (m)", "y (m)"],
-        curves,
-        plot_height,
-        ticks: [TICKS; 2],
-        ranges,
-    };
+    let chart =
+        Chart { title, labels: ["x (m)", "y (m)"], curves, plot_height, ticks: [TICKS; 2], ranges };
     let height = header(curves) + plot_height + BELOW + GAP;
     Ok(picture(height, |root| chart.draw(root))?)
 }
@@ -47,9 +41,7 @@ fn equal_scales(x: Range<f64>, y: Range<f64>) -> (i32, [Range<f64>; 2]) {
     let width = f64::from(PLOT_WIDTH);
     let size = |range: &Range<f64>| (range.end - range.start).max(least_width(range));
     let (x_size, y_size) = (size(&x), size(&y));
-    let height = (width / x_size * y_size)
-        .clamp(PLOT_HEIGHT.start, PLOT_HEIGHT.end)
-        .round();
+    let height = (width / x_size * y_size).clamp(PLOT_HEIGHT.start, PLOT_HEIGHT.end).round();
     let metre = (width / x_size).min(height / y_size);
     let widened = |range: Range<f64>, pixels: f64| {
         let middle = 0.5 * (range.start + range.end);
@@ -65,11 +57,7 @@ mod tests {
     use super::*;
 
     fn svg_of(points: Vec<(f64, f64)>) -> String {
-        let curve = Curve {
-            name: "path".to_owned(),
-            points,
-            style: Style::Solid,
-        };
+        let curve = Curve { name: "path".to_owned(), points, style: Style::Solid };
         path_svg("Path", &[curve]).unwrap()
     }
 

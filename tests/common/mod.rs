@@ -101,7 +101,12 @@ impl Curve {
 }
 
 /// Largest distance of the platform from a reference curve, in m, over its rows up to `until` s.
-pub fn platform_error(mechanism: &Mechanism, control: StepControl, curve: &Curve, until: f64) -> (f64, Work) {
+pub fn platform_error(
+    mechanism: &Mechanism,
+    control: StepControl,
+    curve: &Curve,
+    until: f64,
+) -> (f64, Work) {
     let (t, x, y) = (curve.column("t"), curve.column("x"), curve.column("y"));
     let rows = t.iter().take_while(|t| **t <= until + 1e-9).count();
     let interval = (t[rows - 1] - t[0]) / (rows - 1) as f64;

@@ -1,5 +1,6 @@
 //! `[contact]`: the force between a journal and its bearing.
 
+use crate::contact::StiffnessForm;
 use serde::{Deserialize, Serialize};
 
 /// Contact law and its parameters.
@@ -61,14 +62,4 @@ pub enum Law {
     Native,
     /// No clearance: ideal revolute joints.
     Ideal,
-}
-
-/// Which radius enters the stiffness K.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StiffnessForm {
-    /// R_i R_j / (R_i + R_j), as printed in the paper: two convex bodies.
-    Printed,
-    /// R_i R_j / (R_i − R_j): a journal inside a bearing.
-    Conformal,
 }

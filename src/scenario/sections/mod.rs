@@ -11,7 +11,9 @@ mod motion;
 mod sensors;
 mod simulation;
 
-pub use contact::{Contact, Law, StiffnessForm};
+pub use crate::contact::StiffnessForm;
+pub use crate::engine::StepControl;
+pub use contact::{Contact, Law};
 pub use drive::{Drive, DriveMode};
 pub use environment::Environment;
 pub use joints::{JOINTS, Joints};
@@ -19,4 +21,4 @@ pub use legs::Legs;
 pub use mechanism::{Mechanism, ThreeRpr};
 pub use motion::{Circle, Line, Motion, Multisine, Quintic, Table, Term};
 pub use sensors::Sensors;
-pub use simulation::{Simulation, StepControl};
+pub use simulation::Simulation;

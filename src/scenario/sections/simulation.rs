@@ -1,5 +1,6 @@
 //! `[simulation]`: how long, how finely, how exactly.
 
+use crate::engine::StepControl;
 use serde::{Deserialize, Serialize};
 
 /// What steps a scenario that asks for nothing. Fixed, 1e-5 s: short against the contacts of the
@@ -38,15 +39,6 @@ impl Default for Simulation {
             tolerance: None,
         }
     }
-}
-
-/// How the time step is chosen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum StepControl {
-    /// Every step has this length, s.
-    Fixed(f64),
-    /// Steps are as long as this error tolerance allows, dimensionless.
-    Tolerance(f64),
 }
 
 impl Simulation {

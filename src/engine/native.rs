@@ -1,0 +1,81 @@
+//! The same mechanism under rapier's own contacts, for comparison.
+//!
+//! Nothing is corrected here: rapier steps as it always does (semi-implicit Euler), and what it
+//! reports are impulses. Forces, accelerations and drive forces of a row are the means over the
+//! step that ended there.
+
+use super::run::{Stepper, equal_step};
+use super::world::World;
+use crate::mechanism::{BodyState, Command, Drive, Dynamics, Evaluation, Mechanism};
+use nalgebra::Vector3;
+
+/// Steps of equal length with rapier's contact solver.
+pub(super) struct Native {
+    step: f64,
+    last: f64,
+    world: World,
+    dynamics: Dynamics,
+    states: Vec<BodyState>,
+    now: Evaluation,
+    targets: Vec<Command>,
+}
+
+impl Native {
+    /// Steps of at most `step` s.
+    pub fn new(mechanism: &Mechanism, step: f64) -> Self {
+        let world = World::new(mechanism, true);
+        let mut states = vec![BodyState::ground(); mechanism.bodies.len()];
+        world.read(&mut states);
+        Self {
+            step,
+            last: 0.0,
+            world,
+            dynamics: Dynamics::new(mechanism),
+            states,
+            now: Evaluation::new(mechanism),
+            targets: vec![Command::default(); mechanism.prismatics.len()],
+        }
+    }
+}
+
+impl Stepper for Native {
+    fn synchronise(&mut self, mechanism: &Mechanism, t: f64) {
+        self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
+        if self.last > 0.0 {
+            for (i, contact) in self.now.contacts.iter_mut().enumerate() {
+                contact.normal_force = self.world.contact_impulse(i) / self.last;
+            }
+            for (i, joint) in mechanism.prismatics.iter().enumerate() {
+                self.now.lengths[i] = joint.length(&self.states);
+                if joint.drive == Drive::Prescribed {
+                    self.now.drive_forces[i] = self.world.motor_impulse(i) / self.last;
+                }
+            }
+        } else {
+            // Before the first step the ideal joints' accelerations are the only ones there are.
+            self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
+        }
+    }
+
+    fn states(&self) -> &[BodyState] {
+        &self.states
+    }
+
+    fn evaluation(&self) -> &Evaluation {
+        &self.now
+    }
+
+    fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
+        let (dt, reached) = equal_step(self.step, t, until);
+        mechanism.commands.at(reached, &mut self.targets);
+        let before: Vec<Vector3<f64>> = self.states.iter().map(|s| s.twist).collect();
+        self.world.step(dt, &self.now.wrenches, |i| self.targets[i].length);
+        self.world.read(&mut self.states);
+        for ((a, state), before) in self.now.accelerations.iter_mut().zip(&self.states).zip(before)
+        {
+            *a = (state.twist - before) / dt;
+        }
+        self.last = dt;
+        reached
+    }
+}
