@@ -42,6 +42,9 @@ impl Stepper for Fixed {
         let states = self.leapfrog.states();
         self.dynamics.forces(mechanism, t, states, &mut self.now);
         self.dynamics.accelerations(mechanism, states, &mut self.now);
+        if self.loops {
+            self.dynamics.replace_wrenches(&mut self.now);
+        }
     }
 
     fn states(&self) -> &[BodyState] {
@@ -56,13 +59,7 @@ impl Stepper for Fixed {
         let (dt, reached) = equal_step(self.step, t, until);
         let kick = self.leapfrog.kick();
         for (i, wrench) in self.wrenches.iter_mut().enumerate() {
-            let now = &self.now;
-            *wrench = if self.loops {
-                now.accelerations[i].component_div(&self.dynamics.inverse_masses()[i])
-            } else {
-                now.wrenches[i]
-            };
-            *wrench *= kick;
+            *wrench = self.now.wrenches[i] * kick;
         }
         mechanism.commands.at(reached, &mut self.targets);
         self.world.step(dt, &self.wrenches, |i| self.targets[i].length);

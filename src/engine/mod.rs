@@ -5,6 +5,7 @@
 //! * [`ClearanceJoints`]: clearance joints for anybody's rapier world.
 //! * [`run`]: a whole [`Mechanism`](crate::mechanism::Mechanism) from start to end.
 
+mod adaptive;
 mod clearance_joints;
 mod colliders;
 mod dispatcher;

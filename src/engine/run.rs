@@ -1,5 +1,6 @@
 //! A mechanism from start to end: what a run is asked for, what it hands out, how it can fail.
 
+use super::adaptive::Adaptive;
 use super::fixed::Fixed;
 use super::native::Native;
 use crate::contact::Contact;
@@ -139,7 +140,9 @@ pub fn run(
         StepControl::Fixed(step) => {
             drive(&mut Fixed::new(mechanism, step), mechanism, control, schedule, observe)
         }
-        StepControl::Tolerance(_) => todo!(),
+        StepControl::Tolerance(tolerance) => {
+            drive(&mut Adaptive::new(mechanism, tolerance), mechanism, control, schedule, observe)
+        }
     }
 }
 

@@ -197,6 +197,15 @@ impl Dynamics {
         }
     }
 
+    /// Replaces the wrenches by those that alone would give the accelerations, `M a`: the forces of
+    /// the rigid joints included.
+    pub fn replace_wrenches(&self, out: &mut Evaluation) {
+        for ((w, a), m) in out.wrenches.iter_mut().zip(&out.accelerations).zip(&self.inverse_masses)
+        {
+            *w = a.component_div(m);
+        }
+    }
+
     /// Turns free accelerations into those that meet `self.rows`; leaves λ in `self.multipliers`.
     fn constrain(&mut self, accelerations: &mut [Vector3<f64>]) {
         let n = self.rows.len();

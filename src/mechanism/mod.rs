@@ -174,26 +174,32 @@ impl Mechanism {
     ///
     /// A joint is as light as its two bodies are in the direction in which they give way most
     /// easily: `1/m_eff = Σ (1/m + r²/I)`, r the distance of the joint from the centre of mass.
-    /// A servo on two bodies of reduced mass μ needs `h ≤ √(μ/k_p)` and `h ≤ μ/k_d` (explicit).
     pub fn longest_step(&self, speed: f64) -> Option<f64> {
-        let lightness = |attachment: &Attachment, turning: bool| {
+        let lightness = |attachment: &Attachment| {
             attachment.body.map_or(0.0, |i| {
                 let body = &self.bodies[i];
-                let turn = attachment.point.norm_squared() / body.inertia;
-                1.0 / body.mass + if turning { turn } else { 0.0 }
+                1.0 / body.mass + attachment.point.norm_squared() / body.inertia
             })
         };
         let joints = self.revolutes.iter().filter_map(|joint| {
             let Bearing::Clearance(clearance) = &joint.bearing else { return None };
-            let mass = 1.0 / (lightness(&joint.ring, true) + lightness(&joint.journal, true));
+            let mass = 1.0 / (lightness(&joint.ring) + lightness(&joint.journal));
             Some(clearance.law.longest_step(mass, speed))
         });
+        joints.chain(self.longest_servo_step()).reduce(f64::min)
+    }
+
+    /// The longest step in s that every servo stands: on two bodies of reduced mass μ,
+    /// `h ≤ √(μ/k_p)` and `h ≤ μ/k_d` (explicit), or `None` without servos.
+    pub fn longest_servo_step(&self) -> Option<f64> {
+        let lightness =
+            |attachment: &Attachment| attachment.body.map_or(0.0, |i| 1.0 / self.bodies[i].mass);
         let servos = self.prismatics.iter().filter_map(|joint| {
             let Drive::Servo { stiffness, damping } = joint.drive else { return None };
-            let mass = 1.0 / (lightness(&joint.cylinder, false) + lightness(&joint.rod, false));
+            let mass = 1.0 / (lightness(&joint.cylinder) + lightness(&joint.rod));
             Some((mass / stiffness).sqrt().min(mass / damping))
         });
-        joints.chain(servos).reduce(f64::min)
+        servos.reduce(f64::min)
     }
 }
 
