@@ -14,7 +14,7 @@
 use super::run::Stepper;
 use super::world::World;
 use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism};
-use nalgebra::{UnitComplex, Vector3};
+use nalgebra::Vector3;
 
 /// Inner nodes of the four-point Lobatto rule on [0, 1]: ½(1 ∓ 1/√5); weights 1, 5, 5, 1 over 12.
 const NODES: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];
@@ -87,11 +87,7 @@ impl Adaptive {
     /// Makes `path` the forces at `t + tau` on the predicted path.
     fn look(&mut self, mechanism: &Mechanism, t: f64, tau: f64) {
         for (i, point) in self.path_states.iter_mut().enumerate() {
-            let (state, a, j) = (&self.states[i], self.now.accelerations[i], self.jerks[i]);
-            let shift = (state.twist + (a / 2.0 + j * (tau / 6.0)) * tau) * tau;
-            point.position = state.position + shift.xy();
-            point.rotation = state.rotation * UnitComplex::new(shift.z);
-            point.twist = state.twist + (a + j * (tau / 2.0)) * tau;
+            *point = self.states[i].moved(self.now.accelerations[i], self.jerks[i], tau);
         }
         self.dynamics.forces(mechanism, t + tau, &self.path_states, &mut self.path);
         if self.loops {
@@ -217,7 +213,7 @@ impl Stepper for Adaptive {
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {
             *sum = (*sum + forward) / h;
         }
-        self.targets.copy_from_slice(&self.path.commands);
+        mechanism.commands.at(reached, &mut self.targets);
         self.world.step(h, &self.sums, |i| self.targets[i].length);
         self.previous_wrenches.copy_from_slice(&self.now.wrenches);
         self.previous_accelerations.copy_from_slice(&self.now.accelerations);

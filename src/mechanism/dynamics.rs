@@ -8,8 +8,9 @@
 //! (e.g. Featherstone, *Rigid Body Dynamics Algorithms*, 2008, §3.2). Groups touch each other
 //! through clearance joints only, so each is a small dense system: a leg has three rows.
 
-use super::rows::{PrismaticState, Row, revolute_rows};
-use super::{Bearing, BodyState, Command, Drive, Mechanism, state_of};
+use super::rows::{Row, prismatic_rows, revolute_rows};
+use super::telescope::Telescope;
+use super::{Bearing, BodyState, Command, Drive, Mechanism};
 use crate::contact::Contact;
 use nalgebra::Vector3;
 
@@ -18,11 +19,16 @@ use nalgebra::Vector3;
 pub struct Dynamics {
     inverse_masses: Vec<Vector3<f64>>,
     weights: Vec<Vector3<f64>>,
-    /// Joints of each group, the joints of a group side by side.
+    masses: Vec<Vector3<f64>>,
+    /// Prismatic joints that alone hold two moving bodies, and these: solved in closed form.
+    telescopes: Vec<(usize, [usize; 2])>,
+    /// The other rigid joints, group by group.
     groups: Vec<Vec<RigidJoint>>,
-    /// State of each prismatic joint at the state last asked for.
-    prismatics: Vec<PrismaticState>,
+    /// Each prismatic joint at the state last asked for.
+    prismatics: Vec<Telescope>,
     rows: Vec<Row>,
+    /// J M⁻¹ of each row.
+    weighted: Vec<[Vector3<f64>; 2]>,
     matrix: Vec<f64>,
     multipliers: Vec<f64>,
 }
@@ -36,7 +42,11 @@ enum RigidJoint {
 /// Everything that is known of a mechanism at one instant beside its state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evaluation {
-    /// Command of each prismatic joint.
+    /// Time in s.
+    pub t: f64,
+    /// Time for which the commands were asked last.
+    commanded: f64,
+    /// Command of each prismatic joint; once something has asked for them at this time.
     pub commands: Vec<Command>,
     /// Wrench of gravity, contacts and servos on each body, about its centre of mass.
     pub wrenches: Vec<Vector3<f64>>,
@@ -56,6 +66,8 @@ impl Evaluation {
         let bodies = mechanism.bodies.len();
         let drives = mechanism.prismatics.len();
         Self {
+            t: 0.0,
+            commanded: f64::NAN,
             commands: vec![Command::default(); drives],
             wrenches: vec![Vector3::zeros(); bodies],
             accelerations: vec![Vector3::zeros(); bodies],
@@ -66,26 +78,58 @@ impl Evaluation {
     }
 }
 
+fn add(wrenches: &mut [Vector3<f64>], body: Option<usize>, wrench: Vector3<f64>) {
+    if let Some(i) = body {
+        wrenches[i] += wrench;
+    }
+}
+
+impl Evaluation {
+    /// Asks for the commands, unless they are those of this time already: inverse kinematics costs
+    /// more than all contacts in flight.
+    fn command(&mut self, mechanism: &Mechanism) {
+        if self.commanded != self.t {
+            mechanism.commands.at(self.t, &mut self.commands);
+            self.commanded = self.t;
+        }
+    }
+}
+
 impl Dynamics {
     /// The equations of motion of `mechanism`.
     pub fn new(mechanism: &Mechanism) -> Self {
         let inverse = |mass: f64, inertia: f64| Vector3::new(1.0 / mass, 1.0 / mass, 1.0 / inertia);
         let g = mechanism.gravity;
         let starts: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
+        let bodies = &mechanism.bodies;
+        let (mut telescopes, mut others) = (Vec::new(), Vec::new());
+        for group in groups(mechanism) {
+            if let [RigidJoint::Prismatic(i)] = group[..]
+                && let joint = &mechanism.prismatics[i]
+                && let (Some(cylinder), Some(rod)) = (joint.cylinder.body, joint.rod.body)
+            {
+                telescopes.push((i, [cylinder, rod]));
+            } else {
+                others.push(group);
+            }
+        }
         Self {
-            inverse_masses: mechanism.bodies.iter().map(|b| inverse(b.mass, b.inertia)).collect(),
+            inverse_masses: bodies.iter().map(|b| inverse(b.mass, b.inertia)).collect(),
+            masses: bodies.iter().map(|b| Vector3::new(b.mass, b.mass, b.inertia)).collect(),
             weights: mechanism
                 .bodies
                 .iter()
                 .map(|b| Vector3::new(b.mass * g.x, b.mass * g.y, 0.0))
                 .collect(),
-            groups: groups(mechanism),
+            telescopes,
+            groups: others,
             prismatics: mechanism
                 .prismatics
                 .iter()
-                .map(|joint| PrismaticState::new(joint, &starts))
+                .map(|joint| Telescope::new(joint, &starts))
                 .collect(),
             rows: Vec::new(),
+            weighted: Vec::new(),
             matrix: Vec::new(),
             multipliers: Vec::new(),
         }
@@ -106,23 +150,16 @@ impl Dynamics {
         states: &[BodyState],
         out: &mut Evaluation,
     ) {
-        mechanism.commands.at(t, &mut out.commands);
+        out.t = t;
         out.wrenches.copy_from_slice(&self.weights);
-        let wrenches = &mut out.wrenches;
-        let mut add = |body: Option<usize>, wrench: Vector3<f64>| {
-            if let Some(i) = body {
-                wrenches[i] += wrench;
-            }
-        };
         for (joint, contact) in mechanism.revolutes.iter().zip(&mut out.contacts) {
-            let ring = state_of(states, &joint.ring).frame(joint.ring.point);
-            let journal = state_of(states, &joint.journal).frame(joint.journal.point);
+            let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
             if let Bearing::Clearance(clearance) = &joint.bearing {
                 let (state, forces) = clearance.forces(&ring, &journal);
                 *contact = state;
                 if let Some([on_bearing, on_journal]) = forces {
-                    add(joint.ring.body, on_bearing);
-                    add(joint.journal.body, on_journal);
+                    add(&mut out.wrenches, joint.ring.body, on_bearing);
+                    add(&mut out.wrenches, joint.journal.body, on_journal);
                 }
             } else {
                 contact.eccentricity = journal.centre - ring.centre;
@@ -131,13 +168,15 @@ impl Dynamics {
         for (i, joint) in mechanism.prismatics.iter().enumerate() {
             if let Drive::Servo { stiffness, damping } = joint.drive {
                 let state = &mut self.prismatics[i];
-                *state = PrismaticState::new(joint, states);
+                *state = Telescope::new(joint, states);
+                out.command(mechanism);
                 let command = &out.commands[i];
                 let force = stiffness * (command.length - state.length)
-                    + damping * (command.rate - state.rate);
+                    + damping * (command.rate - state.length_rate);
                 out.drive_forces[i] = force;
-                add(joint.cylinder.body, state.along.jacobians[0] * force);
-                add(joint.rod.body, state.along.jacobians[1] * force);
+                let [on_cylinder, on_rod] = state.drive(force);
+                add(&mut out.wrenches, joint.cylinder.body, on_cylinder);
+                add(&mut out.wrenches, joint.rod.body, on_rod);
             }
         }
     }
@@ -154,22 +193,41 @@ impl Dynamics {
         {
             *a = w.component_mul(m);
         }
+        for (joint, state) in mechanism.prismatics.iter().zip(&mut self.prismatics) {
+            if joint.drive == Drive::Prescribed {
+                out.command(mechanism);
+                *state = Telescope::new(joint, states);
+            }
+        }
+        for (length, state) in out.lengths.iter_mut().zip(&self.prismatics) {
+            *length = state.length;
+        }
+        for &(i, bodies) in &self.telescopes {
+            let prescribed = mechanism.prismatics[i].drive == Drive::Prescribed;
+            let extension = prescribed.then_some(out.commands[i].acceleration);
+            let masses = bodies.map(|b| self.masses[b]);
+            let wrenches = bodies.map(|b| out.wrenches[b]);
+            let (accelerations, force) =
+                self.prismatics[i].accelerations(masses, wrenches, extension);
+            for (body, a) in bodies.into_iter().zip(accelerations) {
+                out.accelerations[body] = a;
+            }
+            if prescribed {
+                out.drive_forces[i] = force;
+            }
+        }
         for g in 0..self.groups.len() {
             self.rows.clear();
             for joint in &self.groups[g] {
                 match *joint {
                     RigidJoint::Prismatic(i) => {
                         let joint = &mechanism.prismatics[i];
-                        let prescribed = joint.drive == Drive::Prescribed;
-                        let state = &mut self.prismatics[i];
-                        if prescribed {
-                            *state = PrismaticState::new(joint, states);
-                        }
-                        out.lengths[i] = state.length;
-                        self.rows.extend(state.locks);
-                        if prescribed {
-                            let bias = state.along.bias - out.commands[i].acceleration;
-                            self.rows.push(Row { bias, ..state.along });
+                        let bodies = [joint.cylinder.body, joint.rod.body];
+                        let [side, angle, mut along] = prismatic_rows(&self.prismatics[i], bodies);
+                        self.rows.extend([side, angle]);
+                        if joint.drive == Drive::Prescribed {
+                            along.bias -= out.commands[i].acceleration;
+                            self.rows.push(along);
                         }
                     }
                     RigidJoint::Revolute(i) => {
@@ -200,41 +258,51 @@ impl Dynamics {
     /// Replaces the wrenches by those that alone would give the accelerations, `M a`: the forces of
     /// the rigid joints included.
     pub fn replace_wrenches(&self, out: &mut Evaluation) {
-        for ((w, a), m) in out.wrenches.iter_mut().zip(&out.accelerations).zip(&self.inverse_masses)
-        {
-            *w = a.component_div(m);
+        for ((w, a), m) in out.wrenches.iter_mut().zip(&out.accelerations).zip(&self.masses) {
+            *w = a.component_mul(m);
         }
     }
 
     /// Turns free accelerations into those that meet `self.rows`; leaves λ in `self.multipliers`.
     fn constrain(&mut self, accelerations: &mut [Vector3<f64>]) {
         let n = self.rows.len();
-        let (rows, masses) = (&self.rows, &self.inverse_masses);
         self.matrix.clear();
         self.matrix.resize(n * n, 0.0);
         self.multipliers.clear();
-        for (i, row) in rows.iter().enumerate() {
+        self.weighted.clear();
+        for (i, row) in self.rows.iter().enumerate() {
             let mut rhs = -row.bias;
+            let mut weighted = [Vector3::zeros(); 2];
             for side in 0..2 {
-                let Some(body) = row.bodies[side] else { continue };
-                rhs -= row.jacobians[side].dot(&accelerations[body]);
-                let weighted = row.jacobians[side].component_mul(&masses[body]);
-                for (j, other) in rows[..=i].iter().enumerate() {
-                    for other_side in 0..2 {
-                        if other.bodies[other_side] == Some(body) {
-                            self.matrix[i * n + j] += weighted.dot(&other.jacobians[other_side]);
+                if let Some(body) = row.bodies[side] {
+                    rhs -= row.jacobians[side].dot(&accelerations[body]);
+                    weighted[side] = row.jacobians[side].component_mul(&self.inverse_masses[body]);
+                }
+            }
+            for (entry, other) in self.matrix[i * n..=i * n + i].iter_mut().zip(&self.rows) {
+                if other.bodies == row.bodies {
+                    *entry =
+                        weighted[0].dot(&other.jacobians[0]) + weighted[1].dot(&other.jacobians[1]);
+                    continue;
+                }
+                for (body, weighted) in row.bodies.iter().zip(&weighted) {
+                    for (other_body, jacobian) in other.bodies.iter().zip(&other.jacobians) {
+                        if body.is_some() && body == other_body {
+                            *entry += weighted.dot(jacobian);
                         }
                     }
                 }
             }
+            self.weighted.push(weighted);
             self.multipliers.push(rhs);
         }
         solve_in_place(&mut self.matrix, &mut self.multipliers);
-        for (row, &lambda) in rows.iter().zip(&self.multipliers) {
-            for side in 0..2 {
-                if let Some(body) = row.bodies[side] {
-                    accelerations[body] +=
-                        row.jacobians[side].component_mul(&masses[body]) * lambda;
+        for ((row, weighted), &lambda) in
+            self.rows.iter().zip(&self.weighted).zip(&self.multipliers)
+        {
+            for (body, weighted) in row.bodies.iter().zip(weighted) {
+                if let Some(body) = *body {
+                    accelerations[body] += weighted * lambda;
                 }
             }
         }

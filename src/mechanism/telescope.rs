@@ -1,0 +1,103 @@
+//! A prismatic joint at one state, and the motion of the two bodies that it alone connects.
+
+use super::{BodyState, Prismatic};
+use nalgebra::{UnitComplex, Vector2, Vector3};
+
+/// Geometry of a prismatic joint. With u the cylinder's axis, n = u turned by +90°, ω the angular
+/// velocity that both bodies share (`u̇ = ω n`, `ṅ = −ω u`), d from the cylinder's centre of mass to
+/// the rod's: `L = d·u`, `w = d·n`, and the joint's length is L plus a constant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Telescope {
+    pub u: Vector2<f64>,
+    pub n: Vector2<f64>,
+    /// L and w in m.
+    pub offset: [f64; 2],
+    /// ḋ in m/s.
+    pub rate: Vector2<f64>,
+    /// ω in rad/s.
+    pub spin: f64,
+    /// Length q in m.
+    pub length: f64,
+    /// q̇ in m/s.
+    pub length_rate: f64,
+}
+
+impl Prismatic {
+    /// Length of the joint in m at the given states.
+    pub fn length(&self, states: &[BodyState]) -> f64 {
+        Telescope::new(self, states).length
+    }
+}
+
+impl Telescope {
+    pub fn new(joint: &Prismatic, states: &[BodyState]) -> Self {
+        let place = |body: Option<usize>| {
+            body.map_or((Vector2::zeros(), Vector2::zeros()), |i| {
+                (states[i].position, states[i].twist.xy())
+            })
+        };
+        let (axis, spin) = joint
+            .cylinder
+            .body
+            .map_or((UnitComplex::identity(), 0.0), |i| (states[i].rotation, states[i].twist.z));
+        let (u, n) = (Vector2::new(axis.re, axis.im), Vector2::new(-axis.im, axis.re));
+        let (from, to) = (place(joint.cylinder.body), place(joint.rod.body));
+        let (d, rate) = (to.0 - from.0, to.1 - from.1);
+        let offset = [d.dot(&u), d.dot(&n)];
+        Self {
+            u,
+            n,
+            offset,
+            rate,
+            spin,
+            length: offset[0] + joint.rod.point.x - joint.cylinder.point.x,
+            length_rate: rate.dot(&u) + spin * offset[1],
+        }
+    }
+
+    /// Wrenches on cylinder and rod of a drive force (N, positive when it extends).
+    pub fn drive(&self, force: f64) -> [Vector3<f64>; 2] {
+        let f = self.u * force;
+        [Vector3::new(-f.x, -f.y, self.offset[1] * force), Vector3::new(f.x, f.y, 0.0)]
+    }
+
+    /// Accelerations of cylinder and rod under the given wrenches, and the force of the drive, for
+    /// two moving bodies that no other rigid joint holds. `extension` is the prescribed q̈, if the
+    /// drive prescribes it.
+    ///
+    /// The rod's force R is what `b = d̈` takes: `R = μ (b − f₂/m₂ + f₁/m₁)`, μ = m₁m₂/(m₁ + m₂);
+    /// both turn with α, `(I₁ + I₂) α = τ₁ + τ₂ − d × R`. Prescribed, b is known but for α,
+    /// `b = (q̈ − ω²L − αw) u + (αL + 2q̇'ω − ω²w) n` with q̇' = ḋ·u + ωw, so that
+    ///
+    /// `α (I₁ + I₂ + μ(L² + w²)) = τ₁ + τ₂ − μ d × (b₀ − f₂/m₂ + f₁/m₁)`, b₀ = b at α = 0;
+    ///
+    /// free along the axis, R has no part along u, and L² stands for L² + w².
+    pub fn accelerations(
+        &self,
+        masses: [Vector3<f64>; 2],
+        wrenches: [Vector3<f64>; 2],
+        extension: Option<f64>,
+    ) -> ([Vector3<f64>; 2], f64) {
+        let Self { u, n, offset: [length, side], spin, .. } = *self;
+        let (m1, m2) = (masses[0].x, masses[1].x);
+        let reduced = m1 * m2 / (m1 + m2);
+        let free = wrenches[1].xy() / m2 - wrenches[0].xy() / m1;
+        let (free_u, free_n) = (free.dot(&u), free.dot(&n));
+        let b_n = 2.0 * self.length_rate * spin - spin * spin * side;
+        let inertia = masses[0].z + masses[1].z + reduced * length * length;
+        let torque = wrenches[0].z + wrenches[1].z - reduced * length * (b_n - free_n);
+        let (alpha, force) = match extension {
+            Some(extension) => {
+                let b_u = extension - spin * spin * length;
+                let alpha =
+                    (torque + reduced * side * (b_u - free_u)) / (inertia + reduced * side * side);
+                (alpha, reduced * (b_u - alpha * side - free_u))
+            }
+            None => (torque / inertia, 0.0),
+        };
+        let reaction = u * force + n * (reduced * (b_n + alpha * length - free_n));
+        let a1 = (wrenches[0].xy() - reaction) / m1;
+        let a2 = (wrenches[1].xy() + reaction) / m2;
+        ([Vector3::new(a1.x, a1.y, alpha), Vector3::new(a2.x, a2.y, alpha)], force)
+    }
+}
