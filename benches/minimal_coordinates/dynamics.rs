@@ -81,7 +81,13 @@ impl Dynamics {
     }
 
     /// The drive's push on the rod, positive outward.
-    pub fn drive_force<const N: usize>(&self, v: &[f64; N], pose: &Pose, loads: &Loads, i: usize) -> f64 {
+    pub fn drive_force<const N: usize>(
+        &self,
+        v: &[f64; N],
+        pose: &Pose,
+        loads: &Loads,
+        i: usize,
+    ) -> f64 {
         if N == SERVO {
             servo_force(pose, i)
         } else {
@@ -93,7 +99,12 @@ impl Dynamics {
     }
 
     #[inline(always)]
-    pub fn accelerations<const N: usize>(&self, v: &[f64; N], pose: &Pose, loads: &Loads) -> [f64; N] {
+    pub fn accelerations<const N: usize>(
+        &self,
+        v: &[f64; N],
+        pose: &Pose,
+        loads: &Loads,
+    ) -> [f64; N] {
         const MASS: [f64; 4] =
             [1.0 / LEG_MASS, 1.0 / LEG_MASS, 1.0 / LEG_MASS, 1.0 / PLATFORM_MASS];
         let mut a = [0.0; N];
@@ -144,7 +155,6 @@ impl Dynamics {
         next.speed /= self.law.clearance;
         next
     }
-
 }
 
 impl Loads {

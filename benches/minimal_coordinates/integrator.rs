@@ -16,7 +16,7 @@ pub struct Work {
 }
 
 const FIRST_STEP: f64 = 1e-5;
-/// In free flight nothing limits a step but the forecast of its end, so no step may outrun that.
+/// In free flight the estimate limits nothing, and the forecast of the flight's end is only so good.
 const LONGEST_STEP: f64 = 1e-3;
 /// A step this short means that the equations have no solution to follow.
 const SHORTEST_STEP: f64 = 1e-14;
@@ -36,7 +36,11 @@ const PLATFORM_RADIUS: f64 = 0.058;
 /// polynomial misses a fixed part of K v^1.5 τ^2.5/m of the velocity; that is `tolerance` at
 /// `ENTRY (tolerance² / v³)^0.2`, the scale found by trial for this machine's K and m.
 const ENTRY: f64 = 3e-4;
-/// The step after that one is at most so many times as long as the reach.
+/// A step from further away than so many reaches would weight the force at its end by its own length: it
+/// stops short of the onset, at this part of the forecast, which leaves out accelerations.
+const NEAR: f64 = 2.0;
+const APPROACH: f64 = 0.95;
+/// The step after an entry is at most so many times as long as the reach.
 const AFTER_ENTRY: f64 = 3.0;
 
 /// Goes from t = 0 through all `times`, which increase, and hands over the state at each.
@@ -60,7 +64,9 @@ pub fn integrate<const N: usize>(
             let mut next_at_most = f64::INFINITY;
             if onset.time < h {
                 let reach = ENTRY * (tolerance * tolerance / onset.speed.powi(3)).powf(0.2);
-                if onset.time + reach < h {
+                if onset.time > NEAR * reach {
+                    h = h.min(APPROACH * onset.time);
+                } else if onset.time + reach < h {
                     h = onset.time + reach;
                     next_at_most = AFTER_ENTRY * reach;
                 }
@@ -76,7 +82,9 @@ pub fn integrate<const N: usize>(
                 log_before = log;
                 wanted = (h * growth).min(next_at_most);
                 work.steps += 1;
-                while let Some((&t, rest)) = remaining.split_first().filter(|(t, _)| **t <= trial.end.t) {
+                while let Some((&t, rest)) =
+                    remaining.split_first().filter(|(t, _)| **t <= trial.end.t)
+                {
                     let (q, v) = interpolate(&state, &trial.end, t);
                     observe(t, q, v);
                     remaining = rest;

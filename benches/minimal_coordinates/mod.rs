@@ -69,7 +69,8 @@ fn sample<const N: usize>(dynamics: &Dynamics, t: f64, q: &[f64; N], v: &[f64; N
     let pose = Pose::new(&dynamics.path, t, q, v);
     let loads = dynamics.loads(v, &pose);
     let a = dynamics.accelerations(v, &pose, &loads);
-    let platform = |values: &[f64; N]| [values[PLATFORM], values[Y + PLATFORM], values[ANGLE + PLATFORM]];
+    let platform =
+        |values: &[f64; N]| [values[PLATFORM], values[Y + PLATFORM], values[ANGLE + PLATFORM]];
     let ([x, y, phi], [vx, vy, omega], [ax, ay, alpha]) = (platform(q), platform(v), platform(&a));
     Sample {
         t,

@@ -75,12 +75,11 @@ pub fn start<const N: usize>(path: &Path) -> ([f64; N], [f64; N]) {
 impl Pose {
     #[inline(always)]
     pub fn new<const N: usize>(path: &Path, t: f64, q: &[f64; N], v: &[f64; N]) -> Self {
-        let angles =
-            [q[ANGLE], q[ANGLE + 1], q[ANGLE + 2], q[ANGLE + 3], path.angle(t), 0.0];
+        let angles = [q[ANGLE], q[ANGLE + 1], q[ANGLE + 2], q[ANGLE + 3], path.angle(t), 0.0];
         let (sin, cos) = sin_cos(&angles);
         let point = path.at(cos[4], sin[4]);
         let (length, rate) = if N == SERVO {
-            // the padding lane must not be zero: it would divide by it
+            // the fourth lane is padding
             (
                 [q[LENGTH], q[LENGTH + 1], q[LENGTH + 2], 1.0],
                 [v[LENGTH], v[LENGTH + 1], v[LENGTH + 2], 0.0],

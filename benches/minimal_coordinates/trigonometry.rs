@@ -3,7 +3,8 @@
 use std::f64::consts::FRAC_2_PI;
 
 /// π/2 in three parts (Cody and Waite): the first two carry 33 bits each, so `n` times either is exact.
-const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
+const HALF_PI: [f64; 3] =
+    [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 /// Adding and taking away 1.5·2⁵² rounds to the nearest whole number, which then is in the low bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 

@@ -51,7 +51,7 @@ const A: [[f64; STAGES]; STAGES] = [
 
 /// Weights of order 5 less those of order 4.
 const ERROR: [f64; STAGES] = [
-    -0.001_780_011_052_225_777_14,
+    -0.001_780_011_052_225_777,
     -0.000_816_434_459_656_746_9,
     0.007_880_878_010_261_995,
     -0.144_711_007_173_262_9,
@@ -92,6 +92,7 @@ pub struct State<const N: usize> {
 }
 
 impl<const N: usize> State<N> {
+    #[inline(always)]
     pub fn new(dynamics: &Dynamics, t: f64, q: [f64; N], v: [f64; N]) -> (Self, Pose) {
         let pose = Pose::new(&dynamics.path, t, &q, &v);
         let a = dynamics.accelerations(&v, &pose, &dynamics.loads(&v, &pose));
@@ -113,21 +114,46 @@ pub const EVALUATIONS: u64 = STAGES as u64 - 1;
 pub fn step<const N: usize>(dynamics: &Dynamics, from: &State<N>, h: f64) -> Trial<N> {
     let mut a = [[0.0; N]; STAGES];
     a[0] = from.a;
-    for i in 1..STAGES - 1 {
-        let (q, v) = stage(from, &a, i, h);
-        let pose = Pose::new(&dynamics.path, from.t + C[i] * h, &q, &v);
-        a[i] = dynamics.accelerations(&v, &pose, &dynamics.loads(&v, &pose));
-    }
-    let (q, v) = stage(from, &a, STAGES - 1, h);
+    // no loop: with the stage a literal, the compiler drops the zero coefficients
+    a[1] = stage(dynamics, from, &a, 1, h);
+    a[2] = stage(dynamics, from, &a, 2, h);
+    a[3] = stage(dynamics, from, &a, 3, h);
+    a[4] = stage(dynamics, from, &a, 4, h);
+    a[5] = stage(dynamics, from, &a, 5, h);
+    let (q, v) = combine(from, &a, 6, h);
     let (end, pose) = State::new(dynamics, from.t + h, q, v);
-    a[STAGES - 1] = end.a;
+    a[6] = end.a;
     let velocity_error = std::array::from_fn(|n| h * weighted(&ERROR, &a, STAGES, n));
     Trial { end, pose, velocity_error }
 }
 
-/// Coordinates and rates of stage `i`.
+/// The accelerations of stage `i`.
 #[inline(always)]
 fn stage<const N: usize>(
+    dynamics: &Dynamics,
+    from: &State<N>,
+    a: &[[f64; N]; STAGES],
+    i: usize,
+    h: f64,
+) -> [f64; N] {
+    let (q, v) = combine(from, a, i, h);
+    accelerations(dynamics, from.t + C[i] * h, &q, &v)
+}
+
+/// The right-hand side, once in the program: five copies would not stay in the instruction cache.
+#[inline(never)]
+fn accelerations<const N: usize>(
+    dynamics: &Dynamics,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> [f64; N] {
+    State::new(dynamics, t, *q, *v).0.a
+}
+
+/// Coordinates and rates of stage `i`, from the accelerations of those before.
+#[inline(always)]
+fn combine<const N: usize>(
     from: &State<N>,
     a: &[[f64; N]; STAGES],
     i: usize,
@@ -143,7 +169,12 @@ fn stage<const N: usize>(
 
 /// `Σ_{j<end} w_j a_j[n]`; the weights are constants, and no code is left of those that are zero.
 #[inline(always)]
-fn weighted<const N: usize>(w: &[f64; STAGES], a: &[[f64; N]; STAGES], end: usize, n: usize) -> f64 {
+fn weighted<const N: usize>(
+    w: &[f64; STAGES],
+    a: &[[f64; N]; STAGES],
+    end: usize,
+    n: usize,
+) -> f64 {
     let mut sum = 0.0;
     for j in 0..end {
         if w[j] != 0.0 {

@@ -107,7 +107,7 @@ impl Adaptive {
             };
             worst = worst.max(size(self.errors[i].component_mul(m)) / 20.0);
             let a = self.now.accelerations[i];
-            worst = worst.max(0.02 * size(self.ends[i] - a - self.jerks[i] * h));
+            worst = worst.max(0.01 * size(self.ends[i] - a - self.jerks[i] * h));
         }
         worst * h
     }
