@@ -16,11 +16,12 @@
 //! | [`scenario`] | the TOML file, validated |
 //! | [`simulate`] | scenario → mechanism → samples and summary |
 //! | [`report`] | pictures and the page, from plain data |
-//! | `study` | what users come for: a run and its files |
+//! | [`study`] | what users come for: a run and its files |
 //! | [`cli`] | one file per command |
 //!
 //! SI units everywhere.
 
+pub mod cli;
 pub mod contact;
 pub mod engine;
 pub mod measure;
@@ -28,3 +29,4 @@ pub mod mechanism;
 pub mod report;
 pub mod scenario;
 pub mod simulate;
+pub mod study;

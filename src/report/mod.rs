@@ -11,11 +11,13 @@ mod chart;
 mod orbits;
 mod page;
 mod path;
+mod quantity;
 
 pub use chart::panels_svg;
 pub use orbits::orbits_svg;
 pub use page::page;
 pub use path::path_svg;
+pub use quantity::{length, number};
 
 /// How a curve is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,6 +8,7 @@ use super::canvas::{
     Area, DrawError, FAINT_INK, FRAME, GRID, PALETTE, PX, WIDTH, empty_frame, font, heading, line,
     part, picture, shortened, write,
 };
+use super::quantity::length;
 use super::{Orbit, ReportError};
 
 const PER_ROW: i32 = 3;
@@ -84,37 +85,12 @@ fn corners(orbit: &Orbit) -> Vec<(i32, i32)> {
     corners
 }
 
-/// A length of `metres` with three digits, in the unit that suits it.
-fn length(metres: f64) -> String {
-    let (value, unit) = match metres {
-        m if m < 0.9995e-6 => (m * 1e9, "nm"),
-        m if m < 0.9995e-3 => (m * 1e6, "µm"),
-        m => (m * 1e3, "mm"),
-    };
-    let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 2.0) as usize;
-    let text = format!("{value:.decimals$}");
-    let text = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => &text,
-    };
-    format!("{text} {unit}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn orbit(clearance_m: f64, points: Vec<[f64; 2]>) -> Orbit {
         Orbit { joint: "crank & rod".to_owned(), clearance_m, points }
-    }
-
-    #[test]
-    fn lengths_choose_their_unit() {
-        assert_eq!(length(0.5e-3), "500 µm");
-        assert_eq!(length(12.34e-6), "12.3 µm");
-        assert_eq!(length(1e-3), "1 mm");
-        assert_eq!(length(1.25e-3), "1.25 mm");
-        assert_eq!(length(20e-9), "20 nm");
     }
 
     #[test]

@@ -33,6 +33,10 @@ pub const DEFAULT_TOML: &str = include_str!("../../assets/default.toml");
 /// What stands for the file's name in messages about [`DEFAULT_TOML`].
 const DEFAULT_SOURCE: &str = "built-in default";
 
+/// Fixed step of the physics engine's own contacts where none is given, s: short against the time
+/// that journals of the paper's machine take from hit to hit.
+const NATIVE_STEP: f64 = 1e-5;
+
 /// A validated scenario: what the file and the overrides say, the rest filled with defaults.
 #[derive(Debug, Clone, Serialize)]
 pub struct Scenario {
@@ -110,6 +114,17 @@ impl Scenario {
         self.folder.join(file)
     }
 
+    /// The fixed step or the tolerance that was given, or what suits the contact law: the physics
+    /// engine's own contacts have no error estimate, so `native` takes a fixed step.
+    pub fn step_control(&self) -> StepControl {
+        let simulation = &self.simulation;
+        if self.contact.law == Law::Native && simulation.tolerance.is_none() {
+            StepControl::Fixed(simulation.step.unwrap_or(NATIVE_STEP))
+        } else {
+            simulation.step_control()
+        }
+    }
+
     /// A complaint about the key `path` that says where the key was written.
     pub fn problem(
         &self,
@@ -134,7 +149,7 @@ impl Scenario {
         let Mechanism::ThreeRpr(machine) = &mut full.mechanism;
         machine.platform_inertia = Some(machine.platform_inertia());
         full.simulation.settle = Some(full.simulation.settle());
-        full.simulation.set_step_control(full.simulation.step_control());
+        full.simulation.set_step_control(self.step_control());
         if let Motion::Table(table) = &mut full.motion {
             let file = self.resolve(&table.file);
             let file = std::path::absolute(&file).unwrap_or(file);

@@ -149,7 +149,10 @@ impl Checks<'_> {
             self.complain(
                 "simulation.output_interval",
                 format!("is {}", simulation.output_interval),
-                &format!("expected at most simulation.duration, {duration} s"),
+                &format!(
+                    "expected at most simulation.duration, {duration} s: simulate longer, or ask \
+                     for rows more often"
+                ),
             );
         }
         if let Some(settle) = simulation.settle {

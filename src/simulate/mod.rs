@@ -1,1 +1,21 @@
+//! From a scenario to what the engine needs, and from what the engine hands out to rows and a
+//! summary.
+//!
+//! [`assemble`] makes a [`Machine`] of a scenario; [`findings`] says what is wrong or doubtful about
+//! it before anything is simulated; [`TimeSeries`] and [`Recorder`] take the instants of a run, one
+//! by one and in constant memory.
 
+mod assemble;
+mod checks;
+mod ideal;
+mod motion;
+mod summary;
+mod three_rpr;
+mod timeseries;
+
+pub use assemble::{Machine, assemble, radial_clearance};
+pub use checks::{Finding, Severity, findings};
+pub use ideal::{Ideal, IdealInstant};
+pub use summary::{JointSummary, Recorder, Summary};
+pub use three_rpr::leg_use;
+pub use timeseries::TimeSeries;

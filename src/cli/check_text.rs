@@ -1,0 +1,125 @@
+//! The text of `freeplay check`.
+
+use crate::report::{length, number};
+use crate::scenario::{DriveMode, Law};
+use crate::study::CheckedMachine;
+use std::fmt::Write as _;
+
+/// Everything about a machine, for people.
+pub(super) fn text(m: &CheckedMachine) -> String {
+    let mut text = Text(String::new());
+    text.line(&format!("{}, {} s", m.scenario_name, number(m.duration_s)));
+    machine(&mut text, m);
+    motion(&mut text, m);
+    joints(&mut text, m);
+    drives(&mut text, m);
+    text.0
+}
+
+struct Text(String);
+
+impl Text {
+    fn line(&mut self, line: &str) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "{line}");
+    }
+
+    fn entry(&mut self, label: &str, value: &str) {
+        self.line(&format!("  {label:<22}{value}"));
+    }
+}
+
+fn machine(text: &mut Text, m: &CheckedMachine) {
+    text.line("\nMachine");
+    let sides = format!(
+        "base triangle {}, platform triangle {}",
+        length(m.base_side_m),
+        length(m.platform_side_m)
+    );
+    text.entry("sides", &sides);
+    for body in &m.bodies {
+        let value =
+            format!("{:>6} kg   {} kg m²", number(body.mass_kg), number(body.inertia_kg_m2));
+        text.entry(&body.name, &value);
+    }
+}
+
+fn motion(text: &mut Text, m: &CheckedMachine) {
+    text.line("\nMotion");
+    for (i, leg) in (1..).zip(&m.legs) {
+        let [low, high] = leg.used_m;
+        let [shortest, longest] = leg.stroke_m;
+        let value = format!("{low:.4} to {high:.4} m   stroke {shortest} to {longest} m");
+        text.entry(&format!("leg {i}"), &value);
+    }
+    text.entry("fastest leg", &format!("{} m/s", number(m.fastest_leg_m_s)));
+    let t = number(m.singularity_time_s);
+    let value = if m.ideal.is_some() {
+        let share = 100.0 * m.singularity_distance_m / m.platform_circumradius_m;
+        format!(
+            "{} at t = {t} s ({} % of the platform's circumradius)",
+            length(m.singularity_distance_m),
+            number(share)
+        )
+    } else {
+        format!("nothing: reached at t = {t} s")
+    };
+    text.entry("from singularity", &value);
+}
+
+fn joints(text: &mut Text, m: &CheckedMachine) {
+    text.line("\nJoints");
+    for joint in &m.joints {
+        let mut value = match joint.clearance_m {
+            Some(clearance) => format!("clearance {}", length(clearance)),
+            None => "ideal".to_owned(),
+        };
+        if let (Some(stiffness), Some(time)) = (joint.stiffness, joint.contact_time_s) {
+            let _ = write!(
+                value,
+                "   K = {} N/m^n   a hit lasts about {} µs",
+                number(stiffness),
+                number(1e6 * time)
+            );
+        }
+        text.entry(&joint.joint, &value);
+    }
+    if m.law == Law::HertzStep {
+        text.line(&format!("  (hits taken at {} m/s)", number(m.impact_speed_m_s)));
+    }
+    let step = match (m.step_s, m.tolerance_m_s) {
+        (Some(step), _) => format!("fixed, {} s", number(step)),
+        (None, Some(tolerance)) => {
+            format!("by error, {} m/s of velocity a step", number(tolerance))
+        }
+        (None, None) => String::new(),
+    };
+    text.entry("step", &step);
+    let longest = m
+        .longest_step_s
+        .map_or_else(|| "nothing limits it".to_owned(), |longest| format!("{} s", number(longest)));
+    text.entry("longest fixed step", &longest);
+}
+
+fn drives(text: &mut Text, m: &CheckedMachine) {
+    text.line("\nDrives");
+    let kind = match (m.drive, m.servo_stiffness, m.servo_damping) {
+        (DriveMode::Servo, Some(stiffness), Some(damping)) => {
+            format!("servo, {} N/m and {} N s/m", number(stiffness), number(damping))
+        }
+        _ => "prescribed: lengths follow the command exactly".to_owned(),
+    };
+    text.entry("kind", &kind);
+    match &m.ideal {
+        Some(ideal) => {
+            text.line("  without clearance the motion takes");
+            for (i, [low, high]) in (1..).zip(&ideal.actuator_forces) {
+                let value = format!("{} to {} N", number(*low), number(*high));
+                text.entry(&format!("  actuator {i}"), &value);
+            }
+            let peak = format!("up to {} m/s²", number(ideal.peak_platform_acceleration_m_s2));
+            text.entry("  platform", &peak);
+        }
+        None => text.line("  at a singularity no finite forces carry the motion"),
+    }
+}

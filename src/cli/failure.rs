@@ -1,0 +1,83 @@
+//! How a command fails: whose fault, and what is said.
+
+use super::output;
+use crate::scenario::{Problem, Problems};
+use crate::simulate::{Finding, Severity};
+use crate::study::{FolderError, RunError};
+use std::process::ExitCode;
+
+/// A command that did not do what was asked.
+#[derive(Debug)]
+pub(super) enum Failure {
+    /// Wrong input; one message a problem.
+    Input(Vec<String>),
+    /// Anything else.
+    Other(String),
+}
+
+impl Failure {
+    /// Says it on standard error, one line a problem.
+    pub fn print(&self) {
+        let messages = match self {
+            Failure::Input(messages) => messages.as_slice(),
+            Failure::Other(message) => std::slice::from_ref(message),
+        };
+        for message in messages {
+            output::complain(&format!("error: {message}"));
+        }
+    }
+
+    /// The exit code for it.
+    pub fn code(&self) -> ExitCode {
+        match self {
+            Failure::Input(_) => ExitCode::from(2),
+            Failure::Other(_) => ExitCode::FAILURE,
+        }
+    }
+}
+
+impl From<Problems> for Failure {
+    fn from(problems: Problems) -> Self {
+        Failure::Input(problems.0.iter().map(Problem::to_string).collect())
+    }
+}
+
+impl From<Problem> for Failure {
+    fn from(problem: Problem) -> Self {
+        Problems::from(problem).into()
+    }
+}
+
+impl From<FolderError> for Failure {
+    fn from(error: FolderError) -> Self {
+        Failure::Input(vec![error.to_string()])
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Folder(error) => error.into(),
+            error => Failure::Other(error.to_string()),
+        }
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        Failure::Other(format!("cannot write the result: {error}"))
+    }
+}
+
+/// Prints warnings, and fails if there are errors.
+pub(super) fn refuse_errors(findings: Vec<Finding>) -> Result<(), Failure> {
+    let (errors, warnings): (Vec<_>, Vec<_>) =
+        findings.into_iter().partition(|finding| finding.severity == Severity::Error);
+    for warning in &warnings {
+        output::complain(&warning.to_string());
+    }
+    if errors.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::Input(errors.iter().map(|error| error.problem.to_string()).collect()))
+}

@@ -1,0 +1,61 @@
+//! The command line: one file per command. Commands parse, call and print; what they call is in the
+//! rooms below.
+//!
+//! Exit codes: 0 done, 2 wrong input (what, where, what would be right), 1 anything else. Results go
+//! to standard output, everything else to standard error.
+
+mod check;
+mod check_text;
+mod completions;
+mod failure;
+mod options;
+mod output;
+mod progress;
+mod run;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Simulate mechanisms whose revolute joints have clearance (free play).
+///
+/// The journals of such joints fly and hit inside their bearing rings; the motion turns chaotic, and
+/// the drives and the machine's accuracy feel it. Machines are described by scenario files (TOML);
+/// without one, commands take the built-in scenario, a 3-RPR planar parallel manipulator with 0.5 mm
+/// of clearance in all six revolute joints. SI units everywhere: m, kg, s, N, rad.
+#[derive(Debug, Parser)]
+#[command(name = "freeplay", version, arg_required_else_help = true, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  freeplay run                                  the built-in machine, into ./freeplay-run-default
+  freeplay run --set joints.clearance=1e-4      the same with 0.1 mm of clearance
+  freeplay check my-machine.toml                what can be said without simulating
+
+Exit codes: 0 done, 2 wrong input, 1 anything else.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::Arguments),
+    Check(check::Arguments),
+    Completions(completions::Arguments),
+}
+
+/// Runs the command that the process was called with.
+pub fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Run(arguments) => run::main(&arguments),
+        Command::Check(arguments) => check::main(&arguments),
+        Command::Completions(arguments) => completions::main(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.print();
+            failure.code()
+        }
+    }
+}

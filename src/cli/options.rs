@@ -1,0 +1,54 @@
+//! Options that commands share.
+
+use crate::scenario::{Problems, Scenario};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Which scenario.
+#[derive(Debug, Args)]
+pub(super) struct ScenarioOptions {
+    /// Scenario file (TOML); without one, the built-in scenario
+    #[arg(value_name = "SCENARIO")]
+    file: Option<PathBuf>,
+    /// Set one value of the scenario; may be given many times
+    ///
+    /// PATH is section.key, VALUE is TOML (a bare word is a string), SI units:
+    /// `joints.clearance=1e-4` (m), `drive.mode=servo`, `environment.gravity=[0,-9.81]` (m/s²),
+    /// `motion.period=0.5` (s), `contact.law=native`, `simulation.output_interval=1e-4` (s).
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    sets: Vec<String>,
+    /// Simulated time in seconds; short for --set simulation.duration=S
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    duration: Option<f64>,
+}
+
+impl ScenarioOptions {
+    /// Reads the scenario.
+    pub fn load(&self) -> Result<Scenario, Problems> {
+        let duration = self.duration.map(|s| format!("simulation.duration={s:?}"));
+        let sets: Vec<String> = self.sets.iter().cloned().chain(duration).collect();
+        Scenario::load(self.file.as_deref(), &sets)
+    }
+}
+
+/// Where files go.
+#[derive(Debug, Args)]
+pub(super) struct FolderOptions {
+    /// Folder for the results [default: named after command and scenario, in the working directory]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace a result that is already there (never any other files)
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// What is printed.
+#[derive(Debug, Args)]
+pub(super) struct PrintOptions {
+    /// Print no progress and no result; errors and warnings still go to standard error
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Print the result as JSON on standard output, and nothing else there
+    #[arg(long)]
+    pub json: bool,
+}

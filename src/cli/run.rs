@@ -1,0 +1,127 @@
+//! `freeplay run`: simulate a scenario.
+
+use super::failure::{Failure, refuse_errors};
+use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
+use super::output;
+use super::progress::Progress;
+use crate::report::{length, number};
+use crate::scenario::Law;
+use crate::simulate::{Summary, assemble, findings};
+use crate::study::{self, Folder, Outcome, SUMMARY_FILE, default_name};
+use clap::Args;
+use std::fmt::Write as _;
+
+/// Simulate a scenario and write time series, summary, pictures and a page
+///
+/// The results go into a new folder: index.html (look at this first), timeseries.csv (one row each
+/// simulation.output_interval: pose, velocity, acceleration, actuator lengths and forces, and for
+/// each joint the eccentricity in m and the contact force in N), summary.json (the main figures),
+/// scenario.toml (the scenario with every default filled in: `freeplay run` on it repeats the run)
+/// and pictures (SVG).
+///
+/// Peaks, means and fractions leave out the first simulation.settle seconds, in which the journals,
+/// centred at the start, find their rings.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+    #[command(flatten)]
+    folder: FolderOptions,
+    #[command(flatten)]
+    print: PrintOptions,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  freeplay run                                       the built-in machine for 1 s
+  freeplay run --duration 5 --out long               5 s, into ./long
+  freeplay run my-machine.toml --set joints.clearance=1e-4
+  freeplay run --set contact.law=ideal               the same machine without clearance
+  freeplay run --set drive.mode=servo --set environment.gravity=[0,-9.81]
+  freeplay run --set motion.kind=line --set motion.velocity=[0.05,0]
+  freeplay run --json --quiet | jq .peak_contact_force_N";
+
+pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    let scenario = arguments.scenario.load()?;
+    let mut machine = assemble(&scenario)?;
+    refuse_errors(findings(&scenario, &machine))?;
+    let out = arguments.folder.out.clone();
+    let out = out.unwrap_or_else(|| default_name("run", &scenario.name));
+    let folder = Folder::prepare(&out, SUMMARY_FILE, arguments.folder.force)?;
+
+    let mut progress = Progress::new(scenario.simulation.duration, arguments.print.quiet);
+    let outcome = study::run(&scenario, &mut machine, folder, &mut |t| progress.reached(t));
+    progress.clear();
+    let outcome = outcome?;
+    if arguments.print.json {
+        output::print(&outcome.json)?;
+    } else if !arguments.print.quiet {
+        output::print(&text(&outcome))?;
+    }
+    match outcome.summary.halted {
+        None => Ok(()),
+        Some(reason) => Err(Failure::Other(reason)),
+    }
+}
+
+/// The result for people.
+fn text(outcome: &Outcome) -> String {
+    let s = &outcome.summary;
+    let mut text = format!(
+        "{}: {} s simulated in {} s, {} steps\n\n",
+        s.scenario_name,
+        number(s.simulated_s),
+        number(s.wall_s),
+        s.steps
+    );
+    if !s.has_figures() {
+        let _ = writeln!(text, "  no figures: the run ended within the first {} s", s.settle_s);
+    }
+    for (label, value, note) in figures(s) {
+        // Writing to a string cannot fail, here and below.
+        let line = format!("  {label:<28}{value:>12}   {note}");
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    if s.has_figures() && s.settle_s > 0.0 {
+        let _ = writeln!(text, "\n  (the first {} s left out)", number(s.settle_s));
+    }
+    let folder = outcome.folder.display();
+    let page = outcome.folder.join("index.html");
+    let _ = writeln!(text, "\nWritten to {folder}; open {}", page.display());
+    text
+}
+
+fn figures(s: &Summary) -> Vec<(&'static str, String, String)> {
+    if !s.has_figures() {
+        return Vec::new();
+    }
+    let newton = |value: f64| format!("{} N", number(value));
+    let acceleration = |value: f64| format!("{} m/s²", number(value));
+    let mut figures = vec![
+        ("peak contact force", newton(s.peak_contact_force), String::new()),
+        (
+            "peak platform acceleration",
+            acceleration(s.peak_platform_acceleration_m_s2),
+            format!("ideal: {}", acceleration(s.ideal_peak_platform_acceleration_m_s2)),
+        ),
+        (
+            "peak actuator force",
+            newton(s.peak_actuator_force),
+            format!("ideal: {}", newton(s.ideal_peak_actuator_force)),
+        ),
+        (
+            "largest path error",
+            length(s.max_path_error_m),
+            format!("rms: {}", length(s.rms_path_error_m)),
+        ),
+    ];
+    if s.law != Law::Ideal {
+        let fraction = format!("{} %", number(100.0 * s.contact_fraction));
+        figures.extend([
+            ("time in contact", fraction, "mean of all joints".to_owned()),
+            ("impacts", s.impacts.to_string(), format!("{} per s", number(s.impacts_per_s))),
+        ]);
+    }
+    figures
+}

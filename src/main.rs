@@ -1,0 +1,7 @@
+//! The `freeplay` command; see `freeplay --help`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    freeplay::cli::main()
+}

@@ -1,0 +1,122 @@
+//! A scenario as a machine that can be simulated. What concerns one kind of mechanism only stands in
+//! that kind's own file.
+
+use super::ideal::Ideal;
+use super::{motion, three_rpr};
+use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
+use crate::engine::{Schedule, StepControl};
+use crate::mechanism::motion::Motion;
+use crate::mechanism::{Attachment, Bearing, Drive, Mechanism};
+use crate::scenario::{self, DriveMode, Law, Problem, Scenario};
+use std::sync::Arc;
+
+/// A machine, its motion, how it is to be stepped, and itself without clearance.
+#[derive(Debug)]
+pub struct Machine {
+    /// What is simulated.
+    pub mechanism: Mechanism,
+    /// What the output body is asked to do.
+    pub motion: Arc<dyn Motion>,
+    /// The same machine with ideal joints and prescribed drives: what results are compared with.
+    pub ideal: Ideal,
+    /// Which instants are wanted.
+    pub schedule: Schedule,
+    /// How to step.
+    pub control: StepControl,
+}
+
+/// Makes the machine that a scenario describes.
+///
+/// # Errors
+/// A motion table that cannot be read.
+pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
+    let motion = motion::of(scenario)?;
+    let (mechanism, ideal) = match &scenario.mechanism {
+        scenario::Mechanism::ThreeRpr(machine) => {
+            three_rpr::assemble(scenario, machine, Arc::clone(&motion))
+        }
+    };
+    let simulation = &scenario.simulation;
+    let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
+    Ok(Machine { mechanism, motion, ideal, schedule, control: scenario.step_control() })
+}
+
+/// The drive that a scenario asks for.
+pub(super) fn drive(scenario: &Scenario) -> Drive {
+    let drive = &scenario.drive;
+    match drive.mode {
+        DriveMode::Prescribed => Drive::Prescribed,
+        DriveMode::Servo => Drive::Servo { stiffness: drive.stiffness, damping: drive.damping },
+    }
+}
+
+/// Bearing of joint `index`, in the order of the joint columns.
+pub(super) fn bearing(scenario: &Scenario, index: usize) -> Bearing {
+    let (joints, contact) = (&scenario.joints, &scenario.contact);
+    let bearing_radius = joints.bearing_radius;
+    let journal_radius = bearing_radius - joints.clearance[index];
+    let coefficient = joints.friction[index];
+    match contact.law {
+        Law::Ideal => Bearing::Ideal,
+        Law::Native => Bearing::Native { bearing_radius, journal_radius, friction: coefficient },
+        Law::HertzStep => Bearing::Clearance(Clearance {
+            bearing_radius,
+            journal_radius,
+            law: Arc::new(hertz_step(scenario, index)),
+            friction: (coefficient > 0.0)
+                .then_some(CoulombFriction { coefficient, velocity: contact.friction_velocity }),
+        }),
+    }
+}
+
+/// The Hertz–STEP law of joint `index`.
+fn hertz_step(scenario: &Scenario, index: usize) -> HertzStep {
+    let (joints, contact) = (&scenario.joints, &scenario.contact);
+    let material =
+        Material { youngs_modulus: contact.youngs_modulus, poisson_ratio: contact.poisson_ratio };
+    let journal_radius = joints.bearing_radius - joints.clearance[index];
+    let stiffness = contact.stiffness.unwrap_or_else(|| {
+        hertz_stiffness(contact.stiffness_form, material, joints.bearing_radius, journal_radius)
+    });
+    HertzStep {
+        stiffness,
+        exponent: contact.exponent,
+        c_max: contact.c_max,
+        d_max: contact.d_max,
+        clip: contact.clip,
+    }
+}
+
+impl Machine {
+    /// Stiffness K in N/mⁿ of joint `index` and how long it touches (s) in a lossless hit at `speed`
+    /// m/s, under the laws that have a stiffness.
+    pub fn contact(&self, scenario: &Scenario, index: usize, speed: f64) -> Option<(f64, f64)> {
+        let law = match scenario.contact.law {
+            Law::HertzStep => hertz_step(scenario, index),
+            Law::Native | Law::Ideal => return None,
+        };
+        let joint = &self.mechanism.revolutes[index];
+        let mass = 1.0 / (self.lightness(&joint.ring) + self.lightness(&joint.journal));
+        Some((law.stiffness, law.contact_time(mass, speed)))
+    }
+
+    /// 1/kg that a body offers at a point in the direction in which it gives way most easily; the
+    /// ground gives nothing.
+    fn lightness(&self, attachment: &Attachment) -> f64 {
+        attachment.body.map_or(0.0, |i| {
+            let body = &self.mechanism.bodies[i];
+            1.0 / body.mass + attachment.point.norm_squared() / body.inertia
+        })
+    }
+}
+
+/// Radial clearance in m of a joint; an ideal one has none. To 1e-15 m, so that the difference of two
+/// radii reads as the clearance that was asked for.
+pub fn radial_clearance(bearing: &Bearing) -> Option<f64> {
+    let radial = match bearing {
+        Bearing::Ideal => return None,
+        Bearing::Clearance(clearance) => clearance.radial(),
+        Bearing::Native { bearing_radius, journal_radius, .. } => bearing_radius - journal_radius,
+    };
+    Some((radial * 1e15).round() / 1e15)
+}

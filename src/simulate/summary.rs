@@ -1,0 +1,282 @@
+//! `summary.json`: the main figures of a run, gathered row by row in constant memory.
+
+use super::assemble::{Machine, radial_clearance};
+use super::ideal::IdealInstant;
+use crate::engine::{Instant, RAPIER_VERSION, StepControl, Work};
+use crate::mechanism::Mechanism;
+use crate::scenario::{DriveMode, Law, Scenario};
+use serde::Serialize;
+
+/// The main figures of a run. Peaks, means and fractions leave out the first `settle_s` seconds; all
+/// of them are NaN (`null` in JSON) if a run ended before.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// The program that wrote this: how a result is told from other files.
+    pub program: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// Version of the physics engine underneath.
+    pub rapier_version: &'static str,
+    /// Name of the scenario.
+    pub scenario_name: String,
+    /// SHA-256 of the effective scenario.
+    pub scenario_hash: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Contact law.
+    pub law: Law,
+    /// Kind of drive.
+    pub drive: DriveMode,
+    /// Fixed step asked for in s, if it is fixed.
+    pub step_s: Option<f64>,
+    /// Velocity error allowed for one step in m/s, if the step follows it.
+    pub tolerance_m_s: Option<f64>,
+    /// Why the run stopped early, if it did.
+    pub halted: Option<String>,
+    /// Time reached in s.
+    pub simulated_s: f64,
+    /// Start left out of the figures below, in s.
+    pub settle_s: f64,
+    /// Largest normal force in any joint in N, over all steps.
+    #[serde(rename = "peak_contact_force_N")]
+    pub peak_contact_force: f64,
+    /// Largest |(a_x, a_y)| of the output body in m/s², over all steps.
+    pub peak_platform_acceleration_m_s2: f64,
+    /// Largest |F| of any drive in N, over all steps.
+    #[serde(rename = "peak_actuator_force_N")]
+    pub peak_actuator_force: f64,
+    /// The same of the ideal machine, over all rows.
+    pub ideal_peak_platform_acceleration_m_s2: f64,
+    /// The same of the ideal machine, over all rows.
+    #[serde(rename = "ideal_peak_actuator_force_N")]
+    pub ideal_peak_actuator_force: f64,
+    /// Root mean square over the rows of the distance from the ideal position, in m.
+    pub rms_path_error_m: f64,
+    /// Largest such distance of a row in m.
+    pub max_path_error_m: f64,
+    /// Root mean square over the rows of |(a_x, a_y) − ideal| in m/s².
+    pub rms_acceleration_deviation_m_s2: f64,
+    /// Root mean square over the rows of the norm of all drive forces − ideal, in N.
+    #[serde(rename = "rms_actuator_force_deviation_N")]
+    pub rms_actuator_force_deviation: f64,
+    /// Share of time that a joint spends in contact, mean of all joints.
+    pub contact_fraction: f64,
+    /// Contacts begun in all joints.
+    pub impacts: u64,
+    /// Contacts begun per second.
+    pub impacts_per_s: f64,
+    /// Largest |e| − c of a row in any joint, in m; zero if no row saw a penetration.
+    pub largest_penetration_m: f64,
+    /// Steps of the physics engine, from the very start.
+    pub steps: u64,
+    /// Shortest step in s.
+    pub smallest_step_s: f64,
+    /// Longest step in s.
+    pub largest_step_s: f64,
+    /// Time that simulating took in s, writing the time series included.
+    pub wall_s: f64,
+    /// The same per simulated second.
+    pub wall_s_per_simulated_s: f64,
+    /// Joint by joint, in the order of the columns.
+    pub joints: Vec<JointSummary>,
+    /// What stands beside this file.
+    pub files: Vec<String>,
+}
+
+impl Summary {
+    /// Whether the run got past the start that is left out, so that there are figures at all.
+    pub fn has_figures(&self) -> bool {
+        self.impacts_per_s.is_finite()
+    }
+}
+
+/// One joint's share of a [`Summary`].
+#[derive(Clone, Debug, Serialize)]
+pub struct JointSummary {
+    /// Name.
+    pub joint: String,
+    /// Radial clearance in m; none of an ideal joint.
+    pub clearance_m: Option<f64>,
+    /// Largest normal force in N, over all steps.
+    #[serde(rename = "peak_force_N")]
+    pub peak_force: f64,
+    /// Share of time in contact.
+    pub contact_fraction: f64,
+    /// Contacts begun.
+    pub impacts: u64,
+    /// Largest |e| of a row in m.
+    pub max_eccentricity_m: f64,
+}
+
+/// Gathers a [`Summary`].
+#[derive(Debug)]
+pub struct Recorder {
+    settle: f64,
+    /// Time of the first row after the start that is left out, and of the last row, in s.
+    span: Option<[f64; 2]>,
+    rows: u64,
+    /// Sums over the rows of squared deviations: position, acceleration, drive forces.
+    squares: [f64; 3],
+    peak_acceleration: f64,
+    peak_drive_force: f64,
+    ideal_peaks: [f64; 2],
+    max_path_error: f64,
+    joints: Vec<JointRecord>,
+}
+
+#[derive(Clone, Debug)]
+struct JointRecord {
+    name: String,
+    clearance: Option<f64>,
+    peak: f64,
+    max_eccentricity: f64,
+    /// Impacts and time in contact at the first row counted, and at the last.
+    impacts: [u64; 2],
+    contact_time: [f64; 2],
+}
+
+impl Recorder {
+    /// An empty record that leaves out the first `settle` s.
+    pub fn new(mechanism: &Mechanism, settle: f64) -> Self {
+        let joints = mechanism.revolutes.iter().map(|joint| JointRecord {
+            name: joint.name.clone(),
+            clearance: radial_clearance(&joint.bearing),
+            peak: f64::NAN,
+            max_eccentricity: f64::NAN,
+            impacts: [0; 2],
+            contact_time: [0.0; 2],
+        });
+        Self {
+            // Rows meant to stand at the end of the start may fall a rounding error before it.
+            settle: settle * (1.0 - 1e-9),
+            span: None,
+            rows: 0,
+            squares: [0.0; 3],
+            // f64::max takes the other value for a NaN: the first one counted.
+            peak_acceleration: f64::NAN,
+            peak_drive_force: f64::NAN,
+            ideal_peaks: [f64::NAN; 2],
+            max_path_error: f64::NAN,
+            joints: joints.collect(),
+        }
+    }
+
+    /// Takes the next row.
+    pub fn row(&mut self, mechanism: &Mechanism, instant: &Instant, ideal: &IdealInstant) {
+        if instant.t < self.settle {
+            return;
+        }
+        let now = instant.evaluation;
+        let first = self.span.is_none();
+        let start = self.span.map_or(instant.t, |[start, _]| start);
+        self.span = Some([start, instant.t]);
+
+        let output = mechanism.output;
+        let acceleration = (now.accelerations[output] - ideal.acceleration).xy();
+        let path_error = (instant.states[output].position - ideal.position).norm();
+        let drives = now.drive_forces.iter().zip(ideal.drive_forces);
+        let deviations = [
+            path_error * path_error,
+            acceleration.norm_squared(),
+            drives.map(|(force, ideal)| (force - ideal).powi(2)).sum(),
+        ];
+        for (sum, square) in self.squares.iter_mut().zip(deviations) {
+            *sum += square;
+        }
+        self.rows += 1;
+        self.max_path_error = self.max_path_error.max(path_error);
+        let ideal_force = ideal.drive_forces.iter().fold(0.0f64, |peak, f| peak.max(f.abs()));
+        self.ideal_peaks[0] = self.ideal_peaks[0].max(ideal.acceleration.xy().norm());
+        self.ideal_peaks[1] = self.ideal_peaks[1].max(ideal_force);
+
+        for ((joint, contact), tally) in
+            self.joints.iter_mut().zip(&now.contacts).zip(instant.tallies)
+        {
+            let side = usize::from(!first);
+            joint.impacts[side..].fill(tally.impacts);
+            joint.contact_time[side..].fill(tally.contact_time);
+            joint.max_eccentricity = joint.max_eccentricity.max(contact.eccentricity.norm());
+        }
+        // The peaks of a row go back to the row before, which must have been counted too; before
+        // the first row of all there is nothing.
+        if !first || instant.t == 0.0 {
+            self.peak_acceleration = self.peak_acceleration.max(instant.peaks.acceleration);
+            self.peak_drive_force = self.peak_drive_force.max(instant.peaks.drive_force);
+            for (joint, tally) in self.joints.iter_mut().zip(instant.tallies) {
+                joint.peak = joint.peak.max(tally.peak);
+            }
+        }
+    }
+
+    /// The summary of a run that took `work` and `wall` s, `halted` if it broke down, and wrote
+    /// `files`.
+    pub fn finish(
+        self,
+        scenario: &Scenario,
+        machine: &Machine,
+        work: Work,
+        wall: f64,
+        halted: Option<String>,
+        files: Vec<String>,
+    ) -> Summary {
+        let time = self.span.map_or(0.0, |[start, end]| end - start);
+        let rms = |k: usize| (self.squares[k] / self.rows as f64).sqrt();
+        let joints: Vec<JointSummary> =
+            self.joints.iter().map(|joint| joint.summary(time)).collect();
+        let impacts = joints.iter().map(|joint| joint.impacts).sum();
+        let fractions: f64 = joints.iter().map(|joint| joint.contact_fraction).sum();
+        let penetration = |joint: &JointRecord| Some(joint.max_eccentricity - joint.clearance?);
+        let (step_s, tolerance_m_s) = match machine.control {
+            StepControl::Fixed(step) => (Some(step), None),
+            StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
+        };
+        Summary {
+            program: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            rapier_version: RAPIER_VERSION,
+            scenario_name: scenario.name.clone(),
+            scenario_hash: scenario.hash(),
+            seed: scenario.seed,
+            law: scenario.contact.law,
+            drive: scenario.drive.mode,
+            step_s,
+            tolerance_m_s,
+            halted,
+            simulated_s: work.reached,
+            settle_s: scenario.simulation.settle(),
+            peak_contact_force: joints.iter().map(|j| j.peak_force).fold(f64::NAN, f64::max),
+            peak_platform_acceleration_m_s2: self.peak_acceleration,
+            peak_actuator_force: self.peak_drive_force,
+            ideal_peak_platform_acceleration_m_s2: self.ideal_peaks[0],
+            ideal_peak_actuator_force: self.ideal_peaks[1],
+            rms_path_error_m: rms(0),
+            max_path_error_m: self.max_path_error,
+            rms_acceleration_deviation_m_s2: rms(1),
+            rms_actuator_force_deviation: rms(2),
+            contact_fraction: fractions / joints.len() as f64,
+            impacts,
+            impacts_per_s: impacts as f64 / time,
+            largest_penetration_m: self.joints.iter().filter_map(penetration).fold(0.0, f64::max),
+            steps: work.steps,
+            smallest_step_s: work.smallest_step,
+            largest_step_s: work.largest_step,
+            wall_s: wall,
+            wall_s_per_simulated_s: wall / work.reached,
+            joints,
+            files,
+        }
+    }
+}
+
+impl JointRecord {
+    fn summary(&self, time: f64) -> JointSummary {
+        JointSummary {
+            joint: self.name.clone(),
+            clearance_m: self.clearance,
+            peak_force: self.peak,
+            contact_fraction: (self.contact_time[1] - self.contact_time[0]) / time,
+            impacts: self.impacts[1] - self.impacts[0],
+            max_eccentricity_m: self.max_eccentricity,
+        }
+    }
+}

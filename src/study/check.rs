@@ -1,0 +1,226 @@
+//! Everything that can be said of a scenario without simulating it.
+
+use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
+use crate::scenario::{self, DriveMode, Law, Problem, Scenario};
+use crate::simulate::{Finding, Machine, Severity, findings, leg_use, radial_clearance};
+use serde::Serialize;
+
+/// Instants at which the ideal machine's forces are looked at.
+const INSTANTS: usize = 1000;
+
+/// Distance from singularity in m that is none but for rounding: there the forces have no bound.
+const NO_DISTANCE: f64 = 1e-9;
+
+/// What a scenario describes, and what is wrong or doubtful about it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Check {
+    /// Whether a run would start.
+    pub ok: bool,
+    /// Errors and warnings.
+    pub findings: Vec<Found>,
+    /// What the rest says; absent if the scenario could not be read.
+    #[serde(flatten)]
+    pub machine: Option<CheckedMachine>,
+}
+
+/// A finding as plain text.
+#[derive(Clone, Debug, Serialize)]
+pub struct Found {
+    /// Error or warning.
+    pub severity: Severity,
+    /// Dotted path of the key; empty if the file as a whole is meant.
+    pub key: String,
+    /// Where it was written.
+    pub location: String,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: String,
+    /// All of it as one line.
+    #[serde(skip)]
+    pub text: String,
+}
+
+/// What a scenario describes.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckedMachine {
+    /// Name of the scenario.
+    pub scenario_name: String,
+    /// SHA-256 of the effective scenario.
+    pub scenario_hash: String,
+    /// Simulated time in s.
+    pub duration_s: f64,
+    /// Side of the base triangle in m.
+    pub base_side_m: f64,
+    /// Side of the platform triangle in m.
+    pub platform_side_m: f64,
+    /// Name, mass (kg) and inertia (kg m²) of each body.
+    pub bodies: Vec<CheckedBody>,
+    /// How far each leg travels.
+    pub legs: Vec<CheckedLeg>,
+    /// Largest speed of a leg in m/s.
+    pub fastest_leg_m_s: f64,
+    /// Smallest distance from singularity in m; zero if the motion passes through one.
+    pub singularity_distance_m: f64,
+    /// When it comes closest, in s.
+    pub singularity_time_s: f64,
+    /// The platform's circumradius in m, which that distance is to be compared with.
+    pub platform_circumradius_m: f64,
+    /// Contact law.
+    pub law: Law,
+    /// The revolute joints.
+    pub joints: Vec<CheckedJoint>,
+    /// Speed in m/s that a hit is taken to have in the figures on contacts and steps.
+    pub impact_speed_m_s: f64,
+    /// Longest fixed step in s that resolves the hits and the servos; none where nothing limits it.
+    pub longest_step_s: Option<f64>,
+    /// Fixed step asked for in s, if it is fixed.
+    pub step_s: Option<f64>,
+    /// Velocity error allowed for one step in m/s, if the step follows it.
+    pub tolerance_m_s: Option<f64>,
+    /// Kind of drive.
+    pub drive: DriveMode,
+    /// Servo gains in N/m and N s/m, if the drive has any.
+    #[serde(rename = "servo_stiffness_N_m")]
+    pub servo_stiffness: Option<f64>,
+    /// See there.
+    #[serde(rename = "servo_damping_Ns_m")]
+    pub servo_damping: Option<f64>,
+    /// What the machine without clearance needs; none at a singularity.
+    pub ideal: Option<Ideal>,
+}
+
+/// One body.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckedBody {
+    /// Name.
+    pub name: String,
+    /// Mass in kg.
+    pub mass_kg: f64,
+    /// Inertia about the centre of mass in kg m².
+    pub inertia_kg_m2: f64,
+}
+
+/// One leg's travel.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckedLeg {
+    /// Shortest and longest length that the motion asks for, in m.
+    pub used_m: [f64; 2],
+    /// Shortest and longest length that the leg has, in m.
+    pub stroke_m: [f64; 2],
+}
+
+/// One revolute joint.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckedJoint {
+    /// Name.
+    pub joint: String,
+    /// Radial clearance in m; none of an ideal joint.
+    pub clearance_m: Option<f64>,
+    /// Contact stiffness K in N/mⁿ (n is `contact.exponent`); none where the law has none.
+    #[serde(rename = "stiffness_N_m_n")]
+    pub stiffness: Option<f64>,
+    /// How long a hit lasts, in s.
+    pub contact_time_s: Option<f64>,
+}
+
+/// What the machine without clearance needs for the motion.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ideal {
+    /// Smallest and largest force of each drive in N.
+    #[serde(rename = "actuator_forces_N")]
+    pub actuator_forces: Vec<[f64; 2]>,
+    /// Largest |(a_x, a_y)| of the platform in m/s².
+    pub peak_platform_acceleration_m_s2: f64,
+}
+
+impl Check {
+    /// The check of a scenario that could not even be read or assembled.
+    pub fn unreadable(problems: Vec<Problem>) -> Check {
+        let findings = problems.into_iter().map(|problem| found(Finding::error(problem)));
+        Check { ok: false, findings: findings.collect(), machine: None }
+    }
+}
+
+fn found(finding: Finding) -> Found {
+    let problem = finding.problem;
+    Found {
+        text: problem.to_string(),
+        severity: finding.severity,
+        key: problem.path,
+        location: problem.location.to_string(),
+        message: problem.message,
+        help: problem.help,
+    }
+}
+
+/// Looks at a machine from all sides.
+pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
+    let findings = findings(scenario, machine);
+    let ok = findings.iter().all(|finding| finding.severity != Severity::Error);
+    let scenario::Mechanism::ThreeRpr(kind) = &scenario.mechanism;
+    let reach = leg_use(scenario, kind, &*machine.motion);
+    let ideal = (reach.singularity_distance > NO_DISTANCE).then(|| ideal(machine));
+    let mechanism = &machine.mechanism;
+    let bodies = mechanism.bodies.iter().map(|body| CheckedBody {
+        name: body.name.clone(),
+        mass_kg: body.mass,
+        inertia_kg_m2: body.inertia,
+    });
+    let joints = mechanism.revolutes.iter().enumerate().map(|(i, joint)| {
+        let contact = machine.contact(scenario, i, TYPICAL_IMPACT_SPEED);
+        CheckedJoint {
+            joint: joint.name.clone(),
+            clearance_m: radial_clearance(&joint.bearing),
+            stiffness: contact.map(|(stiffness, _)| stiffness),
+            contact_time_s: contact.map(|(_, time)| time),
+        }
+    });
+    let stroke_m = scenario.legs.stroke;
+    let servo = scenario.drive.mode == DriveMode::Servo;
+    let (step_s, tolerance_m_s) = match machine.control {
+        StepControl::Fixed(step) => (Some(step), None),
+        StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
+    };
+    let machine = CheckedMachine {
+        scenario_name: scenario.name.clone(),
+        scenario_hash: scenario.hash(),
+        duration_s: scenario.simulation.duration,
+        base_side_m: kind.base_side,
+        platform_side_m: kind.platform_side,
+        bodies: bodies.collect(),
+        legs: reach.lengths.iter().map(|used| CheckedLeg { used_m: *used, stroke_m }).collect(),
+        fastest_leg_m_s: reach.fastest_leg,
+        singularity_distance_m: reach.singularity_distance,
+        singularity_time_s: reach.singularity_time,
+        platform_circumradius_m: kind.platform_side / 3f64.sqrt(),
+        law: scenario.contact.law,
+        joints: joints.collect(),
+        impact_speed_m_s: TYPICAL_IMPACT_SPEED,
+        longest_step_s: mechanism.longest_step(TYPICAL_IMPACT_SPEED),
+        step_s,
+        tolerance_m_s,
+        drive: scenario.drive.mode,
+        servo_stiffness: servo.then_some(scenario.drive.stiffness),
+        servo_damping: servo.then_some(scenario.drive.damping),
+        ideal,
+    };
+    Check { ok, findings: findings.into_iter().map(found).collect(), machine: Some(machine) }
+}
+
+/// Extremes of the ideal machine over the motion.
+fn ideal(machine: &mut Machine) -> Ideal {
+    let drives = machine.mechanism.prismatics.len();
+    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; drives];
+    let mut peak = 0.0f64;
+    for k in 0..=INSTANTS {
+        let t = machine.schedule.duration * k as f64 / INSTANTS as f64;
+        let ideal = machine.ideal.at(t);
+        for ([low, high], force) in ranges.iter_mut().zip(ideal.drive_forces) {
+            *low = low.min(*force);
+            *high = high.max(*force);
+        }
+        peak = peak.max(ideal.acceleration.xy().norm());
+    }
+    Ideal { actuator_forces: ranges, peak_platform_acceleration_m_s2: peak }
+}

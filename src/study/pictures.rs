@@ -1,0 +1,291 @@
+//! The pictures of a run: signals gathered row by row in constant memory, drawn at the end.
+
+use super::recent::Recent;
+use crate::engine::{Instant, Schedule};
+use crate::measure::envelope::Envelope;
+use crate::mechanism::Mechanism;
+use crate::report::{
+    Curve, Orbit, Panel, Picture, ReportError, Style, length, number, orbits_svg, panels_svg,
+    path_svg,
+};
+use crate::simulate::{IdealInstant, radial_clearance};
+
+/// Stretches that a signal is kept in: about one per pixel of a picture's width.
+const STRETCHES: usize = 800;
+
+/// Rows that a path is kept of, at its end: ten turns of the default circle.
+const PATH_ROWS: usize = 20_000;
+
+/// Points of a path that are drawn: enough for a smooth curve of several turns.
+const PATH_POINTS: usize = 4000;
+
+/// Rows that an orbit is kept of, at its end, and drawn: more would hide each other.
+const ORBIT_ROWS: usize = 4000;
+
+/// What the pictures show.
+#[derive(Debug)]
+pub(super) struct Gallery {
+    interval: f64,
+    path: Recent,
+    ideal_path: Recent,
+    path_error: Envelope,
+    /// a_x, a_y, α of the platform.
+    accelerations: [Envelope; 3],
+    /// |(a_x, a_y)|, peak since the row before.
+    peak_acceleration: Envelope,
+    ideal_accelerations: [Envelope; 3],
+    drives: Vec<Drive>,
+    joints: Vec<Joint>,
+}
+
+#[derive(Debug)]
+struct Drive {
+    name: String,
+    force: Envelope,
+    ideal: Envelope,
+}
+
+#[derive(Debug)]
+struct Joint {
+    name: String,
+    clearance: Option<f64>,
+    /// Peak since the row before.
+    force: Envelope,
+    orbit: Recent,
+}
+
+impl Gallery {
+    /// Nothing gathered yet.
+    pub fn new(mechanism: &Mechanism, schedule: Schedule) -> Self {
+        let envelope = || Envelope::new(STRETCHES);
+        let path = || Recent::new(PATH_ROWS);
+        let drives = mechanism.prismatics.iter().map(|joint| Drive {
+            name: joint.name.clone(),
+            force: envelope(),
+            ideal: envelope(),
+        });
+        let joints = mechanism.revolutes.iter().map(|joint| Joint {
+            name: joint.name.clone(),
+            clearance: radial_clearance(&joint.bearing),
+            force: envelope(),
+            orbit: Recent::new(ORBIT_ROWS),
+        });
+        Self {
+            interval: schedule.interval,
+            path: path(),
+            ideal_path: path(),
+            path_error: envelope(),
+            accelerations: [(); 3].map(|()| envelope()),
+            peak_acceleration: envelope(),
+            ideal_accelerations: [(); 3].map(|()| envelope()),
+            drives: drives.collect(),
+            joints: joints.collect(),
+        }
+    }
+
+    /// Takes the next row.
+    pub fn row(&mut self, mechanism: &Mechanism, instant: &Instant, ideal: &IdealInstant) {
+        let t = instant.t;
+        let now = instant.evaluation;
+        let position = instant.states[mechanism.output].position;
+        self.path.push(position.into());
+        self.ideal_path.push(ideal.position.into());
+        self.path_error.push(t, 1e3 * (position - ideal.position).norm());
+        let acceleration = &now.accelerations[mechanism.output];
+        for (k, (envelope, ideal_envelope)) in
+            self.accelerations.iter_mut().zip(&mut self.ideal_accelerations).enumerate()
+        {
+            envelope.push(t, acceleration[k]);
+            ideal_envelope.push(t, ideal.acceleration[k]);
+        }
+        self.peak_acceleration.push(t, instant.peaks.acceleration);
+        for (i, drive) in self.drives.iter_mut().enumerate() {
+            drive.force.push(t, now.drive_forces[i]);
+            drive.ideal.push(t, ideal.drive_forces[i]);
+        }
+        for (i, joint) in self.joints.iter_mut().enumerate() {
+            joint.force.push(t, instant.tallies[i].peak);
+            joint.orbit.push(now.contacts[i].eccentricity.into());
+        }
+    }
+
+    /// The pictures, in the order of the page.
+    pub fn draw(&self) -> Result<Vec<Picture>, ReportError> {
+        Ok(vec![
+            self.path()?,
+            self.path_error()?,
+            self.acceleration()?,
+            self.actuator_forces()?,
+            self.joint_forces()?,
+            self.orbits()?,
+        ])
+    }
+
+    fn path(&self) -> Result<Picture, ReportError> {
+        let curves = [
+            Curve { name: "platform".into(), points: pairs(&self.path), style: Style::Solid },
+            ideal(pairs(&self.ideal_path)),
+        ];
+        Ok(Picture {
+            file: "path.svg".into(),
+            title: "Path of the platform".into(),
+            caption: "Where the platform's centre went (blue), and where it would have gone without \
+                      clearance (dashed). Both axes have the same scale; what the clearance does to \
+                      the path is often too small to see here and stands in the next figure."
+                .to_owned()
+                + &self.only_the_end(&self.path, PATH_ROWS),
+            svg: path_svg("Path of the platform's centre", &curves)?,
+        })
+    }
+
+    /// Says so where a picture does not show the whole run.
+    fn only_the_end(&self, curve: &Recent, rows: usize) -> String {
+        if !curve.truncated {
+            return String::new();
+        }
+        format!(" Shown are the last {} s.", number(self.interval * rows as f64))
+    }
+
+    fn path_error(&self) -> Result<Picture, ReportError> {
+        let panel = Panel {
+            title: "Distance of the platform from its ideal position".into(),
+            x_label: TIME.into(),
+            y_label: "distance (mm)".into(),
+            curves: vec![solid("distance", &self.path_error)],
+        };
+        Ok(Picture {
+            file: "path-error.svg".into(),
+            title: "Path error".into(),
+            caption:
+                "How far the platform's centre is from where it would be without clearance, at \
+                      the same time. Free play lets it lag, lead and wander, within what the \
+                      clearances of all joints together leave it."
+                    .into(),
+            svg: panels_svg(&[panel])?,
+        })
+    }
+
+    fn acceleration(&self) -> Result<Picture, ReportError> {
+        let titles = [
+            ("Acceleration along x", "a_x (m/s²)"),
+            ("Acceleration along y", "a_y (m/s²)"),
+            ("Angular acceleration", "alpha (rad/s²)"),
+        ];
+        let mut panels: Vec<Panel> = titles
+            .iter()
+            .zip(self.accelerations.iter().zip(&self.ideal_accelerations))
+            .map(|((title, label), (envelope, ideal_envelope))| Panel {
+                title: (*title).into(),
+                x_label: TIME.into(),
+                y_label: (*label).into(),
+                curves: vec![solid("platform", envelope), ideal(ideal_envelope.points())],
+            })
+            .collect();
+        panels.push(Panel {
+            title: "Peaks: largest |(a_x, a_y)| since the row before".into(),
+            x_label: TIME.into(),
+            y_label: "|a| (m/s²)".into(),
+            curves: vec![solid("platform", &self.peak_acceleration)],
+        });
+        Ok(Picture {
+            file: "acceleration.svg".into(),
+            title: "Acceleration of the platform".into(),
+            caption: format!(
+                "Acceleration of the platform's centre and angle, and of the ideal machine \
+                 (dashed). A spike is a journal that hits its bearing. The first three curves are sampled every {} ms, longer than many \
+                 hits, and miss the tips of spikes; the last one misses none.",
+                number(1e3 * self.interval)
+            ),
+            svg: panels_svg(&panels)?,
+        })
+    }
+
+    fn actuator_forces(&self) -> Result<Picture, ReportError> {
+        let panels: Vec<Panel> = self
+            .drives
+            .iter()
+            .map(|drive| Panel {
+                title: format!("Actuator {}", drive.name),
+                x_label: TIME.into(),
+                y_label: "force (N)".into(),
+                curves: vec![solid(&drive.name, &drive.force), ideal(drive.ideal.points())],
+            })
+            .collect();
+        Ok(Picture {
+            file: "actuator-forces.svg".into(),
+            title: "Actuator forces".into(),
+            caption:
+                "Force of each actuator on its rod, positive when it pushes outward, and what \
+                      the ideal machine needs for the same motion (dashed). The hits in the joints \
+                      pass straight through to the actuators."
+                    .into(),
+            svg: panels_svg(&panels)?,
+        })
+    }
+
+    fn joint_forces(&self) -> Result<Picture, ReportError> {
+        let panels: Vec<Panel> = self
+            .joints
+            .iter()
+            .map(|joint| Panel {
+                title: format!("Joint {}", joint.name),
+                x_label: TIME.into(),
+                y_label: "peak force (N)".into(),
+                curves: vec![solid(&joint.name, &joint.force)],
+            })
+            .collect();
+        Ok(Picture {
+            file: "joint-forces.svg".into(),
+            title: "Contact forces in the joints".into(),
+            caption:
+                "Largest normal force between journal and bearing since the row before, joint \
+                      by joint. Where a curve lies on zero the journal flies freely."
+                    .into(),
+            svg: panels_svg(&panels)?,
+        })
+    }
+
+    fn orbits(&self) -> Result<Picture, ReportError> {
+        let orbits: Vec<Orbit> = self
+            .joints
+            .iter()
+            .map(|joint| Orbit {
+                joint: joint.name.clone(),
+                clearance_m: joint.clearance.unwrap_or(0.0),
+                points: joint.orbit.points(ORBIT_ROWS),
+            })
+            .collect();
+        let clearances = self.joints.iter().filter_map(|joint| joint.clearance);
+        let part = self.joints.first().map(|joint| self.only_the_end(&joint.orbit, ORBIT_ROWS));
+        let caption = match clearances.reduce(f64::max) {
+            Some(largest) => format!(
+                "Where the centre of each journal went inside its bearing, seen from the bearing's \
+                 centre. The circle is the clearance (up to {}): a journal on it touches, one \
+                 inside flies. The orange dot is the last position.{}",
+                length(largest),
+                part.unwrap_or_default()
+            ),
+            None => "Without clearance the journals stay in the centres of their bearings.".into(),
+        };
+        Ok(Picture {
+            file: "orbits.svg".into(),
+            title: "Orbits of the journals".into(),
+            caption,
+            svg: orbits_svg(&orbits)?,
+        })
+    }
+}
+
+const TIME: &str = "time (s)";
+
+fn solid(name: &str, envelope: &Envelope) -> Curve {
+    Curve { name: name.to_owned(), points: envelope.points(), style: Style::Solid }
+}
+
+fn ideal(points: Vec<(f64, f64)>) -> Curve {
+    Curve { name: "ideal machine".to_owned(), points, style: Style::Reference }
+}
+
+fn pairs(path: &Recent) -> Vec<(f64, f64)> {
+    path.points(PATH_POINTS).iter().map(|p| (p[0], p[1])).collect()
+}

@@ -1,0 +1,121 @@
+//! One run into a folder.
+
+use super::folder::{Folder, FolderError};
+use super::pictures::Gallery;
+use super::run_page::page;
+use crate::engine;
+use crate::report::ReportError;
+use crate::scenario::Scenario;
+use crate::simulate::{Machine, Recorder, Summary, TimeSeries};
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
+use std::path::PathBuf;
+use std::time::Instant as Clock;
+
+/// The JSON file of a run, by which its folder is known.
+pub const SUMMARY_FILE: &str = "summary.json";
+
+const TIME_SERIES_FILE: &str = "timeseries.csv";
+const SCENARIO_FILE: &str = "scenario.toml";
+const PAGE_FILE: &str = "index.html";
+
+/// What a run came to.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The main figures.
+    pub summary: Summary,
+    /// The text of `summary.json`.
+    pub json: String,
+    /// Where all files are.
+    pub folder: PathBuf,
+}
+
+/// Why a run has no files.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A file cannot be written.
+    #[error("cannot write {file}: {source}")]
+    File {
+        /// Its name.
+        file: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// A picture cannot be drawn.
+    #[error(transparent)]
+    Picture(#[from] ReportError),
+    /// The folder cannot get its name.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+}
+
+fn refused(file: &str) -> impl FnOnce(io::Error) -> RunError {
+    let file = file.to_owned();
+    |source| RunError::File { file, source }
+}
+
+/// Simulates a machine and writes everything about it into `folder`. `progress` is told the time
+/// reached, in s. A run that breaks down is written up to there; its summary says so in `halted`.
+///
+/// # Errors
+/// [`RunError`], if files cannot be written; the folder is left as it was.
+pub fn run(
+    scenario: &Scenario,
+    machine: &mut Machine,
+    folder: Folder,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Outcome, RunError> {
+    let started = Clock::now();
+    let mechanism = &machine.mechanism;
+    let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
+    let mut gallery = Gallery::new(mechanism, machine.schedule);
+
+    let file = File::create(folder.file(TIME_SERIES_FILE)).map_err(refused(TIME_SERIES_FILE))?;
+    let phi = machine.motion.at(0.0).pose.z;
+    let mut series =
+        TimeSeries::new(BufWriter::new(file), mechanism, phi).map_err(refused(TIME_SERIES_FILE))?;
+    // The engine cannot be stopped from here: the first refusal is kept, later rows are not tried.
+    let mut written = Ok(());
+    let ideal = &mut machine.ideal;
+    let ended = engine::run(mechanism, machine.control, machine.schedule, &mut |instant| {
+        let ideal = ideal.at(instant.t);
+        recorder.row(mechanism, instant, &ideal);
+        gallery.row(mechanism, instant, &ideal);
+        if written.is_ok() {
+            written = series.row(mechanism, instant);
+        }
+        progress(instant.t);
+    });
+    written.and_then(|()| series.finish()).map_err(refused(TIME_SERIES_FILE))?;
+    let (work, halted) = match ended {
+        Ok(work) => (work, None),
+        Err(halt) => (halt.work, Some(halt.to_string())),
+    };
+    let wall = started.elapsed().as_secs_f64();
+
+    let pictures = gallery.draw()?;
+    let texts = [TIME_SERIES_FILE, SUMMARY_FILE, SCENARIO_FILE, PAGE_FILE];
+    let files: Vec<String> = texts
+        .into_iter()
+        .map(str::to_owned)
+        .chain(pictures.iter().map(|picture| picture.file.clone()))
+        .collect();
+    let summary = recorder.finish(scenario, machine, work, wall, halted, files);
+
+    let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
+    let json = to_json(&summary);
+    write(SUMMARY_FILE, &json)?;
+    write(SCENARIO_FILE, &scenario.to_toml())?;
+    for picture in &pictures {
+        write(&picture.file, &picture.svg)?;
+    }
+    write(PAGE_FILE, &page(&summary, &pictures))?;
+    Ok(Outcome { summary, json, folder: folder.finish()? })
+}
+
+/// Pretty JSON with a line break at the end.
+fn to_json(summary: &Summary) -> String {
+    // No input makes this fail: the type has only names for keys, and NaN becomes null.
+    let text = serde_json::to_string_pretty(summary).expect("numbers, texts and lists are JSON");
+    text + "\n"
+}

@@ -1,0 +1,179 @@
+//! The page of a run: the main result in words, the figures in a table, the pictures.
+
+use crate::report::{self, Fact, Picture, length, number};
+use crate::scenario::{DriveMode, Law};
+use crate::simulate::Summary;
+
+/// The page as HTML.
+pub(super) fn page(summary: &Summary, pictures: &[Picture]) -> String {
+    let title = format!("Run: {}", summary.scenario_name);
+    report::page(&title, &lead(summary), &facts(summary), pictures, &provenance(summary))
+}
+
+/// The main result in words.
+fn lead(s: &Summary) -> String {
+    if let Some(reason) = &s.halted {
+        return format!(
+            "The run did not reach its end: {reason}. What follows holds up to {} s.",
+            number(s.simulated_s)
+        );
+    }
+    if s.law == Law::Ideal {
+        return format!(
+            "Without clearance, the actuators need up to {} N, and the platform accelerates at up \
+             to {} m/s² ({} s simulated).",
+            number(s.peak_actuator_force),
+            number(s.peak_platform_acceleration_m_s2),
+            number(s.simulated_s)
+        );
+    }
+    format!(
+        "With {} in its joints, the platform strays from its ideal path by up to {} and accelerates \
+         at up to {} m/s², where the machine without clearance needs {} m/s². The journals hit \
+         their bearings {} times a second, with up to {} N; the actuators feel up to {} N instead \
+         of {} N.{}",
+        clearance(s),
+        length(s.max_path_error_m),
+        number(s.peak_platform_acceleration_m_s2),
+        number(s.ideal_peak_platform_acceleration_m_s2),
+        number(s.impacts_per_s),
+        number(s.peak_contact_force),
+        number(s.peak_actuator_force),
+        number(s.ideal_peak_actuator_force),
+        after_the_start(s),
+    )
+}
+
+fn after_the_start(s: &Summary) -> String {
+    if s.settle_s > 0.0 {
+        format!(
+            " These figures leave out the first {} s, in which the journals find their rings.",
+            number(s.settle_s)
+        )
+    } else {
+        String::new()
+    }
+}
+
+/// "500 µm of clearance", or the span where joints differ.
+fn clearance(s: &Summary) -> String {
+    let clearances = || s.joints.iter().filter_map(|joint| joint.clearance_m);
+    let smallest = clearances().fold(f64::INFINITY, f64::min);
+    let largest = clearances().fold(0.0, f64::max);
+    // Bearing radius less journal radius: equal clearances differ by rounding.
+    if largest - smallest < 1e-9 * largest + 1e-15 {
+        format!("{} of clearance", length(largest))
+    } else {
+        format!("{} to {} of clearance", length(smallest), length(largest))
+    }
+}
+
+fn facts(s: &Summary) -> Vec<Fact> {
+    let fact = |label: &str, value: String, note: String| Fact { label: label.into(), value, note };
+    let unit = |value: f64, unit: &str| format!("{} {unit}", number(value));
+    let ideal = |value: f64, unit: &str| format!("ideal machine: {} {unit}", number(value));
+    let mut facts = Vec::new();
+    if s.has_figures() {
+        facts.extend([
+            fact(
+                "Peak platform acceleration",
+                unit(s.peak_platform_acceleration_m_s2, "m/s²"),
+                ideal(s.ideal_peak_platform_acceleration_m_s2, "m/s²"),
+            ),
+            fact(
+                "Peak actuator force",
+                unit(s.peak_actuator_force, "N"),
+                ideal(s.ideal_peak_actuator_force, "N"),
+            ),
+            fact("Peak contact force", unit(s.peak_contact_force, "N"), hardest_joint(s)),
+            fact(
+                "Path error, largest",
+                length(s.max_path_error_m),
+                format!("root mean square: {}", length(s.rms_path_error_m)),
+            ),
+            fact(
+                "Acceleration, rms deviation from ideal",
+                unit(s.rms_acceleration_deviation_m_s2, "m/s²"),
+                String::new(),
+            ),
+            fact(
+                "Actuator forces, rms deviation from ideal",
+                unit(s.rms_actuator_force_deviation, "N"),
+                "norm over all actuators".into(),
+            ),
+        ]);
+    }
+    if s.has_figures() && s.law != Law::Ideal {
+        facts.extend([
+            fact(
+                "Impacts",
+                s.impacts.to_string(),
+                format!("{} a second, in all joints together", number(s.impacts_per_s)),
+            ),
+            fact(
+                "Share of time in contact",
+                unit(100.0 * s.contact_fraction, "%"),
+                "mean of all joints".into(),
+            ),
+            fact(
+                "Deepest penetration",
+                length(s.largest_penetration_m),
+                "of the instants in timeseries.csv".into(),
+            ),
+        ]);
+    }
+    facts.push(fact(
+        "Steps",
+        s.steps.to_string(),
+        format!(
+            "{} long; {} s of computing for {} s",
+            step_lengths(s),
+            number(s.wall_s),
+            number(s.simulated_s)
+        ),
+    ));
+    facts
+}
+
+fn step_lengths(s: &Summary) -> String {
+    let (smallest, largest) = (number(s.smallest_step_s), number(s.largest_step_s));
+    if smallest == largest { format!("{smallest} s") } else { format!("{smallest} to {largest} s") }
+}
+
+fn hardest_joint(s: &Summary) -> String {
+    let hardest = s.joints.iter().max_by(|a, b| a.peak_force.total_cmp(&b.peak_force));
+    hardest.map_or_else(String::new, |joint| format!("in joint {}", joint.joint))
+}
+
+fn provenance(s: &Summary) -> Vec<(String, String)> {
+    let step = match (s.step_s, s.tolerance_m_s) {
+        (Some(step), _) => format!("fixed, {} s", number(step)),
+        (None, Some(tolerance)) => {
+            format!("by error, {} m/s of velocity a step", number(tolerance))
+        }
+        (None, None) => String::new(),
+    };
+    let drive = match s.drive {
+        DriveMode::Prescribed => "prescribed: lengths follow the command exactly",
+        DriveMode::Servo => "servo",
+    };
+    let entries = [
+        ("Program", format!("{} {}, on rapier2d-f64 {}", s.program, s.version, s.rapier_version)),
+        ("Scenario", format!("{} (scenario.toml beside this page)", s.scenario_name)),
+        ("SHA-256 of the scenario", s.scenario_hash.clone()),
+        ("Seed", s.seed.to_string()),
+        ("Contact law", law(s.law).to_owned()),
+        ("Drive", drive.to_owned()),
+        ("Step", step),
+        ("Figures leave out", format!("the first {} s", number(s.settle_s))),
+    ];
+    entries.into_iter().map(|(label, value)| (label.to_owned(), value)).collect()
+}
+
+fn law(law: Law) -> &'static str {
+    match law {
+        Law::HertzStep => "hertz-step: Hertz stiffness with damping that steps in",
+        Law::Native => "native: the physics engine's own rigid contacts",
+        Law::Ideal => "ideal: no clearance",
+    }
+}

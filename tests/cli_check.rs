@@ -1,0 +1,98 @@
+//! `freeplay check`, help and completions, the real binary.
+
+mod cli_common;
+
+use cli_common::{Place, WRONG, write_wrong_files};
+use serde_json::Value;
+
+#[test]
+fn the_default_machine_is_described() {
+    let place = Place::new();
+    let text = place.good("check");
+    for fragment in [
+        "platform                 0.2 kg   1.67e-4 kg m²",
+        "0.2823 to 0.3823 m   stroke 0.2 to 0.4 m",
+        "from singularity      32.2 mm",
+        "K = 3.73e9 N/m^n",
+        "longest fixed step    2.06e-5 s",
+        "prescribed",
+        "-0.492 to 0.426 N",
+    ] {
+        assert!(text.contains(fragment), "{text}\nlacks: {fragment}");
+    }
+    assert!(place.entries().is_empty());
+    assert_eq!(place.good("check --quiet"), "");
+}
+
+#[test]
+fn json_says_the_same() {
+    let place = Place::new();
+    let json: Value =
+        serde_json::from_str(&place.good("check --json --set drive.mode=servo")).unwrap();
+    assert_eq!(json["ok"], true);
+    assert_eq!(json["findings"], Value::Array(Vec::new()));
+    assert_eq!(json["legs"].as_array().unwrap().len(), 3);
+    assert_eq!(json["servo_stiffness_N_m"], 5e5);
+    let stiffness = json["joints"][0]["stiffness_N_m_n"].as_f64().unwrap();
+    assert!((stiffness / 3.7327999e9 - 1.0).abs() < 1e-7);
+    assert!((json["ideal"]["actuator_forces_N"][0][0].as_f64().unwrap() + 0.4922).abs() < 1e-4);
+}
+
+#[test]
+fn what_a_run_would_refuse_is_refused() {
+    let place = Place::new();
+    write_wrong_files(&place);
+    for (arguments, fragments) in WRONG {
+        place.refused(&format!("check {arguments}"), fragments);
+        let done = place.freeplay(&format!("check --json {arguments}"));
+        let json: Value = serde_json::from_str(&done.out).unwrap();
+        assert_eq!((done.code, &json["ok"]), (2, &Value::Bool(false)), "{arguments}");
+        assert_eq!(json["findings"][0]["severity"], "error");
+    }
+}
+
+#[test]
+fn doubtful_scenarios_are_warned_about() {
+    let place = Place::new();
+    for (arguments, fragment) in [
+        ("--set motion.phi=0.15", "warning: --set motion.phi: the platform comes within 9.9 mm"),
+        (
+            "--set contact.stiffness_form=conformal --set joints.clearance=1e-8 \
+             --set simulation.tolerance=1e-5",
+            "grows without bound",
+        ),
+    ] {
+        let done = place.freeplay(&format!("check {arguments}"));
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert!(done.err.starts_with("warning: ") && done.err.contains(fragment), "{}", done.err);
+    }
+}
+
+#[test]
+fn help_and_completions_are_there() {
+    let place = Place::new();
+    for line in ["--help", "run --help", "check --help"] {
+        let text = place.good(line);
+        assert!(text.contains("Examples:") && text.contains("freeplay "), "{text}");
+    }
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = place.good(&format!("completions {shell}"));
+        assert!(script.contains("duration") && script.contains("check"), "{shell}");
+    }
+    assert_eq!(place.freeplay("").code, 2);
+}
+
+/// `freeplay check | head -1`: nobody reads on.
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_freeplay"))
+        .args(["check"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), err.as_str()), (Some(0), ""));
+}

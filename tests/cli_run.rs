@@ -1,0 +1,223 @@
+//! `freeplay run`, the real binary.
+
+mod cli_common;
+
+use cli_common::{Place, WRONG, names, write_wrong_files};
+use serde_json::Value;
+
+const FILES: [&str; 10] = [
+    "acceleration.svg",
+    "actuator-forces.svg",
+    "index.html",
+    "joint-forces.svg",
+    "orbits.svg",
+    "path-error.svg",
+    "path.svg",
+    "scenario.toml",
+    "summary.json",
+    "timeseries.csv",
+];
+
+const COLUMNS: &str = "t,x,y,phi,vx,vy,omega,ax,ay,alpha,q1,q2,q3,F1,F2,F3,\
+    ecc_A1,force_A1,force_A1_max,ecc_A2,force_A2,force_A2_max,ecc_A3,force_A3,force_A3_max,\
+    ecc_C1,force_C1,force_C1_max,ecc_C2,force_C2,force_C2_max,ecc_C3,force_C3,force_C3_max";
+
+/// Columns of a time series by name.
+fn column(csv: &str, name: &str) -> Vec<f64> {
+    let i = csv.lines().next().unwrap().split(',').position(|c| c == name).unwrap();
+    csv.lines().skip(1).map(|line| line.split(',').nth(i).unwrap().parse().unwrap()).collect()
+}
+
+#[test]
+fn the_default_run_writes_everything_that_was_promised() {
+    let place = Place::new();
+    let out = place.good("run --duration 0.06");
+    assert_eq!(place.entries(), ["freeplay-run-default"]);
+    assert_eq!(names(&place.path("freeplay-run-default")), FILES);
+    assert!(out.contains("peak contact force") && out.contains("freeplay-run-default/index.html"));
+
+    let csv = place.read("freeplay-run-default/timeseries.csv");
+    assert_eq!(csv.lines().next(), Some(COLUMNS));
+    let t = column(&csv, "t");
+    assert_eq!((t.len(), t[0], t[120]), (121, 0.0, 0.06));
+    assert_eq!(csv.lines().nth(4).unwrap().split(',').next(), Some("0.0015"));
+    // The start of the default circle, and the ideal machine's acceleration until the first hit.
+    assert_eq!(column(&csv, "x")[0], 0.05);
+    assert!((column(&csv, "q1")[0] - 0.3782082287).abs() < 1e-9);
+    assert!(column(&csv, "force_A1_max").iter().any(|f| *f > 1.0));
+
+    let json: Value =
+        serde_json::from_str(&place.read("freeplay-run-default/summary.json")).unwrap();
+    for key in [
+        "peak_contact_force_N",
+        "peak_platform_acceleration_m_s2",
+        "peak_actuator_force_N",
+        "rms_path_error_m",
+        "max_path_error_m",
+        "contact_fraction",
+        "impacts",
+        "steps",
+        "simulated_s",
+        "wall_s",
+        "rms_acceleration_deviation_m_s2",
+        "rms_actuator_force_deviation_N",
+        "impacts_per_s",
+        "largest_penetration_m",
+        "smallest_step_s",
+        "largest_step_s",
+        "wall_s_per_simulated_s",
+        "seed",
+    ] {
+        assert!(json[key].is_number(), "{key}: {}", json[key]);
+    }
+    assert_eq!(json["halted"], Value::Null);
+    assert_eq!(json["rapier_version"], freeplay::engine::RAPIER_VERSION);
+    assert_eq!(json["simulated_s"], 0.06);
+    let joints: Vec<&str> =
+        json["joints"].as_array().unwrap().iter().map(|j| j["joint"].as_str().unwrap()).collect();
+    assert_eq!(joints, ["A1", "A2", "A3", "C1", "C2", "C3"]);
+    assert_eq!(json["joints"][0]["clearance_m"], 5e-4);
+
+    // The figures agree with the rows from the settling time (half of so short a run) on.
+    let peak = column(&csv, "force_C1_max")[61..].iter().copied().fold(0.0, f64::max);
+    assert!((json["joints"][3]["peak_force_N"].as_f64().unwrap() - peak).abs() < 1e-6 * peak);
+
+    let page = place.read("freeplay-run-default/index.html");
+    assert!(
+        page.contains("500 µm of clearance")
+            && page.contains(&json["scenario_hash"].to_string()[1..65])
+    );
+}
+
+#[test]
+fn json_is_the_summary_and_nothing_else() {
+    let place = Place::new();
+    let done = place.freeplay("run --duration 0.02 --json --out r");
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(done.out, place.read("r/summary.json"));
+    serde_json::from_str::<Value>(&done.out).unwrap();
+    assert_eq!(place.good("run --duration 0.02 --quiet --out q"), "");
+}
+
+#[test]
+fn the_same_scenario_gives_the_same_bytes() {
+    let place = Place::new();
+    place.good("run --duration 0.05 --out a");
+    place.good("run --duration 0.05 --out b");
+    place.good("run a/scenario.toml --out c");
+    let first = place.read("a/timeseries.csv");
+    assert_eq!(first, place.read("b/timeseries.csv"));
+    assert_eq!(first, place.read("c/timeseries.csv"), "the effective scenario repeats the run");
+    assert_eq!(place.read("a/path.svg"), place.read("b/path.svg"));
+}
+
+#[test]
+fn a_result_is_replaced_only_by_force_and_other_files_never() {
+    let place = Place::new();
+    place.good("run --duration 0.02 --out r");
+    let before = place.read("r/summary.json");
+    place.refused("run --duration 0.03 --out r", &["`r` already holds a result", "--force"]);
+    assert_eq!(before, place.read("r/summary.json"));
+    place.good("run --duration 0.03 --out r --force");
+    assert!(place.read("r/summary.json").contains("\"simulated_s\": 0.03"));
+    assert_eq!(place.entries(), ["r"]);
+
+    place.write("r/thesis.txt", "years of work");
+    place.refused("run --duration 0.02 --out r --force", &["thesis.txt", "choose another folder"]);
+    std::fs::create_dir(place.path("mine")).unwrap();
+    place.write("mine/summary.json", "{\"program\": \"another\"}");
+    place.refused("run --duration 0.02 --out mine --force", &["`mine` holds `summary.json`"]);
+    std::fs::create_dir(place.path("empty")).unwrap();
+    place.good("run --duration 0.02 --out empty");
+}
+
+#[test]
+fn wrong_input_is_refused_before_anything_is_written() {
+    let place = Place::new();
+    write_wrong_files(&place);
+    for (arguments, fragments) in WRONG {
+        place.refused(&format!("run --out x {arguments}"), fragments);
+    }
+    place.refused("run --out syntax.toml/x", &["cannot write to", "--out"]);
+    place.refused("run --out syntax.toml", &["is a file", "--out"]);
+    let usage = place.freeplay("run --durration 1");
+    assert_eq!(usage.code, 2);
+    assert!(usage.err.contains("--duration"), "{}", usage.err);
+}
+
+/// A rig file with servos and gravity, as rigs declare them.
+const RIG: &str = r#"
+name = "rig"
+[mechanism]
+kind = "3rpr"
+platform_inertia = 1.6666666666666667e-4
+[joints]
+clearance = [0.0001, 0.0001, 0.0001, 0.0002, 0.0001, 0.0001]
+friction = 0.1
+[drive]
+mode = "servo"
+stiffness = 5e5
+damping = 300.0
+[environment]
+gravity = [0.0, -9.81]
+[sensors]
+pose_std = 4e-6
+force_lowpass = 400.0
+"#;
+
+#[test]
+fn a_rig_with_servos_and_gravity_runs() {
+    let place = Place::new();
+    place.write("rig.toml", RIG);
+    place.good("run rig.toml --duration 0.02");
+    let json: Value = serde_json::from_str(&place.read("freeplay-run-rig/summary.json")).unwrap();
+    assert_eq!((&json["drive"], &json["scenario_name"]), (&"servo".into(), &"rig".into()));
+    assert_eq!(json["joints"][3]["clearance_m"], 2e-4);
+    assert!(place.read("freeplay-run-rig/index.html").contains("100 µm to 200 µm of clearance"));
+}
+
+#[test]
+fn every_law_and_motion_runs() {
+    let place = Place::new();
+    let table: String = (0..=20)
+        .map(|k| f64::from(k) * 1e-3)
+        .map(|t| format!("{t},{},{},0.5\n", 0.1 * t, 0.02 * t * t))
+        .collect();
+    place.write("path.csv", &format!("t,x,y,phi\n{table}"));
+    for (i, sets) in [
+        "contact.law=native",
+        "contact.law=ideal",
+        "contact.law=ideal --set drive.mode=servo",
+        "simulation.tolerance=1e-5",
+        "contact.stiffness_form=conformal --set contact.clip=false --set simulation.step=5e-6",
+        "motion.kind=line",
+        "motion.kind=quintic",
+        "motion.kind=multisine",
+        "motion.kind=table --set motion.file=path.csv",
+    ]
+    .iter()
+    .enumerate()
+    {
+        place.good(&format!("run --duration 0.02 --out {i} --set {sets}"));
+    }
+    // Without clearance the machine does what the ideal one does.
+    let json: Value = serde_json::from_str(&place.read("1/summary.json")).unwrap();
+    assert!(json["max_path_error_m"].as_f64().unwrap() < 1e-10);
+    assert!(json["rms_actuator_force_deviation_N"].as_f64().unwrap() < 1e-6);
+    assert_eq!(json["joints"][0]["clearance_m"], Value::Null);
+}
+
+#[test]
+fn a_run_that_breaks_down_keeps_what_it_has() {
+    let place = Place::new();
+    let done = place.freeplay("run --out h --set contact.stiffness=10 --set contact.c_max=0");
+    assert_eq!(done.code, 1, "{}", done.out);
+    assert!(done.err.starts_with("error: the simulation broke down at t = 0.1"), "{}", done.err);
+    assert!(done.err.contains("in joint "), "{}", done.err);
+    assert_eq!(names(&place.path("h")), FILES);
+    let json: Value = serde_json::from_str(&place.read("h/summary.json")).unwrap();
+    assert!(done.err.contains(json["halted"].as_str().unwrap()));
+    let rows = place.read("h/timeseries.csv").lines().count() as f64;
+    assert!((rows - json["simulated_s"].as_f64().unwrap() / 5e-4).abs() < 3.0, "{rows}");
+    assert!(place.read("h/index.html").contains("did not reach its end"));
+}
