@@ -203,8 +203,8 @@ impl Stepper for Adaptive {
             self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
             self.ends.copy_from_slice(&self.path.accelerations);
             let ratio = (self.tolerance / self.error(h)).sqrt().sqrt();
-            // ratio is infinite where nothing acts, NaN where the state is none: both end here.
-            if !(ratio < 0.9) {
+            // Infinite where nothing acts, NaN where the state is none: both end here.
+            if ratio.is_nan() || ratio >= 0.9 {
                 self.next_step = (h * (0.9 * ratio).clamp(0.3, 2.0)).min(self.longest);
                 break (h, if last { until } else { t + h });
             }

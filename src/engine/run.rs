@@ -248,7 +248,7 @@ fn impossible(
     let finite = |s: &BodyState| (s.position.sum() + s.twist.sum()).is_finite();
     for (joint, contact) in mechanism.revolutes.iter().zip(contacts) {
         if let Bearing::Clearance(clearance) = &joint.bearing
-            && !(contact.penetration < clearance.bearing_radius)
+            && (contact.penetration.is_nan() || contact.penetration >= clearance.bearing_radius)
         {
             let what = if contact.penetration.is_finite() {
                 format!("the journal has left its ring by {:.3e} m", contact.penetration)

@@ -273,10 +273,12 @@ impl Dynamics {
         for (i, row) in self.rows.iter().enumerate() {
             let mut rhs = -row.bias;
             let mut weighted = [Vector3::zeros(); 2];
-            for side in 0..2 {
-                if let Some(body) = row.bodies[side] {
-                    rhs -= row.jacobians[side].dot(&accelerations[body]);
-                    weighted[side] = row.jacobians[side].component_mul(&self.inverse_masses[body]);
+            for ((body, jacobian), weighted) in
+                row.bodies.iter().zip(&row.jacobians).zip(&mut weighted)
+            {
+                if let Some(body) = *body {
+                    rhs -= jacobian.dot(&accelerations[body]);
+                    *weighted = jacobian.component_mul(&self.inverse_masses[body]);
                 }
             }
             for (entry, other) in self.matrix[i * n..=i * n + i].iter_mut().zip(&self.rows) {

@@ -193,22 +193,25 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
-    /// The longest fixed step in s that resolves every clearance joint's hits at `speed` m/s and
-    /// every servo, or `None` where nothing limits the step.
-    ///
-    /// A joint is as light as its two bodies are in the direction in which they give way most
-    /// easily: `1/m_eff = Σ (1/m + r²/I)`, r the distance of the joint from the centre of mass.
-    pub fn longest_step(&self, speed: f64) -> Option<f64> {
+    /// Mass in kg that the two bodies of a revolute joint oppose to a hit, in the direction in which
+    /// they give way most easily: `1/m = Σ (1/m_i + r_i²/I_i)`, r the distance of the joint from the
+    /// centre of mass.
+    pub fn joint_mass(&self, joint: &Revolute) -> f64 {
         let lightness = |attachment: &Attachment| {
             attachment.body.map_or(0.0, |i| {
                 let body = &self.bodies[i];
                 1.0 / body.mass + attachment.point.norm_squared() / body.inertia
             })
         };
+        1.0 / (lightness(&joint.ring) + lightness(&joint.journal))
+    }
+
+    /// The longest fixed step in s that resolves every clearance joint's hits at `speed` m/s and
+    /// every servo, or `None` where nothing limits the step.
+    pub fn longest_step(&self, speed: f64) -> Option<f64> {
         let joints = self.revolutes.iter().filter_map(|joint| {
             let Bearing::Clearance(clearance) = &joint.bearing else { return None };
-            let mass = 1.0 / (lightness(&joint.ring) + lightness(&joint.journal));
-            Some(clearance.law.longest_step(mass, speed))
+            Some(clearance.law.longest_step(self.joint_mass(joint), speed))
         });
         joints.chain(self.longest_servo_step()).reduce(f64::min)
     }

@@ -6,7 +6,7 @@ use super::{motion, three_rpr};
 use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
 use crate::engine::{Schedule, StepControl};
 use crate::mechanism::motion::Motion;
-use crate::mechanism::{Attachment, Bearing, Drive, Mechanism};
+use crate::mechanism::{Bearing, Drive, Mechanism};
 use crate::scenario::{self, DriveMode, Law, Problem, Scenario};
 use std::sync::Arc;
 
@@ -96,17 +96,7 @@ impl Machine {
             Law::Native | Law::Ideal => return None,
         };
         let joint = &self.mechanism.revolutes[index];
-        let mass = 1.0 / (self.lightness(&joint.ring) + self.lightness(&joint.journal));
-        Some((law.stiffness, law.contact_time(mass, speed)))
-    }
-
-    /// 1/kg that a body offers at a point in the direction in which it gives way most easily; the
-    /// ground gives nothing.
-    fn lightness(&self, attachment: &Attachment) -> f64 {
-        attachment.body.map_or(0.0, |i| {
-            let body = &self.mechanism.bodies[i];
-            1.0 / body.mass + attachment.point.norm_squared() / body.inertia
-        })
+        Some((law.stiffness, law.contact_time(self.mechanism.joint_mass(joint), speed)))
     }
 }
 

@@ -3,8 +3,10 @@
 use super::assemble::{bearing, drive};
 use super::checks::Finding;
 use super::ideal::Ideal;
-use crate::mechanism::motion::{Motion, PathPoint};
-use crate::mechanism::three_rpr::{Geometry, InverseKinematics, LegBars, Reach, build, reach};
+use crate::mechanism::motion::Motion;
+use crate::mechanism::three_rpr::{
+    Geometry, InverseKinematics, LegBars, Reach, build, ideal_states, reach,
+};
 use crate::mechanism::{Bearing, Drive, Mechanism};
 use crate::scenario::{self, Scenario, ThreeRpr};
 use nalgebra::Vector2;
@@ -39,29 +41,11 @@ pub(super) fn assemble(
     let gravity: Vector2<f64> = scenario.environment.gravity.into();
     let joints = array::from_fn(|i| bearing(scenario, i));
     let mechanism = build(kinematics.clone(), platform, bars, joints, drive(scenario), gravity);
-    let ideal_from = move |t: f64| {
-        let motion = Arc::new(Later { motion: Arc::clone(&kinematics.motion), by: t });
-        let kinematics = InverseKinematics { geometry: kinematics.geometry, motion };
-        let joints = [const { Bearing::Ideal }; 6];
-        build(kinematics, platform, bars, joints, Drive::Prescribed, gravity)
-    };
-    let start = ideal_from(0.0);
-    let states = move |t| ideal_from(t).bodies.iter().map(|body| body.start).collect();
-    (mechanism, Ideal::new(start, Box::new(states)))
-}
-
-/// A motion that has already run for a while: a machine built for it starts at that time's states.
-#[derive(Debug)]
-struct Later {
-    motion: Arc<dyn Motion>,
-    /// s.
-    by: f64,
-}
-
-impl Motion for Later {
-    fn at(&self, t: f64) -> PathPoint {
-        self.motion.at(t + self.by)
-    }
+    let joints = [const { Bearing::Ideal }; 6];
+    let ideal = build(kinematics.clone(), platform, bars, joints, Drive::Prescribed, gravity);
+    let InverseKinematics { geometry, motion } = kinematics;
+    let states = move |t| ideal_states(&geometry, &bars, &motion.at(t));
+    (mechanism, Ideal::new(ideal, Box::new(states)))
 }
 
 fn geometry(machine: &ThreeRpr) -> Geometry {

@@ -45,7 +45,7 @@ pub fn build(
     gravity: Vector2<f64>,
 ) -> Mechanism {
     let geometry = kinematics.geometry;
-    let states = states(&geometry, &bars, &kinematics.motion.at(0.0));
+    let states = ideal_states(&geometry, &bars, &kinematics.motion.at(0.0));
     let inertias = [bars.inertia(bars.cylinder), bars.inertia(bars.rod)];
     let mut bodies = Vec::with_capacity(7);
     let mut prismatics = Vec::with_capacity(3);
@@ -89,7 +89,7 @@ pub fn build(
 /// States of the seven bodies of the machine without clearance, at one point of a motion. With
 /// u the leg's direction: the cylinder's centre stands at A + u L_c/2, the rod's at C − u L_r/2;
 /// the leg turns at `(d × ḋ)/q²`.
-fn states(geometry: &Geometry, bars: &LegBars, point: &PathPoint) -> Vec<BodyState> {
+pub fn ideal_states(geometry: &Geometry, bars: &LegBars, point: &PathPoint) -> Vec<BodyState> {
     let turned = |v: Vector2<f64>| Vector2::new(-v.y, v.x);
     let rotation = Rotation2::new(point.pose.z);
     let mut states = Vec::with_capacity(7);

@@ -5,7 +5,7 @@ mod builder;
 mod kinematics;
 mod reach;
 
-pub use builder::{JointSet, LegBars, build};
+pub use builder::{JointSet, LegBars, build, ideal_states};
 pub use kinematics::{Geometry, InverseKinematics};
 pub use reach::{Reach, StrokeBreach, reach};
 

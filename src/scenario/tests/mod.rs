@@ -93,7 +93,7 @@ fn the_effective_text_loads_back_to_the_same_scenario() {
             (
                 (s.name.clone(), s.seed, s.legs.clone(), s.joints.clone()),
                 (s.contact.clone(), s.drive.clone(), s.environment.clone(), s.sensors.clone()),
-                (s.simulation.settle(), s.simulation.step_control(), s.simulation.duration),
+                (s.simulation.settle(), s.step_control(), s.simulation.duration),
             )
         };
         assert_eq!(parts(&first), parts(&again), "{list:?}");
