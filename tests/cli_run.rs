@@ -186,7 +186,7 @@ fn every_law_and_motion_runs() {
     place.write("path.csv", &format!("t,x,y,phi\n{table}"));
     for (i, sets) in [
         "contact.law=native",
-        "contact.law=ideal",
+        "contact.law=ideal --set simulation.step=1e-5",
         "contact.law=ideal --set drive.mode=servo",
         "simulation.tolerance=1e-5",
         "contact.stiffness_form=conformal --set contact.clip=false --set simulation.step=5e-6",

@@ -12,7 +12,7 @@
 //! better: `kick = ∫F over the past step − forward part given before + forward part`.
 
 use super::run::Stepper;
-use super::world::World;
+use super::world::{Target, World};
 use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
@@ -214,7 +214,15 @@ impl Stepper for Adaptive {
             *sum = (*sum + forward) / h;
         }
         mechanism.commands.at(reached, &mut self.targets);
-        self.world.step(h, &self.sums, |i| self.targets[i].length);
+        let (states, now, jerks) = (&self.states, &self.now, &self.jerks);
+        self.world.step(h, &self.sums, |i| {
+            let joint = &mechanism.prismatics[i];
+            let turn = joint.cylinder.body.map_or(0.0, |body| {
+                let (a, j) = (now.accelerations[body].z, jerks[body].z);
+                (states[body].twist.z + (a / 2.0 + j * (h / 6.0)) * h) * h
+            });
+            Target::new(joint, self.targets[i].length, now.lengths[i], turn)
+        });
         self.previous_wrenches.copy_from_slice(&self.now.wrenches);
         self.previous_accelerations.copy_from_slice(&self.now.accelerations);
         self.previous_step = h;

@@ -2,7 +2,7 @@
 
 use super::leapfrog::Leapfrog;
 use super::run::{Stepper, equal_step};
-use super::world::World;
+use super::world::{Target, World};
 use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
@@ -62,7 +62,14 @@ impl Stepper for Fixed {
             *wrench = self.now.wrenches[i] * kick;
         }
         mechanism.commands.at(reached, &mut self.targets);
-        self.world.step(dt, &self.wrenches, |i| self.targets[i].length);
+        let (states, now) = (self.leapfrog.states(), &self.now);
+        self.world.step(dt, &self.wrenches, |i| {
+            let joint = &mechanism.prismatics[i];
+            let turn = joint.cylinder.body.map_or(0.0, |body| {
+                (states[body].twist.z + now.accelerations[body].z * (0.5 * dt)) * dt
+            });
+            Target::new(joint, self.targets[i].length, now.lengths[i], turn)
+        });
         self.leapfrog.record(&self.world.physics().bodies, dt);
         reached
     }

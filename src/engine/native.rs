@@ -5,7 +5,7 @@
 //! step that ended there.
 
 use super::run::{Stepper, equal_step};
-use super::world::World;
+use super::world::{Target, World};
 use crate::mechanism::{BodyState, Command, Drive, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
@@ -69,7 +69,10 @@ impl Stepper for Native {
         let (dt, reached) = equal_step(self.step, t, until);
         mechanism.commands.at(reached, &mut self.targets);
         let before: Vec<Vector3<f64>> = self.states.iter().map(|s| s.twist).collect();
-        self.world.step(dt, &self.now.wrenches, |i| self.targets[i].length);
+        self.world.step(dt, &self.now.wrenches, |i| Target {
+            length: self.targets[i].length,
+            side: mechanism.prismatics[i].cylinder.point.y,
+        });
         self.world.read(&mut self.states);
         for ((a, state), before) in self.now.accelerations.iter_mut().zip(&self.states).zip(before)
         {

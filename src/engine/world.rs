@@ -2,7 +2,7 @@
 
 use super::leapfrog::read;
 use super::{JointColliders, Solver, physics_world, to_rapier};
-use crate::mechanism::{Attachment, Bearing, BodyState, Drive, Mechanism};
+use crate::mechanism::{Attachment, Bearing, BodyState, Drive, Mechanism, Prismatic};
 use nalgebra::Vector3;
 use rapier2d_f64::dynamics::{
     ImpulseJointHandle, JointAxis, MassProperties, MotorModel, PrismaticJointBuilder,
@@ -18,6 +18,34 @@ const MOTOR_FORCE: f64 = 1e30;
 /// in a step of 1 µs: an error that grows as the step shrinks.
 const RIGID: SpringCoefficients<f64> =
     SpringCoefficients { natural_frequency: 1e15, damping_ratio: 1.0 };
+
+/// Where a prescribed joint goes in one step, along and across the axis that its cylinder has at the
+/// step's beginning, in m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Target {
+    /// Length of the joint along that axis.
+    pub length: f64,
+    /// Across: where the cylinder's attachment point would have to be for the rod's to go straight.
+    pub side: f64,
+}
+
+impl Target {
+    /// Where rapier must be sent for `joint` to have the length `length` (m) at the end of a step
+    /// in which it turns by `turn` rad from the length `before`.
+    ///
+    /// rapier's joint rows are linear: they send the rod's centre to `κ + L cos 0` along the axis
+    /// that was and to `turn·L_before` across it, where the truth is `L cos turn` and `L sin turn`
+    /// (L the distance of the centres, q = L + κ). The difference, of second order in the step, is
+    /// put into the targets.
+    pub fn new(joint: &Prismatic, length: f64, before: f64, turn: f64) -> Self {
+        let offset = joint.rod.point.x - joint.cylinder.point.x;
+        let (sin, cos) = turn.sin_cos();
+        Self {
+            length: offset + (length - offset) * cos,
+            side: joint.cylinder.point.y + (length - offset) * sin - (before - offset) * turn,
+        }
+    }
+}
 
 /// A rapier world that holds one mechanism, gravity included in the wrenches it is given.
 pub(super) struct World {
@@ -127,9 +155,9 @@ impl World {
         motor.map_or(0.0, |motor| -motor.impulse)
     }
 
-    /// One rapier step of `dt` s under the given wrench on each body, prescribed drives going to
-    /// `lengths` (m).
-    pub fn step(&mut self, dt: f64, wrenches: &[Vector3<f64>], lengths: impl Fn(usize) -> f64) {
+    /// One rapier step of `dt` s under the given wrench on each body. `targets` says where each
+    /// prescribed joint goes.
+    pub fn step(&mut self, dt: f64, wrenches: &[Vector3<f64>], targets: impl Fn(usize) -> Target) {
         for (&handle, wrench) in self.handles.iter().zip(wrenches) {
             if let Some(body) = self.physics.bodies.get_mut(handle) {
                 body.reset_forces(false);
@@ -140,8 +168,10 @@ impl World {
         }
         for (i, motor) in self.motors.iter().enumerate() {
             if let Some(joint) = motor.and_then(|h| self.physics.impulse_joints.get_mut(h, false)) {
+                let target = targets(i);
                 // A stiffness far beyond any mass over dt² makes the spring a constraint.
-                joint.data.set_motor(JointAxis::LinX, lengths(i), 0.0, MOTOR_FORCE, 0.0);
+                joint.data.set_motor(JointAxis::LinX, target.length, 0.0, MOTOR_FORCE, 0.0);
+                joint.data.local_frame1.translation.y = target.side;
             }
         }
         // A step rebuilds rapier's joint assembly when a body with joints was touched; the collision
