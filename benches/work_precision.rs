@@ -1,0 +1,198 @@
+//! Error against time: this project's ways of stepping, and a solver in minimal coordinates written
+//! for this one machine (`minimal_coordinates/`), all measured in one run.
+//!
+//! `cargo bench --bench work_precision` prints the tables and draws
+//! `assets/work-precision.svg`. Errors of the diagram are geometric means over start phases,
+//! against the minimal-coordinate solver at a tolerance of 1e-12 (a single run's error is luck by a
+//! factor of five); those of the table are of the default phase, against the reference curves.
+
+#[path = "../tests/common/mod.rs"]
+#[allow(dead_code)]
+mod common;
+#[path = "../tests/minimal/mod.rs"]
+#[allow(dead_code, unused_imports)]
+mod minimal;
+
+use common::{Case, Curve, SERVO};
+use freeplay::engine::{Schedule, StepControl, run};
+use freeplay::mechanism::Mechanism;
+use freeplay::report::{Curve as Line, Panel, Style, panels_svg};
+use std::time::Instant;
+
+/// Start phases over which an error of the diagram is averaged.
+const PHASES: usize = 8;
+/// Rows at which positions are compared, in s: far enough apart not to hinder long steps.
+const INTERVAL: f64 = 0.01;
+/// Each time is the shortest of so many.
+const REPEATS: usize = 5;
+
+struct Study {
+    name: &'static str,
+    case: Case,
+    curve: &'static str,
+    until: f64,
+}
+
+fn main() {
+    let base = Case::default();
+    let servo = Case { drive: SERVO, ..base };
+    let down = -9.81;
+    let study = |name, case, curve, until| Study { name, case, curve, until };
+    let studies = [
+        study("prescribed, c = 0.5 mm", base, "prescribed_c5e-4.csv", 0.05),
+        study("servo, c = 0.5 mm", servo, "servo_c5e-4.csv", 0.05),
+        study("servo, gravity", Case { gravity: down, ..servo }, "servo_c5e-4_gravity.csv", 0.06),
+        study(
+            "prescribed, gravity",
+            Case { gravity: down, ..base },
+            "prescribed_c5e-4_gravity.csv",
+            0.03,
+        ),
+        study(
+            "prescribed, c = 1e-8 m",
+            Case { clearance: 1e-8, ..base },
+            "prescribed_c1e-8.csv",
+            0.2,
+        ),
+    ];
+    println!("\nAt an error of 1e-8 m against the reference curves, default phase:");
+    println!(
+        "| case | at | tolerance | error m | steps/s | wall s/s | solver's wall s/s | ratio |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    for study in &studies {
+        at_1e_8(study);
+    }
+    let panels: Vec<Panel> = studies[..3].iter().map(diagram).collect();
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/work-precision.svg");
+    match panels_svg(&panels).map(|svg| std::fs::write(file, svg)) {
+        Ok(Ok(())) => println!("drawn: {file}"),
+        other => println!("not drawn: {other:?}"),
+    }
+}
+
+/// The cheapest tolerance of a fine ladder whose error is at most 1e-8 m, for both solvers.
+fn at_1e_8(study: &Study) {
+    let curve = Curve::read(study.curve);
+    let (t, x, y) = (curve.column("t"), curve.column("x"), curve.column("y"));
+    let truth: Vec<[f64; 2]> = times(study.until)
+        .iter()
+        .filter_map(|row| t.iter().position(|t| (t - row).abs() < 1e-9))
+        .map(|k| [x[k], y[k]])
+        .collect();
+    let mechanism = study.case.mechanism();
+    let ladder = || (0..24).map(|k| 1e-4 * 10f64.powf(-k as f64 / 6.0));
+    let ours = ladder().find_map(|tolerance| {
+        let (error, wall, steps) =
+            measure(&mechanism, StepControl::Tolerance(tolerance), study.until, &truth);
+        (error <= 1e-8).then_some((tolerance, error, wall, steps))
+    });
+    let theirs = ladder().find_map(|tolerance| {
+        let (error, wall) = measure_minimal(&study.case, tolerance, study.until, &truth);
+        (error <= 1e-8).then_some(wall)
+    });
+    let (Some((tolerance, error, wall, steps)), Some(theirs)) = (ours, theirs) else {
+        println!("| {} | not reached |", study.name);
+        return;
+    };
+    println!(
+        "| {} | {:.0} ms | {tolerance:.1e} | {error:.1e} | {:.1}k | {wall:.4} | {theirs:.4} | {:.1} |",
+        study.name,
+        study.until * 1e3,
+        steps / 1e3,
+        wall / theirs
+    );
+}
+
+/// One panel: log10 of the error over log10 of the wall time per simulated second.
+fn diagram(study: &Study) -> Panel {
+    let phases: Vec<Case> = (0..PHASES)
+        .map(|k| std::f64::consts::TAU * k as f64 / PHASES as f64)
+        .map(|phase| Case { phase, ..study.case })
+        .collect();
+    let truths: Vec<_> =
+        phases.iter().map(|case| minimal::positions(case, 1e-12, &times(study.until))).collect();
+    let mechanisms: Vec<Mechanism> = phases.iter().map(Case::mechanism).collect();
+    let ours = |control: StepControl| {
+        let runs = mechanisms.iter().zip(&truths);
+        mean(runs.map(|(m, truth)| {
+            let (error, wall, _) = measure(m, control, study.until, truth);
+            (error, wall)
+        }))
+    };
+    let theirs = |tolerance: f64| {
+        let runs = phases.iter().zip(&truths);
+        mean(runs.map(|(case, truth)| measure_minimal(case, tolerance, study.until, truth)))
+    };
+    let line = |name: &str, points: Vec<(f64, f64)>| {
+        println!("{} — {name}: wall s/s, error m", study.name);
+        for (wall, error) in &points {
+            println!("  {wall:.4} {error:.2e}");
+        }
+        let points = points.iter().map(|(wall, error)| (wall.log10(), error.log10())).collect();
+        Line { name: name.to_owned(), points, style: Style::Solid }
+    };
+    let fixed = [2e-5, 1e-5, 5e-6, 2e-6, 1e-6].map(|step| ours(StepControl::Fixed(step)));
+    let decades = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
+    let tolerance = decades.map(|tolerance| ours(StepControl::Tolerance(tolerance)));
+    let minimal = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(theirs);
+    Panel {
+        title: format!("{}, up to {:.0} ms", study.name, study.until * 1e3),
+        x_label: "log10 of wall time (s) per simulated second".to_owned(),
+        y_label: "log10 of error (m)".to_owned(),
+        curves: vec![
+            line("fixed step", fixed.to_vec()),
+            line("tolerance", tolerance.to_vec()),
+            line("minimal coordinates, this machine only", minimal.to_vec()),
+        ],
+    }
+}
+
+fn times(until: f64) -> Vec<f64> {
+    (0..=(until / INTERVAL).round() as usize).map(|k| k as f64 * INTERVAL).collect()
+}
+
+fn worst(rows: &[[f64; 2]], truth: &[[f64; 2]]) -> f64 {
+    rows.iter().zip(truth).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max)
+}
+
+/// Largest error in m, wall seconds and steps per simulated second.
+fn measure(
+    mechanism: &Mechanism,
+    control: StepControl,
+    until: f64,
+    truth: &[[f64; 2]],
+) -> (f64, f64, f64) {
+    let mut best = (0.0, f64::INFINITY, 0.0);
+    for _ in 0..REPEATS {
+        let mut rows = Vec::new();
+        let schedule = Schedule { duration: until, interval: INTERVAL };
+        let start = Instant::now();
+        let work = run(mechanism, control, schedule, &mut |instant| {
+            let p = instant.states[mechanism.output].position;
+            rows.push([p.x, p.y]);
+        });
+        let wall = start.elapsed().as_secs_f64() / until;
+        let steps = work.map_or(f64::NAN, |work| work.steps as f64 / until);
+        best = (worst(&rows, truth), wall.min(best.1), steps);
+    }
+    best
+}
+
+fn measure_minimal(case: &Case, tolerance: f64, until: f64, truth: &[[f64; 2]]) -> (f64, f64) {
+    let (mut best, times) = ((0.0, f64::INFINITY), times(until));
+    for _ in 0..REPEATS {
+        let start = Instant::now();
+        let rows = minimal::positions(case, tolerance, &times);
+        let wall = start.elapsed().as_secs_f64() / until;
+        best = (worst(&rows, truth), wall.min(best.1));
+    }
+    best
+}
+
+/// Mean wall time and geometric mean of the error, as a point (wall, error).
+fn mean(runs: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    let (errors, walls): (Vec<f64>, Vec<f64>) = runs.unzip();
+    let n = errors.len() as f64;
+    (walls.iter().sum::<f64>() / n, (errors.iter().map(|e| e.ln()).sum::<f64>() / n).exp())
+}
