@@ -13,7 +13,7 @@
 
 use super::run::Stepper;
 use super::world::{Target, World};
-use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism};
+use crate::mechanism::{Bearing, BodyState, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
 /// Inner nodes of the four-point Lobatto rule on [0, 1]: ½(1 ∓ 1/√5); weights 1, 5, 5, 1 over 12.
@@ -51,7 +51,6 @@ pub(super) struct Adaptive {
     ends: Vec<Vector3<f64>>,
     sums: Vec<Vector3<f64>>,
     errors: Vec<Vector3<f64>>,
-    targets: Vec<Command>,
 }
 
 impl Adaptive {
@@ -80,7 +79,6 @@ impl Adaptive {
             ends: zeros.clone(),
             sums: zeros.clone(),
             errors: zeros,
-            targets: vec![Command::default(); mechanism.prismatics.len()],
         }
     }
 
@@ -213,15 +211,16 @@ impl Stepper for Adaptive {
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {
             *sum = (*sum + forward) / h;
         }
-        mechanism.commands.at(reached, &mut self.targets);
+        // The path was last looked at where the step ends, so its commands are the targets.
         let (states, now, jerks) = (&self.states, &self.now, &self.jerks);
+        let targets = &self.path.commands;
         self.world.step(h, &self.sums, |i| {
             let joint = &mechanism.prismatics[i];
             let turn = joint.cylinder.body.map_or(0.0, |body| {
                 let (a, j) = (now.accelerations[body].z, jerks[body].z);
                 (states[body].twist.z + (a / 2.0 + j * (h / 6.0)) * h) * h
             });
-            Target::new(joint, self.targets[i].length, now.lengths[i], turn)
+            Target::new(joint, targets[i].length, now.lengths[i], turn)
         });
         self.previous_wrenches.copy_from_slice(&self.now.wrenches);
         self.previous_accelerations.copy_from_slice(&self.now.accelerations);

@@ -264,13 +264,20 @@ fn impossible(
 
 /// Why a run may have broken down, and what to try.
 fn likely_cause(mechanism: &Mechanism, control: StepControl) -> String {
-    match (control, mechanism.longest_step(TYPICAL_IMPACT_SPEED)) {
-        (StepControl::Fixed(step), Some(longest)) if step > longest => format!(
-            "likely the step of {step:.1e} s is too long for the contacts: try simulation.step = \
-             {longest:.1e}"
-        ),
-        _ => "likely hits far harder than usual, or a machine near a singularity: try a shorter \
-              simulation.step, or `freeplay check`"
-            .to_owned(),
-    }
+    let key = match (control, mechanism.longest_step(TYPICAL_IMPACT_SPEED)) {
+        (StepControl::Fixed(step), Some(longest)) if step > longest => {
+            // Half of it, because two digits may round up.
+            let enough = longest / 2.0;
+            return format!(
+                "likely the step of {step:.1e} s is too long for the contacts: try \
+                 simulation.step = {enough:.1e}"
+            );
+        }
+        (StepControl::Fixed(_), _) => "step",
+        (StepControl::Tolerance(_), _) => "tolerance",
+    };
+    format!(
+        "likely hits far harder than usual, or a machine near a singularity: try a smaller \
+         simulation.{key}, or `freeplay check`"
+    )
 }

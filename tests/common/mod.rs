@@ -1,13 +1,17 @@
 //! The paper's machine and the independent solver's curves, for tests.
 
+#![allow(dead_code)] // compiled into every test binary, and none of them uses all of it
+
 use freeplay::contact::{
     Clearance, CoulombFriction, HertzStep, Material, StiffnessForm, hertz_stiffness,
 };
 use freeplay::engine::{Instant, Schedule, StepControl, Work, run};
 use freeplay::mechanism::motion::Circle;
 use freeplay::mechanism::three_rpr::{Geometry, InverseKinematics, LegBars, build};
-use freeplay::mechanism::{Bearing, Drive, Mechanism};
-use nalgebra::Vector2;
+use freeplay::mechanism::{
+    Bearing, BodyState, Command, Commands, Drive, Dynamics, Evaluation, Mechanism,
+};
+use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -122,4 +126,50 @@ pub fn platform_error(
     .unwrap();
     assert_eq!(k, rows);
     (worst, work)
+}
+
+/// Commands of a mechanism without prismatic joints.
+#[derive(Debug)]
+pub struct NoCommands;
+
+impl Commands for NoCommands {
+    fn at(&self, _: f64, _: &mut [Command]) {}
+}
+
+/// The machine without clearance at one instant: it moves exactly as commanded.
+#[derive(Clone, Copy, Debug)]
+pub struct IdealMachine {
+    pub position: Vector2<f64>,
+    pub acceleration: Vector2<f64>,
+    pub drive_forces: [f64; 3],
+}
+
+impl IdealMachine {
+    /// At time `t` of `case`: a machine whose circle begins there is built in that very state.
+    pub fn at(case: Case, t: f64) -> Self {
+        let phase = case.phase + 2.0 * PI * t;
+        let mechanism = Case { phase, ..case }.with(Bearing::Ideal);
+        let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
+        let mut dynamics = Dynamics::new(&mechanism);
+        let mut evaluation = Evaluation::new(&mechanism);
+        dynamics.forces(&mechanism, 0.0, &states, &mut evaluation);
+        dynamics.accelerations(&mechanism, &states, &mut evaluation);
+        Self {
+            position: states[mechanism.output].position,
+            acceleration: evaluation.accelerations[mechanism.output].xy(),
+            drive_forces: std::array::from_fn(|i| evaluation.drive_forces[i]),
+        }
+    }
+}
+
+/// Largest drive force |F| in N of all steps since the row before.
+pub fn peak_drive_force(instant: &Instant) -> f64 {
+    instant.peaks.drive_force
+}
+
+/// Kinetic energy in J of bodies with these masses and inertias.
+pub fn kinetic_energy(mechanism: &Mechanism, states: &[BodyState]) -> f64 {
+    let energy =
+        |m: f64, i: f64, v: Vector3<f64>| 0.5 * (m * v.xy().norm_squared() + i * v.z * v.z);
+    mechanism.bodies.iter().zip(states).map(|(b, s)| energy(b.mass, b.inertia, s.twist)).sum()
 }
