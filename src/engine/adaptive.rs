@@ -50,6 +50,7 @@ pub(super) struct Adaptive {
     path: Evaluation,
     ends: Vec<Vector3<f64>>,
     sums: Vec<Vector3<f64>>,
+    peaks: Vec<f64>,
     errors: Vec<Vector3<f64>>,
 }
 
@@ -78,6 +79,7 @@ impl Adaptive {
             next_step: FIRST_STEP,
             ends: zeros.clone(),
             sums: zeros.clone(),
+            peaks: vec![0.0; mechanism.revolutes.len()],
             errors: zeros,
         }
     }
@@ -91,6 +93,28 @@ impl Adaptive {
         if self.loops {
             self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
             self.dynamics.replace_wrenches(&mut self.path);
+        }
+    }
+
+    /// The past step once more, on the corrected path: the sum of its forces, and their peaks.
+    fn look_back(&mut self, mechanism: &Mechanism, t: f64) {
+        let hp = self.previous_step;
+        self.peaks.fill(0.0);
+        for (sum, (before, now)) in
+            self.sums.iter_mut().zip(self.previous_wrenches.iter().zip(&self.now.wrenches))
+        {
+            *sum = before + now;
+        }
+        if hp > 0.0 {
+            for s in NODES {
+                self.look(mechanism, t, -hp * (1.0 - s));
+                for (sum, w) in self.sums.iter_mut().zip(&self.path.wrenches) {
+                    *sum += w * 5.0;
+                }
+                for (peak, contact) in self.peaks.iter_mut().zip(&self.path.contacts) {
+                    *peak = peak.max(contact.normal_force);
+                }
+            }
         }
     }
 
@@ -141,6 +165,7 @@ impl Stepper for Adaptive {
                 self.jerks[i] = (self.now.accelerations[i] - self.previous_accelerations[i]) / hp;
             }
         }
+        self.look_back(mechanism, t);
     }
 
     fn states(&self) -> &[BodyState] {
@@ -151,22 +176,12 @@ impl Stepper for Adaptive {
         &self.now
     }
 
+    fn peaks_inside(&self) -> &[f64] {
+        &self.peaks
+    }
+
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         let hp = self.previous_step;
-        // The past step once more, on the corrected path.
-        for (sum, (before, now)) in
-            self.sums.iter_mut().zip(self.previous_wrenches.iter().zip(&self.now.wrenches))
-        {
-            *sum = before + now;
-        }
-        if hp > 0.0 {
-            for s in NODES {
-                self.look(mechanism, t, -hp * (1.0 - s));
-                for (sum, w) in self.sums.iter_mut().zip(&self.path.wrenches) {
-                    *sum += w * 5.0;
-                }
-            }
-        }
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {
             *sum = *sum * (hp / 12.0) - forward;
         }

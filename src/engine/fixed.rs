@@ -1,68 +1,145 @@
 //! Stepping at a fixed step: leapfrog, second order in time.
+//!
+//! rapier's velocity after a step is that of the half step (see [`leapfrog`](super::leapfrog)). Here,
+//! where the forces are known, the velocity at the step's end is not extrapolated from the past but
+//! solved for, by one correction of the extrapolated one:
+//!
+//! `v_n = v_{n−½} + (h/2) a(x_n, v_n)`.
+//!
+//! That is the velocity-Verlet scheme, symmetric in time: on the reference curves its error is a
+//! seventh of the extrapolation's, and a tenth in the rebound of one hit.
 
-use super::leapfrog::Leapfrog;
 use super::run::{Stepper, equal_step};
 use super::world::{Target, World};
 use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
+/// Where inside a step the contact forces are looked at for peaks. A hard hit's force has a cusp
+/// where the damping is complete; at four points the step sees it to a fifth of what it would miss.
+const LOOKS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
+
 /// Steps of equal length under the forces of the present state.
 pub(super) struct Fixed {
     step: f64,
     world: World,
-    leapfrog: Leapfrog,
     dynamics: Dynamics,
+    states: Vec<BodyState>,
     now: Evaluation,
+    /// Twists v_{n−½} as rapier holds them.
+    half: Vec<Vector3<f64>>,
+    /// a_{n−1}, a_{n−2}, and the length of the step since.
+    past: [Vec<Vector3<f64>>; 2],
+    previous_step: f64,
     targets: Vec<Command>,
     wrenches: Vec<Vector3<f64>>,
     /// Ideal joints close loops, which one sweep of rapier's solver does not: it is handed the
     /// joint forces with the others, and has only the drift to correct.
     loops: bool,
+    /// Work space for looking inside a step, and what was seen there.
+    inside_states: Vec<BodyState>,
+    inside: Evaluation,
+    touched: bool,
+    peaks: Vec<f64>,
 }
 
 impl Fixed {
     /// Steps of at most `step` s.
     pub fn new(mechanism: &Mechanism, step: f64) -> Self {
-        let world = World::new(mechanism, false);
+        let zeros = vec![Vector3::zeros(); mechanism.bodies.len()];
+        let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
         Self {
             step,
-            leapfrog: Leapfrog::new(world.handles.clone(), &world.physics().bodies),
-            world,
+            world: World::new(mechanism, false),
             dynamics: Dynamics::new(mechanism),
+            half: states.iter().map(|s| s.twist).collect(),
+            inside_states: states.clone(),
+            states,
             now: Evaluation::new(mechanism),
+            past: [zeros.clone(), zeros.clone()],
+            previous_step: 0.0,
             targets: vec![Command::default(); mechanism.prismatics.len()],
-            wrenches: vec![Vector3::zeros(); mechanism.bodies.len()],
+            wrenches: zeros,
             loops: mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Ideal)),
+            inside: Evaluation::new(mechanism),
+            touched: false,
+            peaks: vec![0.0; mechanism.revolutes.len()],
         }
+    }
+
+    fn evaluate(&mut self, mechanism: &Mechanism, t: f64) {
+        self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
+        self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
+    }
+
+    /// Largest contact forces inside the step that ends at `t`.
+    fn look_inside(&mut self, mechanism: &Mechanism, t: f64) {
+        self.peaks.fill(0.0);
+        let touching = self.now.contacts.iter().any(|contact| contact.penetration > 0.0);
+        if touching || self.touched {
+            let h = self.previous_step;
+            for s in LOOKS {
+                let back = (s - 1.0) * h;
+                for (i, point) in self.inside_states.iter_mut().enumerate() {
+                    let a = self.now.accelerations[i];
+                    *point = self.states[i].moved(a, (a - self.past[0][i]) / h, back);
+                }
+                let inside = &mut self.inside;
+                self.dynamics.forces(mechanism, t + back, &self.inside_states, inside);
+                for (peak, contact) in self.peaks.iter_mut().zip(&inside.contacts) {
+                    *peak = peak.max(contact.normal_force);
+                }
+            }
+        }
+        self.touched = touching;
     }
 }
 
 impl Stepper for Fixed {
     fn synchronise(&mut self, mechanism: &Mechanism, t: f64) {
-        let states = self.leapfrog.states();
-        self.dynamics.forces(mechanism, t, states, &mut self.now);
-        self.dynamics.accelerations(mechanism, states, &mut self.now);
+        let h = self.previous_step;
+        if h > 0.0 {
+            self.world.read(&mut self.states);
+            for (i, state) in self.states.iter_mut().enumerate() {
+                self.half[i] = state.twist;
+                let [a1, a2] = [self.past[0][i], self.past[1][i]];
+                state.twist += (a1 + (a1 - a2) * 0.75) * (0.5 * h);
+            }
+            self.evaluate(mechanism, t);
+            for (i, state) in self.states.iter_mut().enumerate() {
+                state.twist = self.half[i] + self.now.accelerations[i] * (0.5 * h);
+            }
+        }
+        self.evaluate(mechanism, t);
         if self.loops {
             self.dynamics.replace_wrenches(&mut self.now);
+        }
+        if h > 0.0 {
+            self.look_inside(mechanism, t);
         }
     }
 
     fn states(&self) -> &[BodyState] {
-        self.leapfrog.states()
+        &self.states
     }
 
     fn evaluation(&self) -> &Evaluation {
         &self.now
     }
 
+    fn peaks_inside(&self) -> &[f64] {
+        &self.peaks
+    }
+
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         let (dt, reached) = equal_step(self.step, t, until);
-        let kick = self.leapfrog.kick();
-        for (i, wrench) in self.wrenches.iter_mut().enumerate() {
-            *wrench = self.now.wrenches[i] * kick;
+        // The first step is a half kick: v_½ = v_0 + (h/2) a_0.
+        let first = self.previous_step == 0.0;
+        let kick = if first { 0.5 } else { 1.0 };
+        for (wrench, now) in self.wrenches.iter_mut().zip(&self.now.wrenches) {
+            *wrench = now * kick;
         }
         mechanism.commands.at(reached, &mut self.targets);
-        let (states, now) = (self.leapfrog.states(), &self.now);
+        let (states, now) = (&self.states, &self.now);
         self.world.step(dt, &self.wrenches, |i| {
             let joint = &mechanism.prismatics[i];
             let turn = joint.cylinder.body.map_or(0.0, |body| {
@@ -70,7 +147,13 @@ impl Stepper for Fixed {
             });
             Target::new(joint, self.targets[i].length, now.lengths[i], turn)
         });
-        self.leapfrog.record(&self.world.physics().bodies, dt);
+        let [before, before_that] = &mut self.past;
+        std::mem::swap(before, before_that);
+        before.copy_from_slice(&self.now.accelerations);
+        if first {
+            before_that.copy_from_slice(before);
+        }
+        self.previous_step = dt;
         reached
     }
 }

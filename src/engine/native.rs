@@ -65,6 +65,11 @@ impl Stepper for Native {
         &self.now
     }
 
+    /// Impulses are means over the step already.
+    fn peaks_inside(&self) -> &[f64] {
+        &[]
+    }
+
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         let (dt, reached) = equal_step(self.step, t, until);
         mechanism.commands.at(reached, &mut self.targets);

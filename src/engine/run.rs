@@ -117,6 +117,9 @@ pub(super) trait Stepper {
     fn states(&self) -> &[BodyState];
     /// Forces, accelerations, contacts at that instant.
     fn evaluation(&self) -> &Evaluation;
+    /// Largest normal force (N) of each joint inside the step that ended at that instant, where the
+    /// way of stepping looks there.
+    fn peaks_inside(&self) -> &[f64];
     /// Makes one step from `t` of at most `until − t` s; returns the time reached, exactly `until`
     /// if it got there.
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
@@ -175,7 +178,7 @@ fn drive(
                 let cause = likely_cause(mechanism, control);
                 return Err(Halt { t, place, what, cause, work });
             }
-            watch.record(mechanism, now);
+            watch.record(mechanism, now, stepper.peaks_inside());
             if t >= until {
                 break;
             }
@@ -209,7 +212,10 @@ impl Watch {
         Self { tallies, peaks: Peaks::default() }
     }
 
-    fn record(&mut self, mechanism: &Mechanism, now: &Evaluation) {
+    fn record(&mut self, mechanism: &Mechanism, now: &Evaluation, inside: &[f64]) {
+        for (tally, peak) in self.tallies.iter_mut().zip(inside) {
+            tally.peak = tally.peak.max(*peak);
+        }
         for (tally, contact) in self.tallies.iter_mut().zip(&now.contacts) {
             let touching = contact.normal_force > 0.0;
             tally.peak = tally.peak.max(contact.normal_force);

@@ -128,11 +128,6 @@ impl World {
         Self { physics, stepped: false, handles, motors, colliders: joint_colliders }
     }
 
-    /// The world itself, for reading.
-    pub fn physics(&self) -> &PhysicsWorld {
-        &self.physics
-    }
-
     /// States as rapier holds them: the twists are those of the last half step.
     pub fn read(&self, states: &mut [BodyState]) {
         for (state, &handle) in states.iter_mut().zip(&self.handles) {

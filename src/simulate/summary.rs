@@ -56,7 +56,7 @@ pub struct Summary {
     pub max_path_error_m: f64,
     /// Root mean square over the rows of |(a_x, a_y) − ideal| in m/s².
     pub rms_acceleration_deviation_m_s2: f64,
-    /// Root mean square over the rows of the norm of all drive forces − ideal, in N.
+    /// Root mean square over the rows and the drives of F − ideal, in N.
     #[serde(rename = "rms_actuator_force_deviation_N")]
     pub rms_actuator_force_deviation: f64,
     /// Share of time that a joint spends in contact, mean of all joints.
@@ -175,10 +175,11 @@ impl Recorder {
         let acceleration = (now.accelerations[output] - ideal.acceleration).xy();
         let path_error = (instant.states[output].position - ideal.position).norm();
         let drives = now.drive_forces.iter().zip(ideal.drive_forces);
+        let drive_count = ideal.drive_forces.len().max(1) as f64;
         let deviations = [
             path_error * path_error,
             acceleration.norm_squared(),
-            drives.map(|(force, ideal)| (force - ideal).powi(2)).sum(),
+            drives.map(|(force, ideal)| (force - ideal).powi(2)).sum::<f64>() / drive_count,
         ];
         for (sum, square) in self.squares.iter_mut().zip(deviations) {
             *sum += square;

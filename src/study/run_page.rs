@@ -99,7 +99,7 @@ fn facts(s: &Summary) -> Vec<Fact> {
             fact(
                 "Actuator forces, rms deviation from ideal",
                 unit(s.rms_actuator_force_deviation, "N"),
-                "norm over all actuators".into(),
+                "mean of all actuators".into(),
             ),
         ]);
     }
