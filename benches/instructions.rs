@@ -4,7 +4,6 @@
 //! `cargo bench --bench instructions`; without valgrind it says so and stops.
 
 #[path = "../tests/common/mod.rs"]
-#[allow(dead_code)]
 mod common;
 
 use common::{Case, SERVO};

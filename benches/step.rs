@@ -2,7 +2,6 @@
 //! 0.5 mm, prescribed drives): `cargo bench --bench step`.
 
 #[path = "../tests/common/mod.rs"]
-#[allow(dead_code)]
 mod common;
 
 use common::{Case, SERVO};

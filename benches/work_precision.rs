@@ -7,10 +7,8 @@
 //! factor of five); those of the table are of the default phase, against the reference curves.
 
 #[path = "../tests/common/mod.rs"]
-#[allow(dead_code)]
 mod common;
 #[path = "../tests/minimal/mod.rs"]
-#[allow(dead_code, unused_imports)]
 mod minimal;
 
 use common::{Case, Curve, SERVO};

@@ -54,14 +54,30 @@ pub(super) struct Adaptive {
     errors: Vec<Vector3<f64>>,
 }
 
+/// Share of the tolerance that a machine gets: in proportion to its smallest clearance, from
+/// 0.5 mm down to 10 µm.
+///
+/// The less play, the slower the journals hit, and an error that is small against hits of 0.1 m/s
+/// damps the rattle away where hits come at 1 mm/s. Below 10 µm the penetration (some µm) takes the
+/// place of the clearance, and the share stays. Found on the statistics of an independent solver:
+/// with it, one tolerance reproduces them from 1 mm to 10 nm.
+fn share(mechanism: &Mechanism) -> f64 {
+    let clearances = mechanism.revolutes.iter().filter_map(|joint| match &joint.bearing {
+        Bearing::Clearance(clearance) => Some(clearance.radial()),
+        Bearing::Ideal | Bearing::Native { .. } => None,
+    });
+    clearances.fold(5e-4, f64::min).max(1e-5) / 5e-4
+}
+
 impl Adaptive {
-    /// Steps with a velocity error of about `tolerance` m/s each.
+    /// Steps with a velocity error of about `tolerance` m/s each, less where joints are tight (see
+    /// [`share`]).
     pub fn new(mechanism: &Mechanism, tolerance: f64) -> Self {
         let bodies = mechanism.bodies.len();
         let zeros = vec![Vector3::zeros(); bodies];
         let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
         Self {
-            tolerance,
+            tolerance: tolerance * share(mechanism),
             longest: mechanism.longest_servo_step().map_or(LONGEST_STEP, |s| s.min(LONGEST_STEP)),
             world: World::new(mechanism, false),
             dynamics: Dynamics::new(mechanism),

@@ -5,7 +5,7 @@
 #[allow(dead_code)] // each test or bench reads what it needs of a sample
 mod minimal_coordinates;
 
-pub use minimal_coordinates::{Sample, simulate};
+use minimal_coordinates::simulate;
 
 use crate::common::Case;
 use freeplay::mechanism::Drive;

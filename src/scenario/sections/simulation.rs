@@ -4,8 +4,8 @@ use crate::engine::StepControl;
 use serde::{Deserialize, Serialize};
 
 /// How a scenario steps that asks for nothing: 1e-5 m/s of velocity error a step. It follows the
-/// default machine to 4e-8 m over 50 ms, farther than its chaos lets anybody predict, in a seventh of
-/// the steps of 1e-5 s that would be as exact.
+/// default machine to 4e-8 m over 50 ms, and reproduces the statistics of an independent solver for
+/// clearances from 1 mm to 10 nm; ten times looser does not.
 const DEFAULT_CONTROL: StepControl = StepControl::Tolerance(1e-5);
 
 /// Default of `settle`, s: the largest hits of the centred start come within 40 ms.
@@ -25,7 +25,8 @@ pub struct Simulation {
     /// Fixed step, s; see [`Simulation::step_control`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<f64>,
-    /// Velocity error that one step may make, m/s; see [`Simulation::step_control`].
+    /// Velocity error that one step may make, m/s, for clearances of 0.5 mm and more, in proportion
+    /// less for smaller ones, down to a fiftieth at 10 µm; see [`Simulation::step_control`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
 }
