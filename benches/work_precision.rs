@@ -79,7 +79,7 @@ fn at_1e_8(study: &Study) {
         .map(|k| [x[k], y[k]])
         .collect();
     let mechanism = study.case.mechanism();
-    let ladder = || (0..24).map(|k| 1e-4 * 10f64.powf(-k as f64 / 6.0));
+    let ladder = || (0..30).map(|k| 1e-4 * 10f64.powf(-k as f64 / 6.0));
     let ours = ladder().find_map(|tolerance| {
         let (error, wall, steps) =
             measure(&mechanism, StepControl::Tolerance(tolerance), study.until, &truth);
