@@ -16,7 +16,7 @@
 //! | [`scenario`] | the TOML file, validated |
 //! | [`simulate`] | scenario → mechanism → samples and summary |
 //! | [`report`] | pictures and the page, from plain data |
-//! | [`study`] | what users come for: a run and its files |
+//! | [`study`] | what users come for: a run and its files, sweeps |
 //! | [`cli`] | one file per command |
 //!
 //! SI units everywhere.

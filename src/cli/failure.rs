@@ -3,6 +3,7 @@
 use super::output;
 use crate::scenario::{Problem, Problems};
 use crate::simulate::{Finding, Severity};
+use crate::study::sweep::SweepError;
 use crate::study::{FolderError, RunError};
 use std::process::ExitCode;
 
@@ -59,6 +60,16 @@ impl From<RunError> for Failure {
         match error {
             RunError::Folder(error) => error.into(),
             error => Failure::Other(error.to_string()),
+        }
+    }
+}
+
+impl From<SweepError> for Failure {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::Input(message) => Failure::Input(vec![message]),
+            SweepError::Scenario(problems) => problems.into(),
+            SweepError::Write(error) => error.into(),
         }
     }
 }

@@ -8,10 +8,12 @@ mod check;
 mod check_text;
 mod completions;
 mod failure;
+mod merge;
 mod options;
 mod output;
 mod progress;
 mod run;
+mod sweep;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -34,6 +36,7 @@ Examples:
   freeplay run                                  the built-in machine, into ./freeplay-run-default
   freeplay run --set joints.clearance=1e-4      the same with 0.1 mm of clearance
   freeplay check my-machine.toml                what can be said without simulating
+  freeplay sweep --vary joints.clearance=1e-8..1e-3:log:100     many clearances, one table
 
 Exit codes: 0 done, 2 wrong input, 1 anything else.";
 
@@ -41,6 +44,8 @@ Exit codes: 0 done, 2 wrong input, 1 anything else.";
 enum Command {
     Run(run::Arguments),
     Check(check::Arguments),
+    Sweep(sweep::Arguments),
+    Merge(merge::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -49,6 +54,8 @@ pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(arguments) => run::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
+        Command::Sweep(arguments) => sweep::main(&arguments),
+        Command::Merge(arguments) => merge::main(&arguments),
         Command::Completions(arguments) => completions::main(&arguments),
     };
     match done {

@@ -1,6 +1,6 @@
 //! Options that commands share.
 
-use crate::scenario::{Problems, Scenario};
+use crate::scenario::{Problems, Scenario, Source};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -25,9 +25,18 @@ pub(super) struct ScenarioOptions {
 impl ScenarioOptions {
     /// Reads the scenario.
     pub fn load(&self) -> Result<Scenario, Problems> {
+        self.source()?.scenario(&self.sets())
+    }
+
+    /// Reads the text of the scenario.
+    pub fn source(&self) -> Result<Source, Problems> {
+        Source::read(self.file.as_deref())
+    }
+
+    /// All overrides, in their order.
+    pub fn sets(&self) -> Vec<String> {
         let duration = self.duration.map(|s| format!("simulation.duration={s:?}"));
-        let sets: Vec<String> = self.sets.iter().cloned().chain(duration).collect();
-        Scenario::load(self.file.as_deref(), &sets)
+        self.sets.iter().cloned().chain(duration).collect()
     }
 }
 

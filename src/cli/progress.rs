@@ -1,12 +1,26 @@
-//! The progress bar: simulated time, and how long the rest will take.
+//! The progress bars: how far a command has come, and how long the rest will take.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
+use std::sync::Once;
 
-/// The bar's resolution.
+/// The resolution of the bar of a run.
 const TICKS: f64 = 1000.0;
 
 /// A bar on standard error, or nothing if that is no terminal or the user wants quiet.
+fn bar(length: u64, template: &str, quiet: bool) -> ProgressBar {
+    let bar = if quiet || !stderr().is_terminal() {
+        ProgressBar::hidden()
+    } else {
+        ProgressBar::new(length)
+    };
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// The bar of one run: simulated time.
 #[derive(Debug)]
 pub(super) struct Progress {
     bar: ProgressBar,
@@ -17,14 +31,7 @@ pub(super) struct Progress {
 impl Progress {
     /// A bar for a run of `duration` s.
     pub fn new(duration: f64, quiet: bool) -> Self {
-        let bar = if quiet || !stderr().is_terminal() {
-            ProgressBar::hidden()
-        } else {
-            ProgressBar::new(TICKS as u64)
-        };
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {msg}, {eta} left") {
-            bar.set_style(style);
-        }
+        let bar = bar(TICKS as u64, "{bar:40} {msg}, {eta} left", quiet);
         Self { bar, duration, ticks: 0 }
     }
 
@@ -36,6 +43,36 @@ impl Progress {
             self.bar.set_message(format!("{t:.3} of {} s simulated", self.duration));
             self.bar.set_position(ticks);
         }
+    }
+
+    /// Removes the bar.
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The bar of many runs.
+#[derive(Debug)]
+pub(super) struct RunsProgress {
+    bar: ProgressBar,
+    started: Once,
+}
+
+impl RunsProgress {
+    /// A bar that does not know yet how many runs there will be.
+    pub fn new(quiet: bool) -> Self {
+        let bar = bar(0, "{bar:40} {pos} of {len} runs, {per_sec}, {eta} left", quiet);
+        Self { bar, started: Once::new() }
+    }
+
+    /// `finished` of `runs` are there. What is there at the first call was made earlier and says
+    /// nothing of the speed.
+    pub fn finished(&self, finished: usize, runs: usize) {
+        self.bar.set_position(finished as u64);
+        self.started.call_once(|| {
+            self.bar.set_length(runs as u64);
+            self.bar.reset_eta();
+        });
     }
 
     /// Removes the bar.

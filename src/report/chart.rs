@@ -18,6 +18,10 @@ const LEFT: i32 = 76 * PX;
 const RIGHT: i32 = 20 * PX;
 const TITLE: i32 = 34 * PX;
 const LEGEND_ROW: i32 = 18 * PX;
+
+/// Radius of a dot in the plot and in the legend: many lie side by side in the plot.
+const DOT: i32 = 5 * PX / 2;
+const LEGEND_DOT: i32 = 3 * PX;
 pub(super) const BELOW: i32 = 46 * PX;
 pub(super) const GAP: i32 = 10 * PX;
 
@@ -46,7 +50,7 @@ pub fn panels_svg(panels: &[Panel]) -> Result<String, ReportError> {
                 ticks: PANEL_TICKS,
                 ranges: ranges(&panel.curves)
                     .map(|range| range.map(with_room))
-                    .map(|[x, y]| [x, padded(y, 0.06)]),
+                    .map(|[x, y]| [padded(x, side_margin(&panel.curves)), padded(y, 0.06)]),
             };
             chart.draw(&part(root, (0, top), (WIDTH, height(panel))))?;
             top += height(panel);
@@ -54,6 +58,11 @@ pub fn panels_svg(panels: &[Panel]) -> Result<String, ReportError> {
         Ok(())
     })?;
     Ok(svg)
+}
+
+/// Dots at the ends of the axis must not be cut in half; lines may touch its ends.
+fn side_margin(curves: &[Curve]) -> f64 {
+    if curves.iter().any(|curve| curve.style == Style::Dots) { 0.02 } else { 0.0 }
 }
 
 /// The ranges of x and y over all curves, or `None` if there is nothing to draw.
@@ -99,7 +108,7 @@ fn legend(curves: &[Curve]) -> Vec<(i32, i32)> {
 fn line_styles(curves: &[Curve]) -> Vec<ShapeStyle> {
     let mut colors = PALETTE.iter().cycle();
     let style = |curve: &Curve| match curve.style {
-        Style::Solid => line(colors.next().unwrap_or(&INK), 12),
+        Style::Solid | Style::Dots => line(colors.next().unwrap_or(&INK), 12),
         Style::Reference => line(&REFERENCE, 10),
     };
     curves.iter().map(style).collect()
@@ -127,8 +136,12 @@ impl Chart<'_> {
         write(area, &title, &heading(14), HPos::Left, (LEFT, TITLE / 2))?;
         for ((curve, style), (x, row)) in self.curves.iter().zip(&styles).zip(legend(self.curves)) {
             let y = TITLE + row * LEGEND_ROW + LEGEND_ROW / 3;
-            let swatch = vec![(x, y), (x + 26 * PX, y)];
-            area.draw(&PathElement::new(swatch, style.stroke_width(20)))?;
+            if curve.style == Style::Dots {
+                area.draw(&Circle::new((x + 13 * PX, y), LEGEND_DOT, style.color.filled()))?;
+            } else {
+                let swatch = vec![(x, y), (x + 26 * PX, y)];
+                area.draw(&PathElement::new(swatch, style.stroke_width(20)))?;
+            }
             let name = shortened(&curve.name, 60);
             write(area, &name, &font(12, INK), HPos::Left, (x + 32 * PX, y))?;
         }
@@ -177,13 +190,16 @@ impl Chart<'_> {
             }
         }
         // References last: they stay visible on a busy signal.
-        for wanted in [Style::Solid, Style::Reference] {
+        for wanted in [Style::Dots, Style::Solid, Style::Reference] {
             for (curve, style) in self.curves.iter().zip(styles) {
                 if curve.style != wanted {
                     continue;
                 }
                 let points: Vec<_> = drawable_points(curve).collect();
-                if let Some(first) = points.first()
+                if wanted == Style::Dots {
+                    let dot = style.color.mix(0.6).filled();
+                    chart.draw_series(points.into_iter().map(|p| Circle::new(p, DOT, dot)))?;
+                } else if let Some(first) = points.first()
                     && points.iter().all(|p| p == first)
                 {
                     // A line of no length would be invisible.
@@ -214,6 +230,15 @@ mod tests {
             y_label: "force (N)".to_owned(),
             curves,
         }
+    }
+
+    #[test]
+    fn dots_are_dots() {
+        let points = (0..50).map(|i| (f64::from(i), f64::from(i % 7))).collect();
+        let dots = Curve { style: Style::Dots, ..curve("runs", points) };
+        let svg = panels_svg(&[panel(vec![dots, curve("b", vec![])])]).unwrap();
+        // And one in the legend.
+        assert_eq!(svg.matches("<circle").count(), 51);
     }
 
     #[test]

@@ -24,6 +24,8 @@ pub use quantity::{length, number};
 pub enum Style {
     /// A coloured line; each solid curve of a panel has its own colour.
     Solid,
+    /// A dot for each point, each such curve of a panel in its own colour.
+    Dots,
     /// A thin dark dashed line on top of the others: what the ideal machine does.
     Reference,
 }

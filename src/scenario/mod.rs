@@ -37,6 +37,45 @@ const DEFAULT_SOURCE: &str = "built-in default";
 /// that journals of the paper's machine take from hit to hit.
 const NATIVE_STEP: f64 = 1e-5;
 
+/// The text of a scenario, read once: however many variants are made of it, all are made of the same.
+#[derive(Debug, Clone)]
+pub struct Source {
+    text: String,
+    name: String,
+    folder: PathBuf,
+}
+
+impl Source {
+    /// Reads the scenario file at `path`, or takes the built-in default.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn read(path: Option<&Path>) -> Result<Source, Problems> {
+        let Some(path) = path else {
+            let (text, name) = (DEFAULT_TOML.to_owned(), DEFAULT_SOURCE.to_owned());
+            return Ok(Source { text, name, folder: PathBuf::new() });
+        };
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| Problem {
+            path: String::new(),
+            message: format!("cannot be read: {error}"),
+            help: "a scenario is a text file in TOML".to_owned(),
+            location: Location::File { name: name.clone(), line: None, column: None },
+        })?;
+        Ok(Source { text, name, folder: path.parent().unwrap_or(Path::new("")).to_owned() })
+    }
+
+    /// The scenario, with `PATH=VALUE` overrides applied in their order.
+    ///
+    /// # Errors
+    /// Everything wrong with the text and the overrides.
+    pub fn scenario(&self, sets: &[String]) -> Result<Scenario, Problems> {
+        let mut scenario = Scenario::from_text(&self.text, &self.name, sets)?;
+        scenario.folder.clone_from(&self.folder);
+        Ok(scenario)
+    }
+}
+
 /// A validated scenario: what the file and the overrides say, the rest filled with defaults.
 #[derive(Debug, Clone, Serialize)]
 pub struct Scenario {
@@ -77,19 +116,7 @@ impl Scenario {
     /// # Errors
     /// Everything wrong with the file and the overrides.
     pub fn load(path: Option<&Path>, sets: &[String]) -> Result<Scenario, Problems> {
-        let Some(path) = path else {
-            return Self::from_text(DEFAULT_TOML, DEFAULT_SOURCE, sets);
-        };
-        let source = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| Problem {
-            path: String::new(),
-            message: format!("cannot be read: {error}"),
-            help: "a scenario is a text file in TOML".to_owned(),
-            location: Location::File { name: source.clone(), line: None, column: None },
-        })?;
-        let mut scenario = Self::from_text(&text, &source, sets)?;
-        scenario.folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        Ok(scenario)
+        Source::read(path)?.scenario(sets)
     }
 
     /// The same from a text in memory; messages call it `source`, and relative files in it are

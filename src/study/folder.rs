@@ -87,6 +87,11 @@ impl Folder {
         Ok(Folder { target: target.to_owned(), absolute, partial, marker, force })
     }
 
+    /// Where the files of the result are to be written now.
+    pub fn path(&self) -> &Path {
+        &self.partial
+    }
+
     /// Where a file of the result is to be written now.
     pub fn file(&self, name: &str) -> PathBuf {
         self.partial.join(name)

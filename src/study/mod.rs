@@ -1,4 +1,5 @@
-//! What users come for: a run with all its files, and what can be said of a scenario without one.
+//! What users come for: a run with all its files, what can be said of a scenario without one, and
+//! many runs at once.
 
 mod check;
 mod folder;
@@ -6,6 +7,7 @@ mod pictures;
 mod recent;
 mod run;
 mod run_page;
+pub mod sweep;
 
 pub use check::{
     Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Found, Ideal, check,

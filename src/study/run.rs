@@ -16,8 +16,8 @@ use std::time::Instant as Clock;
 pub const SUMMARY_FILE: &str = "summary.json";
 
 const TIME_SERIES_FILE: &str = "timeseries.csv";
-const SCENARIO_FILE: &str = "scenario.toml";
-const PAGE_FILE: &str = "index.html";
+pub(super) const SCENARIO_FILE: &str = "scenario.toml";
+pub(super) const PAGE_FILE: &str = "index.html";
 
 /// What a run came to.
 #[derive(Debug)]
@@ -49,7 +49,8 @@ pub enum RunError {
     Folder(#[from] FolderError),
 }
 
-fn refused(file: &str) -> impl FnOnce(io::Error) -> RunError {
+/// What becomes of an error of the file system about `file`.
+pub(super) fn refused(file: &str) -> impl FnOnce(io::Error) -> RunError {
     let file = file.to_owned();
     |source| RunError::File { file, source }
 }

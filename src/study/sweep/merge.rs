@@ -1,0 +1,99 @@
+//! The parts of a sweep joined.
+
+use super::journal::{self, JOURNAL_FILE, Rows};
+use super::result::{Outcome, put, refuse_edited_table, write};
+use super::{RECORD_FILE, Record, Shard, SweepError};
+use crate::study::folder::Folder;
+use crate::study::run::{RunError, SCENARIO_FILE};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Runs that are named where many are missing.
+const NAMED: usize = 5;
+
+/// Joins the folders `parts` of one sweep into the folder `target`, as if it had been one sweep from
+/// the beginning; the parts stay as they are. With `partial` rows may be missing; the sweep can go on
+/// in `target` later. With `force` an earlier result there is replaced.
+///
+/// # Errors
+/// [`SweepError`] if a part is damaged or of another sweep, if parts contradict each other, if rows
+/// are missing, or if files cannot be written. Nothing is lost.
+pub fn merge(
+    parts: &[PathBuf],
+    target: &Path,
+    force: bool,
+    partial: bool,
+) -> Result<Outcome, SweepError> {
+    let records: Vec<Record> =
+        parts.iter().map(|part| Record::read(part)).collect::<Result<_, _>>()?;
+    let (Some(first), Some(first_part)) = (records.first(), parts.first()) else {
+        return Err(SweepError::input("nothing to merge; give the folders of the parts"));
+    };
+    let identity = &first.identity;
+    let mut rows = Rows::new();
+    for (part, record) in parts.iter().zip(&records) {
+        let differences = record.identity.differences(identity);
+        if !differences.is_empty() {
+            return Err(SweepError::input(format!(
+                "`{}` is no part of the sweep in `{}` (here): {}",
+                part.display(),
+                first_part.display(),
+                differences.join("; ")
+            )));
+        }
+        refuse_edited_table(part, record)?;
+        for (run, row) in journal::read(part, identity, record.shard)? {
+            if rows.get(&run).is_some_and(|before| *before != row) {
+                return Err(SweepError::input(format!(
+                    "`{}` contradicts another part about run {}; both were made by the same \
+                     version on the same scenario, so one of the machines computes wrongly or \
+                     differently. Leave out the part that you do not trust",
+                    part.display(),
+                    run + 1
+                )));
+            }
+            rows.insert(run, row);
+        }
+    }
+    if !partial {
+        refuse_missing(&rows, identity.runs, parts, &records)?;
+    }
+
+    let folder = Folder::prepare(target, RECORD_FILE, force).map_err(RunError::from)?;
+    let place = folder.path();
+    put(place, JOURNAL_FILE, &journal::text(identity, &rows))?;
+    if let Ok(scenario) = fs::read_to_string(first_part.join(SCENARIO_FILE)) {
+        put(place, SCENARIO_FILE, &scenario)?;
+    }
+    let outcome = write(place, target, identity, Shard::WHOLE, &rows)?;
+    folder.finish().map_err(RunError::from)?;
+    Ok(outcome)
+}
+
+/// Fails if a run has no row, and says in which part to look for it.
+fn refuse_missing(
+    rows: &Rows,
+    runs: usize,
+    parts: &[PathBuf],
+    records: &[Record],
+) -> Result<(), SweepError> {
+    let missing: Vec<usize> = (0..runs).filter(|run| !rows.contains_key(run)).collect();
+    let Some(first) = missing.first() else {
+        return Ok(());
+    };
+    let names: Vec<String> = missing.iter().take(NAMED).map(|run| (run + 1).to_string()).collect();
+    let more = if missing.len() > NAMED { ", …" } else { "" };
+    let place = parts.iter().zip(records).find(|(_, record)| record.shard.holds(*first));
+    let place = match place {
+        Some((part, record)) => {
+            format!("`{}` (shard {}) is unfinished", part.display(), record.shard)
+        }
+        None => "their shard is not among the parts".to_owned(),
+    };
+    Err(SweepError::input(format!(
+        "{} of {runs} rows are missing (runs {}{more}): {place}; give all parts, let the same sweep \
+         finish there, or merge what there is with --partial",
+        missing.len(),
+        names.join(", ")
+    )))
+}

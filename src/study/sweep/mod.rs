@@ -1,0 +1,54 @@
+//! Many variants of one scenario: planned, run in parallel, journalled, tabulated.
+//!
+//! ```text
+//! --vary ─► Vary ─► Design ─► Plan ─► runs ─► rows.jsonl ─► sweep.csv · pictures · page
+//! ```
+//! Everything about run n follows from n: its values from the design, its figures from a simulation
+//! that knows nothing of the others. So neither threads nor shards nor interruptions show in the
+//! table, and the journal, one line a finished run in whatever order they finish, is all the state
+//! there is.
+
+mod design;
+mod journal;
+mod merge;
+mod page;
+mod pictures;
+mod plan;
+mod record;
+mod result;
+mod row;
+mod shard;
+mod vary;
+mod work;
+
+pub use design::Design;
+pub use merge::merge;
+pub use plan::Plan;
+pub use record::{Identity, RECORD_FILE, Record};
+pub use result::Outcome;
+pub use shard::Shard;
+pub use vary::{Range, Values, Vary};
+pub use work::{on_threads, sweep};
+
+use super::run::RunError;
+use crate::scenario::Problems;
+
+/// Why a sweep has no result, or not all of it. What the journal holds stands.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// Wrong input: what, where, what would be right.
+    #[error("{0}")]
+    Input(String),
+    /// The scenario that is varied is wrong.
+    #[error(transparent)]
+    Scenario(#[from] Problems),
+    /// Files cannot be written.
+    #[error(transparent)]
+    Write(#[from] RunError),
+}
+
+impl SweepError {
+    fn input(message: impl Into<String>) -> Self {
+        SweepError::Input(message.into())
+    }
+}

@@ -1,0 +1,198 @@
+//! The pictures of a sweep: its main figures over each varied number.
+
+use super::journal::Rows;
+use super::row::{Status, status};
+use super::vary::Values;
+use super::{Identity, Vary};
+use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg};
+use std::collections::BTreeMap;
+
+/// What is drawn: column, heading, label of the axis, factor to the axis' unit.
+const OUTPUTS: [(&str, &str, &str, f64); 7] = [
+    ("peak_contact_force_N", "Peak contact force", "force (N)", 1.0),
+    ("peak_platform_acceleration_m_s2", "Peak platform acceleration", "|a| (m/s²)", 1.0),
+    ("rms_acceleration_deviation_m_s2", "Acceleration, rms deviation from ideal", "a (m/s²)", 1.0),
+    ("peak_actuator_force_N", "Peak actuator force", "force (N)", 1.0),
+    ("rms_path_error_m", "Path error, rms", "distance (µm)", 1e6),
+    ("contact_fraction", "Share of time in contact, mean of all joints", "share", 1.0),
+    ("impacts_per_s", "Impacts per second, all joints", "impacts (1/s)", 1.0),
+];
+
+/// Runs that are drawn, evenly chosen where there are more: dots would hide each other, and the page
+/// grow with the sweep.
+const DOTS: usize = 1000;
+
+/// Curves that colours tell apart.
+const GROUPS: usize = 6;
+
+/// Most means that are joined, and fewest runs that make one: at one value where values repeat, else
+/// over a stretch of the axis, which must be longer than the period of a sample's pattern.
+const MEANS: usize = 24;
+const RUNS_AT_A_VALUE: usize = 5;
+const RUNS_OF_A_STRETCH: usize = 20;
+
+/// Largest over smallest value from which a positive quantity is drawn by its logarithm.
+const LOG_SPREAD: f64 = 50.0;
+
+/// Names of the files that [`draw`] may give its pictures.
+pub(super) fn files(identity: &Identity) -> impl Iterator<Item = String> {
+    let inputs = identity.columns.iter().zip(&identity.vary);
+    inputs.map(|(path, _)| file(path))
+}
+
+fn file(path: &str) -> String {
+    format!("over-{path}.svg")
+}
+
+/// One picture for each varied number.
+pub(super) fn draw(identity: &Identity, rows: &Rows) -> Result<Vec<Picture>, ReportError> {
+    // A record that was edited has been refused before; what cannot be read is not drawn.
+    let varied: Vec<Vary> = identity.vary.iter().filter_map(|v| Vary::parse(v).ok()).collect();
+    let rows: Vec<&Vec<String>> = rows.values().filter(|row| status(row) == Status::Ok).collect();
+    (0..varied.len())
+        .filter(|input| !rows.is_empty() && rows.iter().all(|row| cell(row, *input).is_some()))
+        .map(|input| picture(identity, &varied, &rows, input))
+        .collect()
+}
+
+fn picture(
+    identity: &Identity,
+    varied: &[Vary],
+    rows: &[&Vec<String>],
+    input: usize,
+) -> Result<Picture, ReportError> {
+    let path = &varied[input].path;
+    let declared_log = matches!(&varied[input].values, Values::Range(range) if range.log);
+    let inputs = || rows.iter().filter_map(|row| cell(row, input));
+    let x_log = declared_log || wide(inputs());
+    let groups = groups(varied, rows, input);
+    let mut averaged = false;
+    let panels: Vec<Panel> = OUTPUTS
+        .iter()
+        .filter_map(|output| {
+            let column = identity.columns.iter().position(|name| name == output.0)?;
+            let points = |rows: &[&Vec<String>]| -> Vec<(f64, f64)> {
+                let point =
+                    |row: &&Vec<String>| Some((cell(row, input)?, output.3 * cell(row, column)?));
+                rows.iter().filter_map(point).collect()
+            };
+            let all = points(rows);
+            let y_log = wide(all.iter().map(|point| point.1));
+            let scaled = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
+                points.into_iter().map(|(x, y)| (scale(x, x_log), scale(y, y_log))).collect()
+            };
+            let mut curves: Vec<Curve> = groups
+                .iter()
+                .map(|(name, rows)| Curve {
+                    name: name.clone(),
+                    points: scaled(thinned(points(rows))),
+                    style: Style::Dots,
+                })
+                .collect();
+            if let ([_], Some(means)) = (groups.as_slice(), means(all, x_log)) {
+                averaged = true;
+                let points = scaled(means);
+                curves.push(Curve { name: "mean".to_owned(), points, style: Style::Reference });
+            }
+            Some(Panel {
+                title: output.1.to_owned(),
+                x_label: label(&format!("{path} (SI units)"), x_log),
+                y_label: label(output.2, y_log),
+                curves,
+            })
+        })
+        .collect();
+    let mut caption = format!("Each dot is a run that reached its end, at its value of {path}.");
+    if averaged {
+        caption += " The dashed line joins the means of runs at the same or neighbouring values.";
+    }
+    if x_log || panels.iter().any(|panel| panel.y_label.starts_with(LOG)) {
+        caption += " Where an axis says log10, −3 stands for 0.001.";
+    }
+    if rows.len() > DOTS {
+        caption += &format!(" Shown are {DOTS} runs of {}, evenly chosen.", rows.len());
+    }
+    Ok(Picture {
+        file: file(path),
+        title: format!("Over {path}"),
+        caption,
+        svg: panels_svg(&panels)?,
+    })
+}
+
+const LOG: &str = "log10 of ";
+
+fn label(quantity: &str, log: bool) -> String {
+    format!("{}{quantity}", if log { LOG } else { "" })
+}
+
+fn scale(value: f64, log: bool) -> f64 {
+    if log { value.log10() } else { value }
+}
+
+fn cell(row: &[String], column: usize) -> Option<f64> {
+    row.get(column)?.parse().ok()
+}
+
+/// Whether positive values spread so far that only their logarithms can be told apart.
+fn wide(values: impl Iterator<Item = f64>) -> bool {
+    let (least, most) =
+        values.fold((f64::INFINITY, 0.0f64), |(least, most), v| (least.min(v), most.max(v)));
+    least > 0.0 && most >= LOG_SPREAD * least
+}
+
+/// The runs by their values of the other lists and ranges if these are few, or all of them.
+fn groups<'a>(
+    varied: &[Vary],
+    rows: &[&'a Vec<String>],
+    input: usize,
+) -> Vec<(String, Vec<&'a Vec<String>>)> {
+    // In the order of the runs.
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
+    let mut groups: Vec<(String, Vec<&Vec<String>>)> = Vec::new();
+    for row in rows {
+        let others = varied.iter().enumerate().filter(|(k, v)| *k != input && !v.is_random());
+        let name: Vec<String> = others.map(|(k, v)| format!("{} = {}", v.path, row[k])).collect();
+        let name = name.join(", ");
+        let place = *places.entry(name.clone()).or_insert(groups.len());
+        if place == groups.len() {
+            groups.push((name, Vec::new()));
+        }
+        if groups.len() > GROUPS {
+            break;
+        }
+        groups[place].1.push(row);
+    }
+    if (2..=GROUPS).contains(&groups.len()) {
+        return groups;
+    }
+    vec![("runs".to_owned(), rows.to_vec())]
+}
+
+fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let stride = points.len().div_ceil(DOTS).max(1);
+    points.into_iter().step_by(stride).collect()
+}
+
+/// Means at each value of x, or where these are many, over stretches with the same number of runs;
+/// none if there are too few runs for either.
+fn means(mut points: Vec<(f64, f64)>, x_log: bool) -> Option<Vec<(f64, f64)>> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let count = points.len();
+    let distinct = points.chunk_by(|a, b| a.0 == b.0).count();
+    let chunks: Vec<&[(f64, f64)]> = if distinct <= MEANS && count >= RUNS_AT_A_VALUE * distinct {
+        points.chunk_by(|a, b| a.0 == b.0).collect()
+    } else {
+        points.chunks(count.div_ceil(MEANS).max(RUNS_OF_A_STRETCH)).collect()
+    };
+    if chunks.len() < 2 {
+        return None;
+    }
+    let mean = |chunk: &[(f64, f64)]| {
+        let n = chunk.len() as f64;
+        let x = chunk.iter().map(|p| scale(p.0, x_log)).sum::<f64>() / n;
+        let x = if x_log { 10f64.powf(x) } else { x };
+        (x, chunk.iter().map(|p| p.1).sum::<f64>() / n)
+    };
+    Some(chunks.into_iter().map(mean).collect())
+}

@@ -1,0 +1,190 @@
+//! A sweep before it is run: every run's scenario, checked.
+
+use super::record::{hexadecimal, sha256};
+use super::{Design, Identity, Shard, SweepError, Vary, row};
+use crate::engine::RAPIER_VERSION;
+use crate::scenario::{Location, Motion, Problem, Scenario, Source};
+use crate::simulate::{Machine, Severity, assemble, findings};
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+
+/// A sweep whose every run has a scenario that makes sense by itself.
+#[derive(Debug)]
+pub struct Plan {
+    source: Source,
+    sets: Vec<String>,
+    base: Scenario,
+    design: Design,
+    identity: Identity,
+    shard: Shard,
+    warnings: Vec<String>,
+}
+
+/// What is known of a run beforehand.
+struct Checked {
+    /// SHA-256 of its scenario and the file that it reads.
+    hash: String,
+    /// Why the machine cannot do it.
+    refused: Option<String>,
+    /// What is doubtful about it.
+    warning: Option<String>,
+}
+
+impl Plan {
+    /// Plans the sweep of `source` with the overrides `sets` over the `PATH=…` of `vary`, of which
+    /// this process is to run the part `shard`. Every run of every part is checked, on all threads.
+    ///
+    /// # Errors
+    /// [`SweepError`] if a `--vary` makes no sense, a run's scenario is refused (unknown path, value
+    /// out of range), or the machine can do none of the runs.
+    pub fn new(
+        source: Source,
+        sets: &[String],
+        vary: &[String],
+        shard: Shard,
+    ) -> Result<Plan, SweepError> {
+        let base = source.scenario(sets)?;
+        let varied = vary.iter().map(|text| Vary::parse(text)).collect::<Result<Vec<_>, _>>()?;
+        let design = Design::new(varied, base.seed)?;
+        let identity = Identity {
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            rapier_version: RAPIER_VERSION.to_owned(),
+            scenario_name: base.name.clone(),
+            scenario_hash: base.hash(),
+            seed: base.seed,
+            vary: design.varied().iter().map(Vary::to_string).collect(),
+            runs: design.runs(),
+            columns: row::columns(design.varied()),
+            runs_hash: String::new(),
+        };
+        let sets = sets.to_vec();
+        let mut plan = Plan { source, sets, base, design, identity, shard, warnings: Vec::new() };
+        plan.check()?;
+        Ok(plan)
+    }
+
+    /// The scenario that is varied.
+    pub fn base(&self) -> &Scenario {
+        &self.base
+    }
+
+    /// What makes this sweep the one it is.
+    pub fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    /// The part of it that this process is to run.
+    pub fn shard(&self) -> Shard {
+        self.shard
+    }
+
+    /// What is doubtful about its runs, or cannot be done, one line a kind.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// The value of each varied key in run `run`, as TOML.
+    pub(super) fn values(&self, run: usize) -> Vec<String> {
+        self.design.values(run)
+    }
+
+    /// The machine of run `run`, or in words why it cannot do what is asked.
+    pub(super) fn machine(&self, run: usize) -> Result<(Scenario, Machine), String> {
+        let scenario = self.scenario(run).map_err(|problem| self.in_words(&problem))?;
+        let machine = assemble(&scenario).map_err(|problem| self.in_words(&problem))?;
+        let found = findings(&scenario, &machine);
+        match found.iter().find(|finding| finding.severity == Severity::Error) {
+            Some(error) => Err(self.in_words(&error.problem)),
+            None => Ok((scenario, machine)),
+        }
+    }
+
+    fn scenario(&self, run: usize) -> Result<Scenario, Problem> {
+        let values = self.values(run);
+        let varied = self.design.varied().iter().zip(&values);
+        let mut sets = self.sets.clone();
+        sets.extend(varied.map(|(vary, value)| format!("{}={value}", vary.path)));
+        // One complaint is enough: the runs share their mistakes.
+        self.source.scenario(&sets).map_err(|mut problems| problems.0.swap_remove(0))
+    }
+
+    /// Checks every run, and notes what they are.
+    fn check(&mut self) -> Result<(), SweepError> {
+        let runs = self.design.runs();
+        let checked: Vec<Result<Checked, Problem>> =
+            (0..runs).into_par_iter().map(|run| self.checked(run)).collect();
+        let mut hash = Sha256::new();
+        let (mut refused, mut warned) = (Vec::new(), Vec::new());
+        for (run, checked) in checked.into_iter().enumerate() {
+            let checked = checked.map_err(|problem| {
+                SweepError::input(format!("{} ({})", self.in_words(&problem), self.name(run)))
+            })?;
+            hash.update(&checked.hash);
+            refused.extend(checked.refused.map(|reason| (run, reason)));
+            warned.extend(checked.warning.map(|warning| (run, warning)));
+        }
+        self.identity.runs_hash = hexadecimal(&hash.finalize());
+        if let Some((run, reason)) = refused.first() {
+            let name = self.name(*run);
+            if refused.len() == runs {
+                return Err(SweepError::input(format!(
+                    "the machine can do none of the {runs} runs: {reason} ({name})"
+                )));
+            }
+            let count = refused.len();
+            self.warnings.push(format!(
+                "{count} of {runs} runs are refused and get a row without figures: {reason} ({name})"
+            ));
+        }
+        if let Some((run, warning)) = warned.first() {
+            let (count, name) = (warned.len(), self.name(*run));
+            self.warnings.push(format!("{count} of {runs} runs: {warning} ({name})"));
+        }
+        Ok(())
+    }
+
+    fn checked(&self, run: usize) -> Result<Checked, Problem> {
+        let scenario = self.scenario(run)?;
+        let mut text = scenario.to_toml();
+        let assembled = assemble(&scenario);
+        if let Motion::Table(table) = &scenario.motion {
+            // A file that cannot be read is among the reasons that `assemble` finds.
+            let content = std::fs::read(scenario.resolve(&table.file)).unwrap_or_default();
+            text += &sha256(&content);
+        }
+        let hash = sha256(text.as_bytes());
+        let found = match &assembled {
+            Ok(machine) => findings(&scenario, machine),
+            Err(problem) => {
+                let refused = Some(self.in_words(problem));
+                return Ok(Checked { hash, refused, warning: None });
+            }
+        };
+        let first = |severity| {
+            let finding = found.iter().find(|finding| finding.severity == severity)?;
+            Some(self.in_words(&finding.problem))
+        };
+        Ok(Checked { hash, refused: first(Severity::Error), warning: first(Severity::Warning) })
+    }
+
+    /// A complaint in the words of somebody who wrote `--vary`: to the scenario it is a `--set`.
+    fn in_words(&self, problem: &Problem) -> String {
+        let text = problem.to_string();
+        match &problem.location {
+            Location::Set { path } if self.design.varied().iter().any(|v| v.path == *path) => {
+                text.replacen("--set", "--vary", 1)
+            }
+            _ => text,
+        }
+    }
+
+    /// Run `run` in words.
+    fn name(&self, run: usize) -> String {
+        let values = self.values(run);
+        let varied = self.design.varied().iter().zip(&values);
+        let values: Vec<String> =
+            varied.map(|(vary, value)| format!("{}={value}", vary.path)).collect();
+        format!("run {} of {}: {}", run + 1, self.design.runs(), values.join(" "))
+    }
+}

@@ -1,0 +1,138 @@
+//! `sweep.json`: what sweep a folder belongs to, and how far it has come.
+
+use super::{Shard, SweepError};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fmt::Display;
+use std::fs;
+use std::path::Path;
+
+/// The JSON file of a sweep, by which its folder is known.
+pub const RECORD_FILE: &str = "sweep.json";
+
+/// What makes two sweeps the same: then their rows agree to the last digit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Identity {
+    /// The program that wrote this: how a result is told from other files.
+    pub program: String,
+    /// Its version.
+    pub version: String,
+    /// Version of the physics engine underneath.
+    pub rapier_version: String,
+    /// Name of the scenario that is varied.
+    pub scenario_name: String,
+    /// SHA-256 of that scenario, nothing varied.
+    pub scenario_hash: String,
+    /// Seed of the random sample.
+    pub seed: u64,
+    /// What is varied, in the order of the columns.
+    pub vary: Vec<String>,
+    /// Number of runs, all shards together.
+    pub runs: usize,
+    /// Header of the table.
+    pub columns: Vec<String>,
+    /// SHA-256 of the scenarios of all runs and of the files that they read.
+    pub runs_hash: String,
+}
+
+/// What `sweep.json` holds.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Record {
+    /// Which sweep.
+    #[serde(flatten)]
+    pub identity: Identity,
+    /// Which part of it, `1/1` for all of it.
+    pub shard: Shard,
+    /// Runs of this part.
+    pub runs_of_shard: usize,
+    /// Rows of them that are there.
+    pub finished: usize,
+    /// Runs that reached their end.
+    pub ok: usize,
+    /// Runs that broke down on the way.
+    pub halted: usize,
+    /// Runs that the machine cannot do.
+    pub refused: usize,
+    /// Whether all rows of this part are in the table.
+    pub complete: bool,
+    /// SHA-256 of `sweep.csv`, once it is written.
+    pub table_sha256: Option<String>,
+    /// The folder, as the user called it.
+    pub folder: String,
+    /// What may stand beside this file.
+    pub files: Vec<String>,
+}
+
+impl Identity {
+    /// SHA-256 in hexadecimal; each row of the journal is sealed with it.
+    pub fn hash(&self) -> String {
+        // Names, numbers and texts always become JSON.
+        sha256(&serde_json::to_vec(self).unwrap_or_default())
+    }
+
+    /// What differs from the sweep that is `here`, in words.
+    pub fn differences(&self, here: &Identity) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut compare = |what: &str, there: &dyn Display, here: &dyn Display| {
+            let (there, here) = (there.to_string(), here.to_string());
+            if there != here {
+                found.push(format!("{what} {there} there, {here} here"));
+            }
+        };
+        compare("freeplay", &self.version, &here.version);
+        compare("rapier", &self.rapier_version, &here.rapier_version);
+        compare("--vary", &self.vary.join(" --vary "), &here.vary.join(" --vary "));
+        compare("scenario", &self.scenario_name, &here.scenario_name);
+        compare("scenario hash", &short(&self.scenario_hash), &short(&here.scenario_hash));
+        compare("seed", &self.seed, &here.seed);
+        if found.is_empty() && self != here {
+            found.push(
+                "its columns, the scenarios of its runs, or a file that these read".to_owned(),
+            );
+        }
+        found
+    }
+}
+
+impl Record {
+    /// Reads the record of a folder.
+    ///
+    /// # Errors
+    /// [`SweepError::Input`] if there is none or it is no record.
+    pub fn read(folder: &Path) -> Result<Record, SweepError> {
+        let file = folder.join(RECORD_FILE);
+        let file = file.display();
+        let text = fs::read_to_string(folder.join(RECORD_FILE)).map_err(|error| {
+            SweepError::input(format!(
+                "`{file}` cannot be read: {error}; expected the folder of a sweep"
+            ))
+        })?;
+        serde_json::from_str(&text).map_err(|error| {
+            SweepError::input(format!(
+                "`{file}` is no record of a sweep: {error}; it was truncated or edited. Nothing was \
+                 changed; restore it, or choose another folder with --out"
+            ))
+        })
+    }
+
+    /// Pretty JSON with a line break at the end.
+    pub fn to_json(&self) -> String {
+        // Names, numbers and texts always become JSON.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+}
+
+/// The beginning of a hash: enough to tell two apart.
+fn short(hash: &str) -> String {
+    hash.chars().take(12).collect()
+}
+
+/// SHA-256 in hexadecimal.
+pub(super) fn sha256(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+/// Bytes as hexadecimal digits.
+pub(super) fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

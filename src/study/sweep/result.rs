@@ -1,0 +1,110 @@
+//! The files of a sweep, from its rows: table, pictures, page, record.
+
+use super::journal::{JOURNAL_FILE, Rows};
+use super::record::sha256;
+use super::row::{Status, status};
+use super::{Identity, RECORD_FILE, Record, Shard, SweepError, page, pictures};
+use crate::study::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The table.
+pub(super) const TABLE_FILE: &str = "sweep.csv";
+
+/// Where a file is written before it gets its name.
+const UNFINISHED_FILE: &str = "unfinished.tmp";
+
+/// What a sweep came to.
+#[derive(Debug)]
+pub struct Outcome {
+    /// What `sweep.json` says.
+    pub record: Record,
+    /// The text of `sweep.json`.
+    pub json: String,
+    /// Where all files are.
+    pub folder: PathBuf,
+}
+
+impl Record {
+    /// The record of part `shard` of a sweep that has come as far as `rows`, its table not written.
+    pub(super) fn new(identity: Identity, shard: Shard, rows: &Rows, folder: &Path) -> Record {
+        let count = |wanted| rows.values().filter(|row| status(row) == wanted).count();
+        let texts =
+            [RECORD_FILE, JOURNAL_FILE, TABLE_FILE, SCENARIO_FILE, PAGE_FILE, UNFINISHED_FILE];
+        let files = texts.map(str::to_owned).into_iter().chain(pictures::files(&identity));
+        Record {
+            shard,
+            runs_of_shard: shard.runs(identity.runs).count(),
+            finished: rows.len(),
+            ok: count(Status::Ok),
+            halted: count(Status::Halted),
+            refused: count(Status::Refused),
+            complete: false,
+            table_sha256: None,
+            folder: folder.display().to_string(),
+            files: files.collect(),
+            identity,
+        }
+    }
+}
+
+/// Writes the files that follow from `rows` into `place`, which is or will be called `folder`.
+pub(super) fn write(
+    place: &Path,
+    folder: &Path,
+    identity: &Identity,
+    shard: Shard,
+    rows: &Rows,
+) -> Result<Outcome, RunError> {
+    let table = table(identity, rows).map_err(refused(TABLE_FILE))?;
+    let mut record = Record::new(identity.clone(), shard, rows, folder);
+    record.complete = record.finished == record.runs_of_shard;
+    record.table_sha256 = Some(sha256(table.as_bytes()));
+    let json = record.to_json();
+    let pictures = pictures::draw(identity, rows)?;
+    // The record first: a table that it does not vouch for would pass for one edited by hand.
+    put(place, RECORD_FILE, &json)?;
+    put(place, TABLE_FILE, &table)?;
+    for picture in &pictures {
+        put(place, &picture.file, &picture.svg)?;
+    }
+    put(place, PAGE_FILE, &page::page(&record, rows, &pictures))?;
+    Ok(Outcome { record, json, folder: folder.to_owned() })
+}
+
+/// Writes a file that is never seen half written.
+pub(super) fn put(place: &Path, name: &str, text: &str) -> Result<(), RunError> {
+    let unfinished = place.join(UNFINISHED_FILE);
+    fs::write(&unfinished, text)
+        .and_then(|()| fs::rename(&unfinished, place.join(name)))
+        .map_err(refused(name))
+}
+
+/// Refuses a folder whose table is not as it was written: somebody's work may be in it.
+pub(super) fn refuse_edited_table(folder: &Path, record: &Record) -> Result<(), SweepError> {
+    let path = folder.join(TABLE_FILE);
+    let table = match fs::read(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        read => read.map_err(refused(TABLE_FILE)).map_err(SweepError::Write)?,
+    };
+    if record.table_sha256.as_ref() == Some(&sha256(&table)) {
+        return Ok(());
+    }
+    Err(SweepError::input(format!(
+        "`{}` was truncated or edited since it was written. Nothing was changed; keep it under \
+         another name, or delete it, and it is written again from {JOURNAL_FILE}",
+        path.display()
+    )))
+}
+
+/// `sweep.csv`: the rows by the number of their run.
+fn table(identity: &Identity, rows: &Rows) -> io::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&identity.columns)?;
+    for row in rows.values() {
+        writer.write_record(row)?;
+    }
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    String::from_utf8(bytes).map_err(io::Error::other)
+}

@@ -1,0 +1,122 @@
+//! A row of the table: the values of a run, its figures, how it ended.
+
+use super::Vary;
+use crate::simulate::Summary;
+use serde_json::Value;
+
+/// The figures of a row, by their names in `summary.json`. What depends on the machine that computes
+/// (wall time) or is the same in all rows is left out.
+pub(super) const FIGURES: [&str; 17] = [
+    "peak_contact_force_N",
+    "peak_platform_acceleration_m_s2",
+    "peak_actuator_force_N",
+    "ideal_peak_platform_acceleration_m_s2",
+    "ideal_peak_actuator_force_N",
+    "rms_path_error_m",
+    "max_path_error_m",
+    "rms_acceleration_deviation_m_s2",
+    "rms_actuator_force_deviation_N",
+    "contact_fraction",
+    "impacts",
+    "impacts_per_s",
+    "largest_penetration_m",
+    "steps",
+    "smallest_step_s",
+    "largest_step_s",
+    "simulated_s",
+];
+
+/// The last column: `ok`, or `halted: …` or `refused: …` with the reason.
+const STATUS: &str = "status";
+
+const OK: &str = "ok";
+const HALTED: &str = "halted: ";
+const REFUSED: &str = "refused: ";
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Status {
+    /// It reached its end.
+    Ok,
+    /// It broke down on the way; figures hold up to there.
+    Halted,
+    /// The machine cannot do what its scenario asks for; there are no figures.
+    Refused,
+}
+
+/// The header of the table.
+pub(super) fn columns(varied: &[Vary]) -> Vec<String> {
+    let paths = varied.iter().map(|vary| vary.path.clone());
+    paths.chain(FIGURES.into_iter().chain([STATUS]).map(str::to_owned)).collect()
+}
+
+/// The row of a run that was simulated.
+pub(super) fn of_summary(values: Vec<String>, summary: &Summary) -> Vec<String> {
+    // A summary is nothing but names, numbers and texts: it always becomes JSON.
+    let json = serde_json::to_value(summary).unwrap_or_default();
+    let mut row = values;
+    row.extend(FIGURES.iter().map(|name| match &json[*name] {
+        Value::Number(number) => number.to_string(),
+        // No number is an empty cell.
+        _ => String::new(),
+    }));
+    row.push(match &summary.halted {
+        None => OK.to_owned(),
+        Some(reason) => format!("{HALTED}{reason}"),
+    });
+    row
+}
+
+/// The row of a run that the machine refuses.
+pub(super) fn refused(values: Vec<String>, reason: &str) -> Vec<String> {
+    let mut row = values;
+    row.extend(FIGURES.iter().map(|_| String::new()));
+    row.push(format!("{REFUSED}{reason}"));
+    row
+}
+
+/// How the run of a row ended.
+pub(super) fn status(row: &[String]) -> Status {
+    match row.last().map(String::as_str) {
+        Some(OK) => Status::Ok,
+        Some(text) if text.starts_with(HALTED) => Status::Halted,
+        _ => Status::Refused,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Work;
+    use crate::scenario::Scenario;
+    use crate::simulate::{Recorder, assemble};
+
+    /// Numbers of `summary.json` that are no figures: the same in all rows, or not reproducible.
+    const NO_FIGURES: [&str; 5] =
+        ["seed", "tolerance_m_s", "settle_s", "wall_s", "wall_s_per_simulated_s"];
+
+    #[test]
+    fn every_figure_of_the_summary_is_in_the_table() {
+        let scenario = Scenario::load(None, &[]).expect("right");
+        let machine = assemble(&scenario).expect("no table to read");
+        let recorder = Recorder::new(&machine.mechanism, 0.0);
+        let summary = recorder.finish(&scenario, &machine, Work::default(), 1.0, None, Vec::new());
+        let json = serde_json::to_value(&summary).expect("JSON");
+        let object = json.as_object().expect("object");
+        for name in FIGURES {
+            assert!(object.contains_key(name), "{name}");
+        }
+        // Figures of an empty run are NaN, in JSON null; so are texts that are not there.
+        let no_number = ["halted", "step_s"];
+        for (name, _) in object.iter().filter(|(_, value)| value.is_number() || value.is_null()) {
+            let name = name.as_str();
+            let known =
+                FIGURES.contains(&name) || NO_FIGURES.contains(&name) || no_number.contains(&name);
+            assert!(known, "{name}: a figure of the table, or none?");
+        }
+        assert_eq!(
+            of_summary(vec![], &summary).len() + 1,
+            columns(&[Vary::parse("a=1").expect("right")]).len()
+        );
+    }
+}
