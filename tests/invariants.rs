@@ -132,6 +132,7 @@ impl Pair {
             prismatics: Vec::new(),
             commands: Arc::new(NoCommands),
             gravity: Vector2::zeros(),
+            native: freeplay::mechanism::NativeContacts::default(),
             output: 1,
         }
     }

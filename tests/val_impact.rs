@@ -135,6 +135,7 @@ impl Row {
             prismatics: Vec::new(),
             commands: Arc::new(NoCommands),
             gravity: Vector2::zeros(),
+            native: freeplay::mechanism::NativeContacts::default(),
             output: 0,
         };
         let schedule = Schedule { duration: self.steps(step) as f64 * step, interval: step };

@@ -113,7 +113,7 @@ fn rapier_reads_the_closed_form_and_leaves_a_law_alone() {
 fn rapier_itself_holds_the_journal() {
     for spin in [0.0, 1.5] {
         let mut pair = Pair::new(spin);
-        let colliders = pair.colliders(Solver::Native);
+        let colliders = pair.colliders(Solver::Native { restitution: 0.0, predictive: true });
         let mut deepest = f64::NEG_INFINITY;
         let mut touched = 0;
         for _ in 0..50_000 {

@@ -6,6 +6,7 @@
 
 mod check;
 mod check_text;
+mod compare;
 mod completions;
 mod failure;
 mod merge;
@@ -35,6 +36,7 @@ const EXAMPLES: &str = "\
 Examples:
   freeplay run                                  the built-in machine, into ./freeplay-run-default
   freeplay run --set joints.clearance=1e-4      the same with 0.1 mm of clearance
+  freeplay compare                              contact law, native contacts, no clearance
   freeplay check my-machine.toml                what can be said without simulating
   freeplay sweep --vary joints.clearance=1e-8..1e-3:log:100     many clearances, one table
 
@@ -43,6 +45,7 @@ Exit codes: 0 done, 2 wrong input, 1 anything else.";
 #[derive(Debug, Subcommand)]
 enum Command {
     Run(run::Arguments),
+    Compare(compare::Arguments),
     Check(check::Arguments),
     Sweep(sweep::Arguments),
     Merge(merge::Arguments),
@@ -53,6 +56,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(arguments) => run::main(&arguments),
+        Command::Compare(arguments) => compare::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
         Command::Sweep(arguments) => sweep::main(&arguments),
         Command::Merge(arguments) => merge::main(&arguments),

@@ -45,6 +45,8 @@ pub struct Contact {
     pub eccentricity: Vector2<f64>,
     /// Penetration δ = |e| − c in m, negative while the journal flies.
     pub penetration: f64,
+    /// Its rate δ̇ in m/s, positive while the centres part: outward, towards the ring.
+    pub rate: f64,
     /// Normal force in N, zero while the journal flies.
     pub normal_force: f64,
     /// Friction force in N on the bearing, along the normal turned by +90°.
@@ -72,12 +74,13 @@ impl Clearance {
     pub fn forces(&self, bearing: &Frame, journal: &Frame) -> (Contact, Option<[Vector3<f64>; 2]>) {
         let eccentricity = journal.centre - bearing.centre;
         let (penetration, normal) = circle_in_ring(eccentricity, self.radial());
-        let mut contact = Contact { eccentricity, penetration, ..Contact::default() };
+        let relative = journal.velocity - bearing.velocity;
+        let rate = relative.dot(&normal);
+        let mut contact = Contact { eccentricity, penetration, rate, ..Contact::default() };
         if penetration <= 0.0 {
             return (contact, None);
         }
-        let relative = journal.velocity - bearing.velocity;
-        contact.normal_force = self.law.normal_force(penetration, relative.dot(&normal));
+        contact.normal_force = self.law.normal_force(penetration, rate);
         let tangent = Vector2::new(-normal.y, normal.x);
         let to_surface = [self.journal_radius + penetration + self.radial(), self.journal_radius];
         if let Some(friction) = &self.friction {

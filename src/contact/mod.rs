@@ -5,11 +5,13 @@
 
 mod friction;
 mod hertz_step;
+mod impact;
 mod joint;
 mod stiffness;
 
 pub use friction::CoulombFriction;
 pub use hertz_step::{HertzStep, step};
+pub use impact::{Impact, impact};
 pub use joint::{Clearance, Contact, Frame, circle_in_ring};
 pub use stiffness::{Material, StiffnessForm, hertz_stiffness};
 

@@ -10,17 +10,24 @@ use rapier2d_f64::pipeline::{
 };
 
 /// Who computes the force of a journal–bearing pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solver {
     /// A force law, outside rapier: the hook takes the pair away from rapier's solver.
     Law,
     /// rapier's own contact solver.
-    Native,
+    Native {
+        /// Share of the normal speed that a hit after a flight returns.
+        restitution: f64,
+        /// Whether it may also stop journals that have not arrived yet, see
+        /// [`NativeContacts::predictive`](crate::mechanism::NativeContacts::predictive).
+        predictive: bool,
+    },
 }
 
 /// The colliders of all clearance joints of a world. Give it to rapier as its physics hooks: it
 /// lets each ring touch its own journal only, and clears the solver contacts of pairs whose force
-/// comes from a law (their manifolds stay readable).
+/// comes from a law (their manifolds stay readable), or, where rapier is not to predict, of journals
+/// in flight.
 #[derive(Clone, Debug, Default)]
 pub struct JointColliders {
     pairs: Vec<([ColliderHandle; 2], Solver)>,
@@ -38,6 +45,10 @@ impl JointColliders {
         friction: f64,
         solver: Solver,
     ) {
+        let restitution = match solver {
+            Solver::Law => 0.0,
+            Solver::Native { restitution, .. } => restitution,
+        };
         let shapes =
             [SharedShape::new(BearingRing { radius: radii[0] }), SharedShape::ball(radii[1])];
         let mut handles = [ColliderHandle::invalid(); 2];
@@ -46,6 +57,7 @@ impl JointColliders {
                 .translation(to_rapier(points[side]))
                 .density(0.0)
                 .friction(friction)
+                .restitution(restitution)
                 .active_hooks(
                     ActiveHooks::FILTER_CONTACT_PAIRS | ActiveHooks::MODIFY_SOLVER_CONTACTS,
                 );
@@ -73,10 +85,13 @@ impl PhysicsHooks for JointColliders {
     }
 
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
-        if self.solver(context.collider1, context.collider2) == Some(Solver::Law)
-            && let ModifiableContacts::Rigid(manifold) = &mut context.contacts
-        {
-            manifold.solver_contacts.clear();
+        let ModifiableContacts::Rigid(manifold) = &mut context.contacts else { return };
+        match self.solver(context.collider1, context.collider2) {
+            Some(Solver::Law) => manifold.solver_contacts.clear(),
+            Some(Solver::Native { predictive: false, .. }) => {
+                manifold.solver_contacts.retain(|contact| contact.dist <= 0.0);
+            }
+            Some(Solver::Native { predictive: true, .. }) | None => {}
         }
     }
 }

@@ -3,6 +3,17 @@
 //! Nothing is corrected here: rapier steps as it always does (semi-implicit Euler), and what it
 //! reports are impulses. Forces, accelerations and drive forces of a row are the means over the
 //! step that ended there.
+//!
+//! What its contacts are: a journal that would reach the ring within the step is stopped there at
+//! once, by a rigid row (rapier calls such contacts speculative); its force is `m v/dt`, without a
+//! limit as the step shrinks. A journal that lies in the ring feels a spring and damper. As the stop
+//! leaves a journal an arbitrary share of its speed, which the spring then returns, slow hits lose as
+//! much as hard ones, where the contact law lets slow ones go nearly lossless: journals come to rest
+//! on their rings, and the share of time in contact is large (impulses above zero are counted, nothing
+//! else). A restitution does not help: rapier applies it to the two bodies alone, after all joints, and
+//! the next step's joints take most of it back. With
+//! [`predictive`](crate::mechanism::NativeContacts::predictive) off a hook drops the rigid rows, and
+//! the spring alone has limits like any law.
 
 use super::run::{Stepper, equal_step};
 use super::world::{Target, World};
@@ -63,6 +74,10 @@ impl Stepper for Native {
 
     fn evaluation(&self) -> &Evaluation {
         &self.now
+    }
+
+    fn mean_forces(&self) -> bool {
+        true
     }
 
     /// Impulses are means over the step already.

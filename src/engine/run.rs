@@ -52,6 +52,9 @@ pub struct Tally {
     pub impacts: u64,
     /// Time in contact since the start, in s.
     pub contact_time: f64,
+    /// Energy that the normal force has taken from the bodies since the start, in J, `∫ F_N δ̇ dt`:
+    /// what the contact dissipated and, while it is touching, what it holds as a spring.
+    pub energy: f64,
     /// Touching at the present instant.
     pub touching: bool,
 }
@@ -125,6 +128,11 @@ pub(super) trait Stepper {
     /// Makes one step from `t` of at most `until − t` s; returns the time reached, exactly `until`
     /// if it got there.
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
+    /// Whether the contact forces of an instant are the means over the step that ended there, and not
+    /// those of the instant itself.
+    fn mean_forces(&self) -> bool {
+        false
+    }
 }
 
 /// Simulates `mechanism` and calls `observe` at each row of the schedule.
@@ -180,6 +188,7 @@ fn drive(
                 let cause = likely_cause(mechanism, control);
                 return Err(Halt { t, place, what, cause, work });
             }
+            watch.account(&now.contacts, stepper.mean_forces());
             watch.record(mechanism, now, stepper.peaks_inside());
             if t >= until {
                 break;
@@ -193,7 +202,7 @@ fn drive(
             work.smallest_step = work.smallest_step.min(dt);
             work.largest_step = work.largest_step.max(dt);
         }
-        let Watch { tallies, peaks } = &watch;
+        let Watch { tallies, peaks, .. } = &watch;
         let (states, evaluation) = (stepper.states(), stepper.evaluation());
         observe(&Instant { t, states, evaluation, tallies, peaks: *peaks });
         watch.new_row();
@@ -206,12 +215,31 @@ fn drive(
 struct Watch {
     tallies: Vec<Tally>,
     peaks: Peaks,
+    /// Contacts at the instant before, and the time in s since then.
+    before: Vec<Contact>,
+    dt: f64,
 }
 
 impl Watch {
     fn new(mechanism: &Mechanism) -> Self {
-        let tallies = vec![Tally::default(); mechanism.revolutes.len()];
-        Self { tallies, peaks: Peaks::default() }
+        let joints = mechanism.revolutes.len();
+        Self {
+            tallies: vec![Tally::default(); joints],
+            peaks: Peaks::default(),
+            before: vec![Contact::default(); joints],
+            dt: 0.0,
+        }
+    }
+
+    /// Keeps account of energy. An impulse J between the rates a and b takes `J (a + b)/2`, exactly;
+    /// for a force that varies over the step this is the trapezoidal rule.
+    fn account(&mut self, contacts: &[Contact], mean_forces: bool) {
+        for ((tally, now), before) in self.tallies.iter_mut().zip(contacts).zip(&mut self.before) {
+            let [was, is] = [before.normal_force, now.normal_force];
+            let force = if mean_forces { is } else { 0.5 * (was + is) };
+            tally.energy += force * 0.5 * (before.rate + now.rate) * self.dt;
+            *before = *now;
+        }
     }
 
     fn record(&mut self, mechanism: &Mechanism, now: &Evaluation, inside: &[f64]) {
@@ -232,6 +260,7 @@ impl Watch {
     }
 
     fn elapse(&mut self, dt: f64) {
+        self.dt = dt;
         for tally in self.tallies.iter_mut().filter(|tally| tally.touching) {
             tally.contact_time += dt;
         }

@@ -2,7 +2,9 @@
 
 use super::leapfrog::read;
 use super::{JointColliders, Solver, physics_world, to_rapier};
-use crate::mechanism::{Attachment, Bearing, BodyState, Drive, Mechanism, Prismatic};
+use crate::mechanism::{
+    Attachment, Bearing, BodyState, Drive, Mechanism, NativeContacts, Prismatic,
+};
 use nalgebra::Vector3;
 use rapier2d_f64::dynamics::{
     ImpulseJointHandle, JointAxis, MassProperties, MotorModel, PrismaticJointBuilder,
@@ -61,6 +63,16 @@ impl World {
     /// contacts need them.
     pub fn new(mechanism: &Mechanism, colliders: bool) -> Self {
         let mut physics = physics_world(0.0);
+        let native = &mechanism.native;
+        let softness = SpringCoefficients {
+            natural_frequency: native.frequency,
+            damping_ratio: native.damping_ratio,
+        };
+        let parameters = &mut physics.integration_parameters;
+        parameters.contact_softness = softness;
+        // rapier's default is twice as stiff against fixed bodies; a bearing is a bearing.
+        parameters.static_contact_softness = softness;
+        parameters.num_internal_pgs_iterations = native.iterations;
         let ground = physics.bodies.insert(RigidBodyBuilder::fixed());
         let handles: Vec<_> = mechanism
             .bodies
@@ -118,7 +130,9 @@ impl World {
                 }
                 Bearing::Clearance(c) => ([c.bearing_radius, c.journal_radius], 0.0, Solver::Law),
                 Bearing::Native { bearing_radius, journal_radius, friction } => {
-                    ([*bearing_radius, *journal_radius], *friction, Solver::Native)
+                    let NativeContacts { restitution, predictive, .. } = *native;
+                    let solver = Solver::Native { restitution, predictive };
+                    ([*bearing_radius, *journal_radius], *friction, solver)
                 }
             };
             if colliders {

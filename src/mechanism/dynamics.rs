@@ -11,7 +11,7 @@
 use super::rows::{Row, prismatic_rows, revolute_rows};
 use super::telescope::Telescope;
 use super::{Bearing, BodyState, Command, Drive, Mechanism};
-use crate::contact::Contact;
+use crate::contact::{Contact, circle_in_ring};
 use nalgebra::Vector3;
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
@@ -163,6 +163,12 @@ impl Dynamics {
                 }
             } else {
                 contact.eccentricity = journal.centre - ring.centre;
+                if let Bearing::Native { bearing_radius, journal_radius, .. } = joint.bearing {
+                    let clearance = bearing_radius - journal_radius;
+                    let (penetration, normal) = circle_in_ring(contact.eccentricity, clearance);
+                    contact.penetration = penetration;
+                    contact.rate = (journal.velocity - ring.velocity).dot(&normal);
+                }
             }
         }
         for (i, joint) in mechanism.prismatics.iter().enumerate() {

@@ -117,6 +117,36 @@ pub enum Bearing {
     },
 }
 
+/// How the physics engine's own contacts behave, in all joints that are left to them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NativeContacts {
+    /// Share of its normal speed that a journal keeps when it hits after a flight.
+    pub restitution: f64,
+    /// Natural frequency f of a lasting contact in Hz: it gives way like a spring of `m (2πf)²`,
+    /// m the mass that the two bodies oppose to it.
+    pub frequency: f64,
+    /// Damping ratio of that spring.
+    pub damping_ratio: f64,
+    /// Sweeps of the solver over all joints and contacts in each step.
+    pub iterations: usize,
+    /// Whether a journal that would arrive within the step is stopped at the ring at once, whatever
+    /// the spring. The physics engine's way; the force of such a stop is `m v/dt`.
+    pub predictive: bool,
+}
+
+impl Default for NativeContacts {
+    /// As the physics engine has them for its moving bodies.
+    fn default() -> Self {
+        Self {
+            restitution: 0.0,
+            frequency: 30.0,
+            damping_ratio: 10.0,
+            iterations: 1,
+            predictive: true,
+        }
+    }
+}
+
 /// A revolute joint: a bearing ring on one body, a journal on another.
 #[derive(Clone, Debug)]
 pub struct Revolute {
@@ -188,6 +218,8 @@ pub struct Mechanism {
     pub commands: Arc<dyn Commands>,
     /// Uniform gravity in m/s².
     pub gravity: Vector2<f64>,
+    /// The contacts of [`Bearing::Native`] joints.
+    pub native: NativeContacts,
     /// Index of the body whose pose is the mechanism's output.
     pub output: usize,
 }

@@ -15,7 +15,7 @@ mod quantity;
 
 pub use chart::panels_svg;
 pub use orbits::orbits_svg;
-pub use page::page;
+pub use page::{Part, Table, document, page};
 pub use path::path_svg;
 pub use quantity::{length, number};
 

@@ -16,12 +16,55 @@ pub fn page(
     pictures: &[Picture],
     provenance: &[(String, String)],
 ) -> String {
+    let parts = [Part::Facts(facts), Part::Pictures(pictures), Part::Provenance(provenance)];
+    document(title, lead, &parts)
+}
+
+/// A part of a page.
+#[derive(Debug)]
+pub enum Part<'a> {
+    /// The table of main results.
+    Facts(&'a [Fact]),
+    /// Any other table.
+    Table(Table),
+    /// Pictures, each with its heading and caption. At most one such part a page: they are numbered.
+    Pictures(&'a [Picture]),
+    /// Paragraphs.
+    Text {
+        /// Where links find it.
+        id: &'static str,
+        /// Heading.
+        title: &'a str,
+        /// One text each.
+        paragraphs: &'a [String],
+    },
+    /// Where the numbers come from, as (label, value) pairs.
+    Provenance(&'a [(String, String)]),
+}
+
+/// A table with a heading and a remark.
+#[derive(Debug)]
+pub struct Table {
+    /// Where links find it.
+    pub id: &'static str,
+    /// Heading.
+    pub title: String,
+    /// Heads of the columns.
+    pub header: Vec<String>,
+    /// Cells, row by row.
+    pub rows: Vec<Vec<String>>,
+    /// What to know about it.
+    pub note: String,
+}
+
+/// Builds a page of any parts: headline, lead sentence, table of contents, the parts in their order.
+///
+/// All texts are escaped; the pictures' SVG goes in as it is.
+pub fn document(title: &str, lead: &str, parts: &[Part]) -> String {
     let title = escaped(title);
     let lead = escaped(lead);
-    let contents = contents(facts, pictures, provenance);
-    let facts = facts_section(facts);
-    let figures: String = (1..).zip(pictures).map(|(n, p)| figure(n, p)).collect();
-    let provenance = provenance_section(provenance);
+    let contents = contents(parts);
+    let sections: String = parts.iter().map(section).collect();
     format!(
         "<!DOCTYPE html>\n\
          <html lang=\"en\">\n\
@@ -33,26 +76,41 @@ pub fn page(
          </head>\n\
          <body>\n\
          <header>\n<h1>{title}</h1>\n<p class=\"lead\">{lead}</p>\n</header>\n\
-         {contents}<main>\n{facts}{figures}{provenance}</main>\n\
+         {contents}<main>\n{sections}</main>\n\
          <script>\n{SCRIPT}</script>\n\
          </body>\n\
          </html>\n"
     )
 }
 
-fn contents(facts: &[Fact], pictures: &[Picture], provenance: &[(String, String)]) -> String {
+fn section(part: &Part) -> String {
+    match part {
+        Part::Facts(facts) => facts_section(facts),
+        Part::Table(table) => table_section(table),
+        Part::Pictures(pictures) => (1..).zip(*pictures).map(|(n, p)| figure(n, p)).collect(),
+        Part::Text { id, title, paragraphs } => text_section(id, title, paragraphs),
+        Part::Provenance(provenance) => provenance_section(provenance),
+    }
+}
+
+fn contents(parts: &[Part]) -> String {
     let mut entries = String::new();
     let mut entry = |id: &str, text: &str| {
         entries += &format!("<li><a href=\"#{id}\">{text}</a></li>\n");
     };
-    if !facts.is_empty() {
-        entry("facts", "Results");
-    }
-    for (n, picture) in (1..).zip(pictures) {
-        entry(&format!("figure-{n}"), &escaped(&picture.title));
-    }
-    if !provenance.is_empty() {
-        entry("provenance", "Provenance");
+    for part in parts {
+        match part {
+            Part::Facts([]) | Part::Provenance([]) => {}
+            Part::Facts(_) => entry("facts", "Results"),
+            Part::Table(table) => entry(table.id, &escaped(&table.title)),
+            Part::Pictures(pictures) => {
+                for (n, picture) in (1..).zip(*pictures) {
+                    entry(&format!("figure-{n}"), &escaped(&picture.title));
+                }
+            }
+            Part::Text { id, title, .. } => entry(id, &escaped(title)),
+            Part::Provenance(_) => entry("provenance", "Provenance"),
+        }
     }
     format!("<nav aria-label=\"Contents\">\n<ul>\n{entries}</ul>\n</nav>\n")
 }
@@ -74,6 +132,28 @@ fn facts_section(facts: &[Fact]) -> String {
         "<section id=\"facts\">\n<h2>Results</h2>\n<div class=\"table\"><table>\n{rows}</table></div>\n\
          </section>\n"
     )
+}
+
+fn table_section(table: &Table) -> String {
+    let cells = |tag: &str, row: &[String]| -> String {
+        let cell = |text: &String| format!("<{tag}>{}</{tag}>", escaped(text));
+        format!("<tr>{}</tr>\n", row.iter().map(cell).collect::<String>())
+    };
+    let rows: String = table.rows.iter().map(|row| cells("td", row)).collect();
+    format!(
+        "<section id=\"{}\">\n<h2>{}</h2>\n<div class=\"table\"><table>\n{}{rows}</table></div>\n\
+         <p class=\"note\">{}</p>\n</section>\n",
+        table.id,
+        escaped(&table.title),
+        cells("th", &table.header),
+        escaped(&table.note)
+    )
+}
+
+fn text_section(id: &str, title: &str, paragraphs: &[String]) -> String {
+    let paragraphs: String =
+        paragraphs.iter().map(|text| format!("<p>{}</p>\n", escaped(text))).collect();
+    format!("<section id=\"{id}\">\n<h2>{}</h2>\n{paragraphs}</section>\n", escaped(title))
 }
 
 fn figure(n: usize, picture: &Picture) -> String {

@@ -92,6 +92,8 @@ pub struct Scenario {
     pub joints: Joints,
     /// `[contact]`
     pub contact: Contact,
+    /// `[native]`
+    pub native: Native,
     /// `[drive]`
     pub drive: Drive,
     /// `[environment]`
@@ -202,6 +204,7 @@ struct TopLevel {
     legs: toml::Table,
     joints: toml::Table,
     contact: toml::Table,
+    native: toml::Table,
     drive: toml::Table,
     environment: toml::Table,
     sensors: Option<toml::Table>,
@@ -218,6 +221,7 @@ impl Default for TopLevel {
             legs: toml::Table::new(),
             joints: toml::Table::new(),
             contact: toml::Table::new(),
+            native: toml::Table::new(),
             drive: toml::Table::new(),
             environment: toml::Table::new(),
             sensors: None,
@@ -241,6 +245,7 @@ fn read(document: Document) -> Result<Scenario, Problems> {
         legs: reader.read("legs", top.legs),
         joints: reader.read("joints", top.joints),
         contact: reader.read("contact", top.contact),
+        native: reader.read("native", top.native),
         drive: reader.read("drive", top.drive),
         environment: reader.read("environment", top.environment),
         sensors: top.sensors.map(|table| reader.read("sensors", table)),

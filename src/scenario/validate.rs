@@ -10,6 +10,7 @@ impl Scenario {
         checks.legs();
         checks.joints();
         checks.contact();
+        checks.native();
         checks.drive();
         checks.sensors();
         checks.motion();
@@ -98,6 +99,30 @@ impl Checks<'_> {
             self.positive("contact.stiffness", stiffness, "N/m^1.5");
         }
         self.positive("contact.friction_velocity", contact.friction_velocity, "m/s");
+    }
+
+    fn native(&mut self) {
+        let native = &self.scenario.native;
+        if !(0.0..=1.0).contains(&native.restitution) {
+            self.complain(
+                "native.restitution",
+                format!("is {}", native.restitution),
+                "expected from 0 (no rebound) to 1 (lossless)",
+            );
+        }
+        if let Some(frequency) = native.frequency {
+            self.positive("native.frequency", frequency, "Hz");
+        }
+        if let Some(ratio) = native.damping_ratio {
+            self.not_negative("native.damping_ratio", ratio, "");
+        }
+        if !(1..=100).contains(&native.iterations) {
+            self.complain(
+                "native.iterations",
+                format!("is {}", native.iterations),
+                "expected from 1 to 100 sweeps a step",
+            );
+        }
     }
 
     fn drive(&mut self) {

@@ -2,7 +2,7 @@
 //! that kind's own file.
 
 use super::ideal::Ideal;
-use super::{motion, three_rpr};
+use super::{motion, native, three_rpr};
 use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
 use crate::engine::{Schedule, StepControl};
 use crate::mechanism::motion::Motion;
@@ -31,11 +31,14 @@ pub struct Machine {
 /// A motion table that cannot be read.
 pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     let motion = motion::of(scenario)?;
-    let (mechanism, ideal) = match &scenario.mechanism {
+    let (mut mechanism, ideal) = match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(machine) => {
             three_rpr::assemble(scenario, machine, Arc::clone(&motion))
         }
     };
+    if scenario.contact.law == Law::Native {
+        mechanism.native = native::contacts(scenario, &mechanism);
+    }
     let simulation = &scenario.simulation;
     let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
     Ok(Machine { mechanism, motion, ideal, schedule, control: scenario.step_control() })
@@ -70,7 +73,7 @@ pub(super) fn bearing(scenario: &Scenario, index: usize) -> Bearing {
 }
 
 /// The Hertz–STEP law of joint `index`.
-fn hertz_step(scenario: &Scenario, index: usize) -> HertzStep {
+pub(super) fn hertz_step(scenario: &Scenario, index: usize) -> HertzStep {
     let (joints, contact) = (&scenario.joints, &scenario.contact);
     let material =
         Material { youngs_modulus: contact.youngs_modulus, poisson_ratio: contact.poisson_ratio };

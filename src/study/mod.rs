@@ -1,7 +1,9 @@
 //! What users come for: a run with all its files, what can be said of a scenario without one, and
 //! many runs at once.
 
+pub mod chaos;
 mod check;
+pub mod compare;
 mod folder;
 mod pictures;
 mod recent;

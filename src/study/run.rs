@@ -1,5 +1,6 @@
 //! One run into a folder.
 
+use super::chaos::{self, Chaos};
 use super::folder::{Folder, FolderError};
 use super::pictures::Gallery;
 use super::run_page::page;
@@ -7,6 +8,7 @@ use crate::engine;
 use crate::report::ReportError;
 use crate::scenario::Scenario;
 use crate::simulate::{Machine, Recorder, Summary, TimeSeries};
+use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::PathBuf;
@@ -77,11 +79,15 @@ pub fn run(
         TimeSeries::new(BufWriter::new(file), mechanism, phi).map_err(refused(TIME_SERIES_FILE))?;
     // The engine cannot be stopped from here: the first refusal is kept, later rows are not tried.
     let mut written = Ok(());
+    let mut positions = Vec::new();
     let ideal = &mut machine.ideal;
     let ended = engine::run(mechanism, machine.control, machine.schedule, &mut |instant| {
         let ideal = ideal.at(instant.t);
         recorder.row(mechanism, instant, &ideal);
         gallery.row(mechanism, instant, &ideal);
+        if instant.t <= chaos::WINDOW {
+            positions.push(instant.states[mechanism.output].position);
+        }
         if written.is_ok() {
             written = series.row(mechanism, instant);
         }
@@ -101,7 +107,14 @@ pub fn run(
         .map(str::to_owned)
         .chain(pictures.iter().map(|picture| picture.file.clone()))
         .collect();
-    let summary = recorder.finish(scenario, machine, work, wall, halted, files);
+    let mut summary = recorder.finish(scenario, machine, work, wall, halted, files);
+    if summary.halted.is_none()
+        && let Some(Chaos { lyapunov, horizon, .. }) =
+            chaos::look(&machine.mechanism, machine.control, machine.schedule, &positions, 0.0)
+    {
+        summary.lyapunov_exponent_1_s = lyapunov;
+        summary.predictability_horizon_s = horizon;
+    }
 
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
     let json = to_json(&summary);
@@ -115,8 +128,8 @@ pub fn run(
 }
 
 /// Pretty JSON with a line break at the end.
-fn to_json(summary: &Summary) -> String {
-    // No input makes this fail: the type has only names for keys, and NaN becomes null.
-    let text = serde_json::to_string_pretty(summary).expect("numbers, texts and lists are JSON");
+pub(super) fn to_json(result: &impl Serialize) -> String {
+    // No input makes this fail: results have only names for keys, and NaN becomes null.
+    let text = serde_json::to_string_pretty(result).expect("numbers, texts and lists are JSON");
     text + "\n"
 }

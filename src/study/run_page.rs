@@ -122,6 +122,18 @@ fn facts(s: &Summary) -> Vec<Fact> {
             ),
         ]);
     }
+    if let Some(rate) = s.lyapunov_exponent_1_s {
+        let horizon = s.predictability_horizon_s;
+        facts.push(fact(
+            "Prediction holds",
+            horizon.map_or_else(|| "beyond 0.2 s".to_owned(), |t| format!("for {} s", number(t))),
+            format!(
+                "until then the path is exact to 1 µm; small differences grow like e^({} t/s), and \
+                 later digits are one of many possible motions",
+                number(rate)
+            ),
+        ));
+    }
     facts.push(fact(
         "Steps",
         s.steps.to_string(),

@@ -3,7 +3,7 @@
 use super::{Geometry, InverseKinematics, JOINTS};
 use crate::mechanism::motion::PathPoint;
 use crate::mechanism::{
-    Attachment, Bearing, Body, BodyState, Drive, Mechanism, Prismatic, Revolute,
+    Attachment, Bearing, Body, BodyState, Drive, Mechanism, NativeContacts, Prismatic, Revolute,
 };
 use nalgebra::{Rotation2, UnitComplex, Vector2, Vector3};
 use std::f64::consts::PI;
@@ -83,7 +83,15 @@ pub fn build(
             Revolute { name: JOINTS[i].into(), ring, journal, bearing }
         })
         .collect();
-    Mechanism { bodies, revolutes, prismatics, commands: Arc::new(kinematics), gravity, output: 6 }
+    Mechanism {
+        bodies,
+        revolutes,
+        prismatics,
+        commands: Arc::new(kinematics),
+        gravity,
+        native: NativeContacts::default(),
+        output: 6,
+    }
 }
 
 /// States of the seven bodies of the machine without clearance, at one point of a motion. With

@@ -8,6 +8,7 @@ mod joints;
 mod legs;
 mod mechanism;
 mod motion;
+mod native;
 mod sensors;
 mod simulation;
 
@@ -20,5 +21,6 @@ pub use joints::{JOINTS, Joints};
 pub use legs::Legs;
 pub use mechanism::{Mechanism, ThreeRpr};
 pub use motion::{Circle, Line, Motion, Multisine, Quintic, Table, Term};
+pub use native::Native;
 pub use sensors::Sensors;
 pub use simulation::Simulation;

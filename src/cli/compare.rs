@@ -1,0 +1,178 @@
+//! `freeplay compare`: one motion under several contact models.
+
+use super::failure::{Failure, refuse_errors};
+use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
+use super::output;
+use super::progress::Progress;
+use crate::report::number;
+use crate::scenario::Law;
+use crate::simulate::{assemble, findings};
+use crate::study::compare::{
+    COMPARE_FILE, CompareError, Compared, Options, QUANTITIES, SAMPLE_INTERVAL, Use, compare,
+    in_words, law_key, simulated_time,
+};
+use crate::study::{Folder, default_name};
+use clap::Args;
+use std::fmt::Write as _;
+
+/// Compare the contact law with the physics engine's own contacts and with ideal joints
+///
+/// One scenario is simulated under hertz-step, native and ideal joints, at every step of a list (and
+/// at its tolerance), from several starts. The results go into a new folder: index.html (look at this
+/// first; it ends with a plain answer: what native contacts may be used for in this machine, and what
+/// not), compare.json, compare.csv (a row per law and step, means over the starts with their standard
+/// errors, SI units), scenario.toml and pictures (SVG).
+///
+/// The native contacts are given a spring that lasts as long and returns as much speed in one hit as
+/// the law; [native] in the scenario sets them otherwise.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+    /// Fixed steps in seconds, separated by commas; at most 8, each from 1e-7 to 1e-4
+    #[arg(
+        long,
+        value_name = "S,S,…",
+        default_value = "1e-4,5e-5,2e-5,1e-5,5e-6",
+        allow_hyphen_values = true
+    )]
+    steps: String,
+    /// Starts over which statistics are taken: points around a circle, otherwise tiny displacements
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(2..=1000))]
+    starts: u16,
+    #[command(flatten)]
+    folder: FolderOptions,
+    #[command(flatten)]
+    print: PrintOptions,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  freeplay compare                                    the built-in machine, 8 starts of 1 s
+  freeplay compare --steps 2e-5,1e-5,5e-6,2e-6 --starts 32
+  freeplay compare my-machine.toml --set joints.clearance=1e-4
+  freeplay compare --set native.restitution=0.7       another native setting
+  freeplay compare --json --quiet | jq -r '.answer[]'";
+
+/// Steps that a list may have: each is simulated under three models.
+const MOST_STEPS: usize = 8;
+
+/// The shortest step: below, a simulated second takes minutes.
+const SHORTEST_STEP: f64 = 1e-7;
+
+pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    let steps = steps(&arguments.steps).map_err(|problem| Failure::Input(vec![problem]))?;
+    let options = Options { steps, starts: arguments.starts.into() };
+    let mut scenario = arguments.scenario.load()?;
+    scenario.contact.law = Law::HertzStep;
+    refuse_errors(findings(&scenario, &assemble(&scenario)?))?;
+    let out = arguments.folder.out.clone();
+    let out = out.unwrap_or_else(|| default_name("compare", &scenario.name));
+    let folder = Folder::prepare(&out, COMPARE_FILE, arguments.folder.force)?;
+
+    let mut progress = Progress::new(simulated_time(&scenario, &options)?, arguments.print.quiet);
+    let compared = compare(&scenario, &options, folder, &mut |t| progress.reached(t));
+    progress.clear();
+    let compared = compared?;
+    if arguments.print.json {
+        output::print(&compared.json)?;
+    } else if !arguments.print.quiet {
+        output::print(&text(&compared))?;
+    }
+    Ok(())
+}
+
+impl From<CompareError> for Failure {
+    fn from(error: CompareError) -> Self {
+        match error {
+            CompareError::Problem(problem) => problem.into(),
+            CompareError::Files(error) => error.into(),
+        }
+    }
+}
+
+/// The list of steps, longest first, each once.
+fn steps(list: &str) -> Result<Vec<f64>, String> {
+    let range = format!("expected steps in s from {SHORTEST_STEP:e} to {SAMPLE_INTERVAL:e}");
+    if list.trim().is_empty() {
+        return Err(format!("--steps: is empty; {range}, such as 2e-5,1e-5"));
+    }
+    let mut steps = Vec::new();
+    for item in list.split(',').map(str::trim) {
+        let step: f64 =
+            item.parse().map_err(|_| format!("--steps: `{item}` is not a number; {range}"))?;
+        if !(SHORTEST_STEP..=SAMPLE_INTERVAL).contains(&step) {
+            return Err(format!("--steps: {item} is out of range; {range}"));
+        }
+        steps.push(step);
+    }
+    steps.sort_by(|a, b| b.total_cmp(a));
+    steps.dedup();
+    if steps.len() > MOST_STEPS {
+        let count = steps.len();
+        return Err(format!("--steps: has {count} steps; expected at most {MOST_STEPS}"));
+    }
+    Ok(steps)
+}
+
+/// The result for people.
+fn text(compared: &Compared) -> String {
+    let c = &compared.comparison;
+    let mut text = format!(
+        "{}: {} starts of {} s, compared in {} s\n\n",
+        c.scenario_name,
+        c.starts,
+        number(c.duration_s),
+        number(c.wall_s)
+    );
+    let chosen = ["rms_path_error_m", "peak_contact_force_N", "contact_fraction", "impacts_per_s"];
+    // Writing to a string cannot fail, here and below.
+    let _ = writeln!(
+        text,
+        "  {:<12}{:<12}{:>14}{:>14}{:>12}{:>12}{:>14}",
+        "law", "step", "rms path err", "peak force", "in contact", "impacts/s", "s per sim. s"
+    );
+    for row in &c.rows {
+        let step = row.step_s.map_or("tolerance".to_owned(), |step| format!("{step:e} s"));
+        let cell = |key: &str| {
+            let found = QUANTITIES.iter().zip(&row.quantities).find(|(q, _)| q.key == key);
+            found.map_or(String::new(), |(quantity, mean)| in_words(quantity, mean.mean))
+        };
+        let [path, peak, fraction, impacts] = chosen.map(cell);
+        let _ = writeln!(
+            text,
+            "  {:<12}{step:<12}{path:>14}{peak:>14}{fraction:>12}{impacts:>12}{:>14}{}",
+            law_key(row.law),
+            number(row.wall_s_per_simulated_s),
+            if row.halted > 0 {
+                "  broke down"
+            } else if row.resolved {
+                ""
+            } else {
+                "  step too long"
+            }
+        );
+    }
+    if let Some(chaos) = &c.chaos {
+        let rate = chaos.lyapunov_exponent_1_s;
+        let _ = writeln!(
+            text,
+            "\n  largest Lyapunov exponent {} ± {} 1/s",
+            number(rate.mean),
+            number(rate.sem)
+        );
+    }
+    text.push('\n');
+    for verdict in c.verdicts.iter().filter(|v| v.usable == Use::No) {
+        let label = QUANTITIES.iter().find(|q| q.key == verdict.quantity).map(|q| q.label);
+        let _ = writeln!(text, "  no: {}: {}", label.unwrap_or(verdict.quantity), verdict.reason);
+    }
+    for sentence in &c.answer {
+        let _ = writeln!(text, "\n{sentence}");
+    }
+    let folder = compared.folder.display();
+    let page = compared.folder.join("index.html");
+    let _ = writeln!(text, "\nWritten to {folder}; open {}", page.display());
+    text
+}

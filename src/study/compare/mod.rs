@@ -1,0 +1,294 @@
+//! One motion under several contact models: the contact law, the physics engine's own contacts, and
+//! ideal joints, over a list of steps and several starts.
+
+mod first_hit;
+mod page;
+mod pictures;
+mod plan;
+mod probe;
+mod quantities;
+mod result;
+mod statistics;
+mod verdict;
+
+pub use first_hit::{FirstHit, FirstHits};
+pub use plan::Options;
+pub use quantities::{QUANTITIES, Quantity};
+pub use result::{ChaosResult, Comparison, NativeResult, RowResult, TrendResult};
+pub use statistics::{Behaviour, Mean, Trend};
+pub use verdict::{Use, Verdict, in_words};
+
+use super::chaos::{self, Chaos};
+use super::folder::Folder;
+use super::run::{RunError, refused};
+use crate::engine::{self, RAPIER_VERSION, StepControl};
+use crate::scenario::{Law, Problem, Scenario};
+use crate::simulate::FIT_SPEED;
+use plan::{Plan, machine, plan, tolerance};
+use probe::{Measured, measure};
+use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant as Clock;
+
+/// Time in s between two looks at a run: fine enough for the forces of a hit, which lasts 3e-4 s, to
+/// be sampled fairly. Steps are at most as long.
+pub const SAMPLE_INTERVAL: f64 = 1e-4;
+
+/// The JSON file of a comparison, by which its folder is known.
+pub const COMPARE_FILE: &str = "compare.json";
+
+const TABLE_FILE: &str = "compare.csv";
+const SCENARIO_FILE: &str = "scenario.toml";
+const PAGE_FILE: &str = "index.html";
+
+/// What a comparison came to.
+#[derive(Debug)]
+pub struct Compared {
+    /// All figures.
+    pub comparison: Comparison,
+    /// The text of `compare.json`.
+    pub json: String,
+    /// Where all files are.
+    pub folder: PathBuf,
+}
+
+/// Why a comparison has no files.
+#[derive(Debug, thiserror::Error)]
+pub enum CompareError {
+    /// The scenario has something that cannot be read.
+    #[error(transparent)]
+    Problem(#[from] Problem),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Files(#[from] RunError),
+}
+
+/// Simulated time in s of a comparison, by which its progress counts.
+///
+/// # Errors
+/// A motion table that cannot be read.
+pub fn simulated_time(scenario: &Scenario, options: &Options) -> Result<f64, Problem> {
+    let plan = plan(scenario, options)?;
+    Ok(plan.runs().len() as f64 * scenario.simulation.duration)
+}
+
+/// Compares the contact models on a scenario and writes everything about it into `folder`. `progress`
+/// is told the time simulated so far, in s.
+///
+/// # Errors
+/// [`CompareError`]; the folder is left as it was.
+pub fn compare(
+    scenario: &Scenario,
+    options: &Options,
+    folder: Folder,
+    progress: &mut (dyn FnMut(f64) + Send),
+) -> Result<Compared, CompareError> {
+    let started = Clock::now();
+    let plan = plan(scenario, options)?;
+    let jobs = plan.runs();
+    let told = Mutex::new((0.0, progress));
+    let results = jobs
+        .par_iter()
+        .map(|&(start, row)| {
+            let row = plan.rows[row];
+            let mut machine = machine(scenario, row.law, row.control, start, plan.starts)?;
+            Ok(measure(scenario, &mut machine, &mut |part| {
+                let (done, progress) = &mut *told.lock().unwrap_or_else(PoisonError::into_inner);
+                *done += part;
+                progress(*done);
+            }))
+        })
+        .collect::<Result<Vec<Measured>, Problem>>()?;
+    let looks = looks(scenario, &plan)?;
+
+    // By row, then by start.
+    let mut runs: Vec<Vec<Measured>> = vec![Vec::new(); plan.rows.len()];
+    for ((_, row), measured) in jobs.iter().zip(results) {
+        runs[*row].push(measured);
+    }
+    let mut comparison = Comparison {
+        program: env!("CARGO_PKG_NAME"),
+        version: env!("CARGO_PKG_VERSION"),
+        rapier_version: RAPIER_VERSION,
+        scenario_name: scenario.name.clone(),
+        scenario_hash: scenario.hash(),
+        seed: scenario.seed,
+        drive: scenario.drive.mode,
+        duration_s: scenario.simulation.duration,
+        settle_s: scenario.simulation.settle(),
+        starts: plan.starts,
+        native: native(scenario)?,
+        rows: plan.rows.iter().zip(&runs).map(|(row, runs)| row_result(row, runs)).collect(),
+        trends: Vec::new(),
+        first_hits: first_hit::first_hits(scenario, &plan)?,
+        chaos: chaos_result(&looks),
+        verdicts: Vec::new(),
+        answer: Vec::new(),
+        wall_s: started.elapsed().as_secs_f64(),
+        files: Vec::new(),
+    };
+    comparison.trends = trends(&comparison);
+    comparison.verdicts = verdict::verdicts(&comparison);
+    comparison.answer = verdict::answer(&comparison);
+
+    let pictures = pictures::draw(scenario, &comparison, &plan, &runs, &looks)?;
+    let texts = [COMPARE_FILE, TABLE_FILE, SCENARIO_FILE, PAGE_FILE].map(str::to_owned);
+    let drawn = pictures.iter().map(|picture| picture.file.clone());
+    comparison.files = texts.into_iter().chain(drawn).collect();
+    let json = super::run::to_json(&comparison);
+    let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
+    write(COMPARE_FILE, &json)?;
+    write(TABLE_FILE, &table(&comparison))?;
+    write(SCENARIO_FILE, &scenario.to_toml())?;
+    for picture in &pictures {
+        write(&picture.file, &picture.svg)?;
+    }
+    write(PAGE_FILE, &page::page(&comparison, &pictures))?;
+    let folder = folder.finish().map_err(RunError::from)?;
+    Ok(Compared { comparison, json, folder })
+}
+
+/// The native settings and where they come from.
+fn native(scenario: &Scenario) -> Result<NativeResult, Problem> {
+    let native = machine(scenario, Law::Native, tolerance(scenario), 0, 1)?.mechanism.native;
+    let given = [scenario.native.frequency, scenario.native.damping_ratio];
+    let origin = if given.iter().all(Option::is_some) {
+        "given in the scenario".to_owned()
+    } else {
+        format!(
+            "fitted to the contact law: a hit of the joints' mass at {FIT_SPEED} m/s lasts as long \
+             and returns as much speed"
+        )
+    };
+    Ok(NativeResult {
+        restitution: native.restitution,
+        frequency: native.frequency,
+        damping_ratio: native.damping_ratio,
+        iterations: native.iterations,
+        predictive: native.predictive,
+        origin,
+    })
+}
+
+/// One pair of runs and one run's own error for each start.
+fn looks(scenario: &Scenario, plan: &Plan) -> Result<Vec<Chaos>, Problem> {
+    let look = |start: usize| -> Result<Option<Chaos>, Problem> {
+        let control = tolerance(scenario);
+        let mut machine = machine(scenario, Law::HertzStep, control, start, plan.starts)?;
+        machine.schedule.duration = machine.schedule.duration.min(chaos::WINDOW);
+        let mechanism = &machine.mechanism;
+        let mut positions = Vec::new();
+        let done = engine::run(mechanism, control, machine.schedule, &mut |instant| {
+            positions.push(instant.states[mechanism.output].position);
+        });
+        let direction = start as f64 / plan.starts as f64;
+        Ok(done
+            .ok()
+            .and_then(|_| chaos::look(mechanism, control, machine.schedule, &positions, direction)))
+    };
+    let looks = (0..plan.starts).into_par_iter().map(look).collect::<Result<Vec<_>, _>>()?;
+    Ok(looks.into_iter().flatten().collect())
+}
+
+fn chaos_result(looks: &[Chaos]) -> Option<ChaosResult> {
+    let lyapunov: Vec<f64> = looks.iter().filter_map(|look| look.lyapunov).collect();
+    if lyapunov.is_empty() {
+        return None;
+    }
+    let rate = Mean::of(lyapunov.iter().copied());
+    let mut horizons: Vec<f64> =
+        looks.iter().map(|look| look.horizon.unwrap_or(f64::INFINITY)).collect();
+    horizons.sort_by(f64::total_cmp);
+    let median = horizons[horizons.len() / 2];
+    Some(ChaosResult {
+        lyapunov_exponent_1_s: rate,
+        e_folding_s: (rate.mean > 3.0 * rate.sem).then_some(1.0 / rate.mean),
+        predictability_horizon_s: median.is_finite().then_some(median),
+        horizon_error_m: chaos::HORIZON_ERROR,
+        displacement_m: chaos::DISPLACEMENT,
+        window_s: chaos::WINDOW,
+        pairs: lyapunov.len(),
+    })
+}
+
+fn row_result(row: &plan::Row, runs: &[Measured]) -> RowResult {
+    let good = || runs.iter().filter(|run| run.halted.is_none());
+    let mean = |f: &dyn Fn(&Measured) -> f64| Mean::of(good().map(f));
+    RowResult {
+        law: row.law,
+        step_s: row.step(),
+        tolerance_m_s: match row.control {
+            StepControl::Tolerance(tolerance) => Some(tolerance),
+            StepControl::Fixed(_) => None,
+        },
+        resolved: row.resolved,
+        starts: row.starts,
+        halted: runs.len() - good().count(),
+        steps_per_s: mean(&|run| run.steps_per_s).mean,
+        wall_s_per_simulated_s: mean(&|run| run.cost).mean,
+        quantities: (0..quantities::COUNT).map(|i| mean(&|run| run.values[i])).collect(),
+    }
+}
+
+/// What each quantity tends to under each law that has steps to judge by.
+fn trends(comparison: &Comparison) -> Vec<TrendResult> {
+    let mut trends = Vec::new();
+    for law in plan::LAWS {
+        // The law's fixed steps are of second order, rapier's own of first.
+        let order = if law == Law::Native { 1.0 } else { 2.0 };
+        for (i, quantity) in QUANTITIES.iter().enumerate() {
+            let points: Vec<(f64, Mean)> = comparison
+                .rows_of(law)
+                .filter(|row| row.resolved && row.halted == 0)
+                .filter_map(|row| Some((row.step_s?, row.quantities[i])))
+                .collect();
+            trends.push(TrendResult {
+                law,
+                quantity: quantity.key,
+                trend: statistics::trend(&points, order),
+            });
+        }
+    }
+    trends
+}
+
+/// `compare.csv`: a row per law and step.
+fn table(comparison: &Comparison) -> String {
+    let mut table = "law,step_s,tolerance_m_s,resolved,starts,halted,steps_per_s,\
+                     wall_s_per_simulated_s"
+        .to_owned();
+    for quantity in &QUANTITIES {
+        // Writing to a string cannot fail, here and below.
+        let _ = write!(table, ",{},{}_sem", quantity.key, quantity.key);
+    }
+    table.push('\n');
+    let number =
+        |value: f64| if value.is_finite() { format!("{value:.6e}") } else { String::new() };
+    for row in &comparison.rows {
+        let (law, resolved) = (law_key(row.law), row.resolved);
+        let [step, tolerance] = [row.step_s, row.tolerance_m_s]
+            .map(|v| v.map_or_else(String::new, |v| format!("{v:e}")));
+        let runs = format!("{},{}", row.starts, row.halted);
+        let _ = write!(table, "{law},{step},{tolerance},{resolved},{runs}");
+        for value in [row.steps_per_s, row.wall_s_per_simulated_s] {
+            let _ = write!(table, ",{}", number(value));
+        }
+        for mean in &row.quantities {
+            let _ = write!(table, ",{},{}", number(mean.mean), number(mean.sem));
+        }
+        table.push('\n');
+    }
+    table
+}
+
+/// A law's name as scenarios have it.
+pub fn law_key(law: Law) -> &'static str {
+    match law {
+        Law::HertzStep => "hertz-step",
+        Law::Native => "native",
+        Law::Ideal => "ideal",
+    }
+}

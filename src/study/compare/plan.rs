@@ -1,0 +1,130 @@
+//! What is simulated for a comparison: laws, steps, starts.
+
+use super::SAMPLE_INTERVAL;
+use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
+use crate::scenario::{Law, Motion, Problem, Scenario};
+use crate::simulate::{Machine, assemble};
+use crate::study::chaos::DISPLACEMENT;
+use nalgebra::Vector2;
+use std::f64::consts::TAU;
+
+/// The laws of a comparison, in the order of its tables.
+pub const LAWS: [Law; 3] = [Law::HertzStep, Law::Native, Law::Ideal];
+
+/// How a comparison is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Fixed steps in s, longest first.
+    pub steps: Vec<f64>,
+    /// Starts over which statistics are taken.
+    pub starts: usize,
+}
+
+/// One row of a comparison: a law and how it is stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// The contact law.
+    pub law: Law,
+    /// A fixed step, or a tolerance.
+    pub control: StepControl,
+    /// Whether the step resolves the law's hits, as far as that is known beforehand. A rigid contact
+    /// has nothing to resolve.
+    pub resolved: bool,
+    /// Starts that it is run from. Without clearance there is no chance: one will do.
+    pub starts: usize,
+}
+
+impl Row {
+    /// The fixed step in s, if it is one.
+    pub fn step(&self) -> Option<f64> {
+        match self.control {
+            StepControl::Fixed(step) => Some(step),
+            StepControl::Tolerance(_) => None,
+        }
+    }
+}
+
+/// Everything that is run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The tables' rows: law by law, longest step first, tolerance last.
+    pub rows: Vec<Row>,
+    /// Starts of a motion that chance has a part in.
+    pub starts: usize,
+}
+
+impl Plan {
+    /// All runs as (start, row), start by start, so that the progress of the first ones foretells
+    /// that of the others.
+    pub fn runs(&self) -> Vec<(usize, usize)> {
+        let of = |start: usize| {
+            let rows = (0..self.rows.len()).filter(move |&row| start < self.rows[row].starts);
+            rows.map(move |row| (start, row))
+        };
+        (0..self.starts).flat_map(of).collect()
+    }
+}
+
+/// Plans a comparison.
+///
+/// # Errors
+/// A motion table that cannot be read.
+pub fn plan(scenario: &Scenario, options: &Options) -> Result<Plan, Problem> {
+    let law = machine(scenario, Law::HertzStep, tolerance(scenario), 0, 1)?;
+    let longest = law.mechanism.longest_step(TYPICAL_IMPACT_SPEED).unwrap_or(f64::INFINITY);
+    let servo = law.mechanism.longest_servo_step().unwrap_or(f64::INFINITY);
+    let mut rows = Vec::new();
+    for law in LAWS {
+        let starts = if law == Law::Ideal { 1 } else { options.starts };
+        let limit = if law == Law::HertzStep { longest } else { servo };
+        rows.extend(options.steps.iter().map(|&step| Row {
+            law,
+            control: StepControl::Fixed(step),
+            resolved: step <= limit,
+            starts,
+        }));
+        if law != Law::Native {
+            rows.push(Row { law, control: tolerance(scenario), resolved: true, starts });
+        }
+    }
+    Ok(Plan { rows, starts: options.starts })
+}
+
+/// The scenario's tolerance, or the default one if it has a step.
+pub fn tolerance(scenario: &Scenario) -> StepControl {
+    let mut simulation = scenario.simulation.clone();
+    simulation.step = None;
+    simulation.step_control()
+}
+
+/// The machine of a scenario under a law, at start `start` of `starts`. A circle begins at `starts`
+/// points around it; any other motion has one beginning, and the platform is displaced there by the
+/// [`DISPLACEMENT`] of pairs, which chaos makes another motion of where there is chaos.
+///
+/// # Errors
+/// A motion table that cannot be read.
+pub fn machine(
+    scenario: &Scenario,
+    law: Law,
+    control: StepControl,
+    start: usize,
+    starts: usize,
+) -> Result<Machine, Problem> {
+    let mut scenario = scenario.clone();
+    scenario.contact.law = law;
+    scenario.simulation.output_interval = SAMPLE_INTERVAL;
+    let turn = TAU * start as f64 / starts as f64;
+    if let Motion::Circle(circle) = &mut scenario.motion {
+        circle.phase += turn;
+        let mut machine = assemble(&scenario)?;
+        machine.control = control;
+        return Ok(machine);
+    }
+    let mut machine = assemble(&scenario)?;
+    machine.control = control;
+    if start > 0 {
+        let output = &mut machine.mechanism.bodies[machine.mechanism.output];
+        output.start.position += Vector2::new(turn.cos(), turn.sin()) * DISPLACEMENT;
+    }
+    Ok(machine)
+}

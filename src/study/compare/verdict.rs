@@ -1,0 +1,175 @@
+//! What native contacts may be used for, by stated criteria.
+
+use super::quantities::{QUANTITIES, Quantity};
+use super::result::Comparison;
+use super::statistics::{Behaviour, Mean, Trend};
+use crate::report::{length, number};
+use crate::scenario::Law;
+use serde::Serialize;
+
+/// Difference from the law, as a share of the law's value, within which a value may be used.
+const CLOSE: f64 = 0.1;
+
+/// Factor between native and law within which a value may be used as a size.
+const SIZE: f64 = 1.5;
+
+/// Number of standard errors of the difference that count as scatter.
+const SCATTER: f64 = 2.0;
+
+/// The criteria in words, as the page states them.
+pub fn criteria() -> String {
+    format!(
+        "Criteria: \"yes\" where the native value has a limit as the step shrinks, and this limit \
+         differs from the law's value by at most {} % or {SCATTER} standard errors of the \
+         difference; \"as a size\" where it has a limit within a factor of {SIZE}; \"no\" where the \
+         limit is farther off or there is none (over the shorter half of the steps the \
+         value follows a power whose exponent differs from zero by more than 0.2 and three standard \
+         errors); \"unclear\" where the scatter over the starts is too large to tell.",
+        number(100.0 * CLOSE)
+    )
+}
+
+/// What a native quantity may be used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Use {
+    /// As it is.
+    Yes,
+    /// As a size, not as a value.
+    Size,
+    /// For nothing.
+    No,
+    /// Too few data to say.
+    Unclear,
+}
+
+/// A judgement of one quantity.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    /// Key of the quantity.
+    pub quantity: &'static str,
+    /// What native may be used for.
+    #[serde(rename = "use")]
+    pub usable: Use,
+    /// Why, with the figures.
+    pub reason: String,
+}
+
+/// Judges every quantity.
+pub fn verdicts(comparison: &Comparison) -> Vec<Verdict> {
+    let judge = |(i, quantity): (usize, &Quantity)| {
+        let law = comparison.best(Law::HertzStep)?.quantities[i];
+        let native: Vec<(f64, Mean)> = comparison
+            .rows_of(Law::Native)
+            .filter_map(|row| Some((row.step_s?, row.quantities[i])))
+            .collect();
+        let trend = comparison.trend(Law::Native, quantity.key)?;
+        let (usable, reason) = verdict(quantity, law, &native, trend);
+        Some(Verdict { quantity: quantity.key, usable, reason })
+    };
+    QUANTITIES.iter().enumerate().filter_map(judge).collect()
+}
+
+fn verdict(quantity: &Quantity, law: Mean, native: &[(f64, Mean)], trend: &Trend) -> (Use, String) {
+    let value = |v: f64| in_words(quantity, v);
+    let expected = format!("the law says {} ± {}", value(law.mean), value(law.sem));
+    let ends = native.first().zip(native.last());
+    if let (Behaviour::Grows | Behaviour::Shrinks, Some(((coarse, first), (fine, last)))) =
+        (trend.behaviour, ends)
+    {
+        let reason = format!(
+            "no limit: {} at a step of {} s, {} at {} s, like step^({} ± {}); {expected}",
+            value(first.mean),
+            number(*coarse),
+            value(last.mean),
+            number(*fine),
+            number(trend.power),
+            number(trend.power_std),
+        );
+        return (Use::No, reason);
+    }
+    let (Some(limit), Some([low, high])) = (trend.limit, trend.ci95) else {
+        return (Use::Unclear, format!("too few steps to see a limit; {expected}"));
+    };
+    let sem = (high - low) / (2.0 * 1.96);
+    let reason =
+        format!("tends to {} ({} to {}); {expected}", value(limit), value(low), value(high));
+    let difference = (limit - law.mean).abs();
+    let scatter = SCATTER * sem.hypot(law.sem);
+    let ratio = limit / law.mean;
+    let usable = if !difference.is_finite() {
+        Use::Unclear
+    } else if difference <= CLOSE * law.mean.abs() {
+        Use::Yes
+    } else if scatter > (SIZE - 1.0) * law.mean.abs() {
+        Use::Unclear
+    } else if difference <= scatter {
+        Use::Yes
+    } else if (1.0 / SIZE..=SIZE).contains(&ratio) {
+        Use::Size
+    } else {
+        Use::No
+    };
+    (usable, reason)
+}
+
+/// A value with its unit.
+pub fn in_words(quantity: &Quantity, value: f64) -> String {
+    match quantity.unit {
+        "m" => length(value),
+        "" => number(value),
+        unit => format!("{} {unit}", number(value)),
+    }
+}
+
+/// The answer: one sentence for each kind of use, one about the cost, one about what can be predicted.
+pub fn answer(comparison: &Comparison) -> Vec<String> {
+    let named = |usable: Use| -> Vec<&str> {
+        let verdicts = comparison.verdicts.iter().filter(|v| v.usable == usable);
+        verdicts
+            .filter_map(|v| QUANTITIES.iter().find(|q| q.key == v.quantity))
+            .map(|q| q.label)
+            .collect()
+    };
+    let sentences = [
+        (Use::Yes, "In this machine, native contacts may be used for"),
+        (Use::Size, "They may be used to tell the size, not the value, of"),
+        (Use::No, "They may not be used for"),
+        (Use::Unclear, "Too much scatter to tell (more --starts or a longer --duration would):"),
+    ];
+    let mut answer: Vec<String> = sentences
+        .into_iter()
+        .filter_map(|(usable, start)| {
+            let names = named(usable);
+            (!names.is_empty()).then(|| format!("{start} {}.", names.join("; ")))
+        })
+        .collect();
+    if named(Use::Yes).is_empty() {
+        answer.insert(
+            0,
+            "In this machine, native contacts may be used for nothing compared here.".into(),
+        );
+    }
+    if let Some(hits) = &comparison.first_hits
+        && let (Some([order, _]), Some([power, _])) = (hits.law_order, hits.native_power)
+    {
+        answer.push(format!(
+            "The first hit, which no chaos disturbs, shows why: as the step h shrinks, the law's peak \
+             force tends to {} N with an error like h^{}, the native one goes like h^({}).",
+            number(hits.exact.mean),
+            number(order),
+            number(power),
+        ));
+    }
+    if let (Some(law), Some(native)) =
+        (comparison.best(Law::HertzStep), comparison.best(Law::Native))
+    {
+        answer.push(format!(
+            "A simulated second costs {} s under the law at its tolerance, and {} s with native \
+             contacts at their shortest step.",
+            number(law.wall_s_per_simulated_s),
+            number(native.wall_s_per_simulated_s),
+        ));
+    }
+    answer
+}
