@@ -65,11 +65,14 @@ fn the_default_run_writes_everything_that_was_promised() {
         "largest_penetration_m",
         "smallest_step_s",
         "largest_step_s",
+        "step_error_m_s",
         "wall_s_per_simulated_s",
         "seed",
     ] {
         assert!(json[key].is_number(), "{key}: {}", json[key]);
     }
+    // A step is accepted up to (1/0.9)⁴ = 1.5 times the tolerance of 1e-5 m/s.
+    assert!(json["step_error_m_s"].as_f64().unwrap() <= 1.6e-5);
     assert_eq!(json["halted"], Value::Null);
     assert_eq!(json["rapier_version"], freeplay::engine::RAPIER_VERSION);
     assert_eq!(json["simulated_s"], 0.06);

@@ -45,6 +45,8 @@ pub(super) struct Adaptive {
     /// Forward part of the last average, N·s.
     forward: Vec<Vector3<f64>>,
     next_step: f64,
+    /// Estimated error of the last step in m/s.
+    step_error: f64,
     /// Work space: a point of the predicted path.
     path_states: Vec<BodyState>,
     path: Evaluation,
@@ -93,6 +95,7 @@ impl Adaptive {
             previous_accelerations: zeros.clone(),
             forward: zeros.clone(),
             next_step: FIRST_STEP,
+            step_error: 0.0,
             ends: zeros.clone(),
             sums: zeros.clone(),
             peaks: vec![0.0; mechanism.revolutes.len()],
@@ -192,6 +195,10 @@ impl Stepper for Adaptive {
         &self.now
     }
 
+    fn step_error(&self) -> Option<f64> {
+        Some(self.step_error)
+    }
+
     fn peaks_inside(&self) -> &[f64] {
         &self.peaks
     }
@@ -231,7 +238,8 @@ impl Stepper for Adaptive {
             }
             self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
             self.ends.copy_from_slice(&self.path.accelerations);
-            let ratio = (self.tolerance / self.error(h)).sqrt().sqrt();
+            self.step_error = self.error(h);
+            let ratio = (self.tolerance / self.step_error).sqrt().sqrt();
             // Infinite where nothing acts, NaN where the state is none: both end here.
             if ratio.is_nan() || ratio >= 0.9 {
                 self.next_step = (h * (0.9 * ratio).clamp(0.3, 2.0)).min(self.longest);

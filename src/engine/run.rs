@@ -95,6 +95,8 @@ pub struct Work {
     pub largest_step: f64,
     /// Time reached in s.
     pub reached: f64,
+    /// Largest velocity error of a step in m/s, where the way of stepping estimates it.
+    pub step_error: Option<f64>,
 }
 
 /// A run that had to stop. What was handed out before stands.
@@ -128,6 +130,10 @@ pub(super) trait Stepper {
     /// Makes one step from `t` of at most `until − t` s; returns the time reached, exactly `until`
     /// if it got there.
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
+    /// Estimated velocity error of the last step in m/s, if there is an estimate.
+    fn step_error(&self) -> Option<f64> {
+        None
+    }
     /// Whether the contact forces of an instant are the means over the step that ended there, and not
     /// those of the instant itself.
     fn mean_forces(&self) -> bool {
@@ -201,6 +207,9 @@ fn drive(
             work.reached = t;
             work.smallest_step = work.smallest_step.min(dt);
             work.largest_step = work.largest_step.max(dt);
+            if let Some(error) = stepper.step_error() {
+                work.step_error = Some(work.step_error.map_or(error, |worst| worst.max(error)));
+            }
         }
         let Watch { tallies, peaks, .. } = &watch;
         let (states, evaluation) = (stepper.states(), stepper.evaluation());

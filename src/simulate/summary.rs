@@ -79,6 +79,8 @@ pub struct Summary {
     pub smallest_step_s: f64,
     /// Longest step in s.
     pub largest_step_s: f64,
+    /// Largest velocity error of a step in m/s by its own estimate; `null` for fixed steps.
+    pub step_error_m_s: Option<f64>,
     /// Time that simulating took in s, writing the time series included.
     pub wall_s: f64,
     /// The same per simulated second.
@@ -268,6 +270,7 @@ impl Recorder {
             predictability_horizon_s: None,
             steps: work.steps,
             smallest_step_s: work.smallest_step,
+            step_error_m_s: work.step_error,
             largest_step_s: work.largest_step,
             wall_s: wall,
             wall_s_per_simulated_s: wall / work.reached,

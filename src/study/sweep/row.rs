@@ -6,7 +6,7 @@ use serde_json::Value;
 
 /// The figures of a row, by their names in `summary.json`. What depends on the machine that computes
 /// (wall time) or is the same in all rows is left out.
-pub(super) const FIGURES: [&str; 17] = [
+pub(super) const FIGURES: [&str; 18] = [
     "peak_contact_force_N",
     "peak_platform_acceleration_m_s2",
     "peak_actuator_force_N",
@@ -23,6 +23,7 @@ pub(super) const FIGURES: [&str; 17] = [
     "steps",
     "smallest_step_s",
     "largest_step_s",
+    "step_error_m_s",
     "simulated_s",
 ];
 
