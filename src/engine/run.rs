@@ -101,13 +101,11 @@ pub struct Work {
 
 /// A run that had to stop. What was handed out before stands.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the simulation broke down at t = {t:.6} s in {place}: {what}; {cause}")]
+#[error("the simulation broke down at t = {t:.6} s in {what}; {cause}")]
 pub struct Halt {
     /// When, in s.
     pub t: f64,
-    /// The joint or body where it shows.
-    pub place: String,
-    /// What is impossible about the state.
+    /// The joint or body where it shows, and what is impossible about its state.
     pub what: String,
     /// Likely cause, and what to try.
     pub cause: String,
@@ -190,9 +188,9 @@ fn drive(
         loop {
             stepper.synchronise(mechanism, t);
             let (states, now) = (stepper.states(), stepper.evaluation());
-            if let Some((place, what)) = impossible(mechanism, states, &now.contacts) {
+            if let Some(what) = impossible(mechanism, states, &now.contacts) {
                 let cause = likely_cause(mechanism, control);
-                return Err(Halt { t, place, what, cause, work });
+                return Err(Halt { t, what, cause, work });
             }
             watch.account(&now.contacts, stepper.mean_forces());
             watch.record(mechanism, now, stepper.peaks_inside());
@@ -286,11 +284,7 @@ impl Watch {
 
 /// The first thing that is impossible at an instant, if any: a state that is no number, or a
 /// journal whose penetration exceeds its bearing's radius.
-fn impossible(
-    mechanism: &Mechanism,
-    states: &[BodyState],
-    contacts: &[Contact],
-) -> Option<(String, String)> {
+fn impossible(mechanism: &Mechanism, states: &[BodyState], contacts: &[Contact]) -> Option<String> {
     let finite = |s: &BodyState| (s.position.sum() + s.twist.sum()).is_finite();
     for (joint, contact) in mechanism.revolutes.iter().zip(contacts) {
         if let Bearing::Clearance(clearance) = &joint.bearing
@@ -301,11 +295,11 @@ fn impossible(
             } else {
                 "the journal's position is not a number".to_owned()
             };
-            return Some((format!("joint {}", joint.name), what));
+            return Some(format!("joint {}: {what}", joint.name));
         }
     }
     let body = mechanism.bodies.iter().zip(states).find(|(_, s)| !finite(s));
-    body.map(|(b, _)| (b.name.clone(), "position or velocity is not a number".to_owned()))
+    body.map(|(b, _)| format!("{}: position or velocity is not a number", b.name))
 }
 
 /// Why a run may have broken down, and what to try.
