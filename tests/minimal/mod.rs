@@ -26,9 +26,10 @@ pub fn machine(case: &Case) -> Machine {
     }
 }
 
-/// Platform positions (m) at the given times (s).
-pub fn positions(case: &Case, tolerance: f64, times: &[f64]) -> Vec<[f64; 2]> {
+/// Platform positions (m) at the given times (s), and how often the equations of motion were asked.
+pub fn positions(case: &Case, tolerance: f64, times: &[f64]) -> (Vec<[f64; 2]>, u64) {
     let mut rows = Vec::with_capacity(times.len());
-    simulate(&machine(case), tolerance, times, |sample| rows.push([sample.x, sample.y]));
-    rows
+    let machine = machine(case);
+    let work = simulate(&machine, tolerance, times, |sample| rows.push([sample.x, sample.y]));
+    (rows, work.evaluations)
 }
