@@ -23,6 +23,7 @@
 
 pub mod cli;
 pub mod contact;
+pub mod effects;
 pub mod engine;
 pub mod measure;
 pub mod mechanism;

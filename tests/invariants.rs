@@ -109,6 +109,7 @@ impl Pair {
                     rotation,
                     twist: Vector3::new(velocity.x, velocity.y, self.spins[i]),
                 },
+                reference: Vector2::zeros(),
             }
         };
         let journal = self.ring + self.eccentricity * self.clearance;
@@ -131,7 +132,9 @@ impl Pair {
             }],
             prismatics: Vec::new(),
             commands: Arc::new(NoCommands),
+            epoch: 0.0,
             gravity: Vector2::zeros(),
+            loads: Vec::new(),
             native: freeplay::mechanism::NativeContacts::default(),
             output: 1,
         }

@@ -125,6 +125,7 @@ impl Row {
                     rotation: UnitComplex::new(0.3),
                     twist: Vector3::new(velocity.x, velocity.y, 0.0),
                 },
+                reference: Vector2::zeros(),
             }],
             revolutes: vec![Revolute {
                 name: "ring".into(),
@@ -134,7 +135,9 @@ impl Row {
             }],
             prismatics: Vec::new(),
             commands: Arc::new(NoCommands),
+            epoch: 0.0,
             gravity: Vector2::zeros(),
+            loads: Vec::new(),
             native: freeplay::mechanism::NativeContacts::default(),
             output: 0,
         };

@@ -138,7 +138,7 @@ impl Stepper for Fixed {
         for (wrench, now) in self.wrenches.iter_mut().zip(&self.now.wrenches) {
             *wrench = now * kick;
         }
-        mechanism.commands.at(reached, &mut self.targets);
+        mechanism.true_commands(reached, &mut self.targets);
         let (states, now) = (&self.states, &self.now);
         self.world.step(dt, &self.wrenches, |i| {
             let joint = &mechanism.prismatics[i];

@@ -87,7 +87,7 @@ impl Stepper for Native {
 
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         let (dt, reached) = equal_step(self.step, t, until);
-        mechanism.commands.at(reached, &mut self.targets);
+        mechanism.true_commands(reached, &mut self.targets);
         let before: Vec<Vector3<f64>> = self.states.iter().map(|s| s.twist).collect();
         self.world.step(dt, &self.now.wrenches, |i| Target {
             length: self.targets[i].length,

@@ -193,7 +193,7 @@ fn drive(
                 return Err(Halt { t, what, cause, work });
             }
             watch.account(&now.contacts, stepper.mean_forces());
-            watch.record(mechanism, now, stepper.peaks_inside());
+            watch.record(mechanism, states, now, stepper.peaks_inside());
             if t >= until {
                 break;
             }
@@ -249,7 +249,13 @@ impl Watch {
         }
     }
 
-    fn record(&mut self, mechanism: &Mechanism, now: &Evaluation, inside: &[f64]) {
+    fn record(
+        &mut self,
+        mechanism: &Mechanism,
+        states: &[BodyState],
+        now: &Evaluation,
+        inside: &[f64],
+    ) {
         for (tally, peak) in self.tallies.iter_mut().zip(inside) {
             tally.peak = tally.peak.max(*peak);
         }
@@ -259,7 +265,7 @@ impl Watch {
             tally.impacts += u64::from(touching && !tally.touching);
             tally.touching = touching;
         }
-        let acceleration = now.accelerations[mechanism.output].xy().norm();
+        let acceleration = mechanism.output_acceleration(states, &now.accelerations).xy().norm();
         self.peaks.acceleration = self.peaks.acceleration.max(acceleration);
         for force in &now.drive_forces {
             self.peaks.drive_force = self.peaks.drive_force.max(force.abs());

@@ -10,7 +10,7 @@
 
 use super::rows::{Row, prismatic_rows, revolute_rows};
 use super::telescope::Telescope;
-use super::{Bearing, BodyState, Command, Drive, Mechanism};
+use super::{Bearing, BodyState, Command, Drive, Mechanism, Situation};
 use crate::contact::{Contact, circle_in_ring};
 use nalgebra::Vector3;
 
@@ -89,7 +89,12 @@ impl Evaluation {
     /// more than all contacts in flight.
     fn command(&mut self, mechanism: &Mechanism) {
         if self.commanded != self.t {
-            mechanism.commands.at(self.t, &mut self.commands);
+            mechanism.commands.at(mechanism.epoch + self.t, &mut self.commands);
+            for (command, joint) in self.commands.iter_mut().zip(&mechanism.prismatics) {
+                if joint.drive == Drive::Prescribed && !joint.reading_errors.is_empty() {
+                    *command = joint.true_command(*command);
+                }
+            }
             self.commanded = self.t;
         }
     }
@@ -177,13 +182,17 @@ impl Dynamics {
                 *state = Telescope::new(joint, states);
                 out.command(mechanism);
                 let command = &out.commands[i];
-                let force = stiffness * (command.length - state.length)
-                    + damping * (command.rate - state.length_rate);
+                let [length, rate] = joint.read(state.length, state.length_rate);
+                let force = stiffness * (command.length - length) + damping * (command.rate - rate);
                 out.drive_forces[i] = force;
                 let [on_cylinder, on_rod] = state.drive(force);
                 add(&mut out.wrenches, joint.cylinder.body, on_cylinder);
                 add(&mut out.wrenches, joint.rod.body, on_rod);
             }
+        }
+        for load in &mechanism.loads {
+            let t = mechanism.epoch + t;
+            load.add(Situation { t, mechanism, states }, &mut out.wrenches);
         }
     }
 
@@ -405,6 +414,7 @@ mod tests {
             mass,
             inertia,
             start: BodyState { position, rotation, twist: Vector3::new(v.x, v.y, spin) },
+            reference: Vector2::zeros(),
         };
         let attachment = |i, x| Attachment { body: Some(i), point: Vector2::new(x, 0.01) };
         Mechanism {
@@ -418,9 +428,12 @@ mod tests {
                 cylinder: attachment(0, -0.1),
                 rod: attachment(1, 0.1),
                 drive,
+                reading_errors: Vec::new(),
             }],
             commands: Arc::new(Constant),
+            epoch: 0.0,
             gravity: Vector2::new(0.5, -9.81),
+            loads: Vec::new(),
             output: 1,
             native: Default::default(),
         }

@@ -8,11 +8,16 @@
 pub mod motion;
 pub mod three_rpr;
 
+mod assembly;
 mod dynamics;
+mod load;
+mod reading;
 mod rows;
 mod telescope;
 
 pub use dynamics::{Dynamics, Evaluation};
+pub use load::{Load, Situation};
+pub use reading::ReadingError;
 
 use crate::contact::{Clearance, Frame};
 use nalgebra::{UnitComplex, Vector2, Vector3};
@@ -88,6 +93,9 @@ pub struct Body {
     pub inertia: f64,
     /// State at t = 0.
     pub start: BodyState,
+    /// The point in the body's own axes, from its centre of mass (m), whose motion is the body's where
+    /// it is an output: where the centre of mass was before anything was put on it.
+    pub reference: Vector2<f64>,
 }
 
 /// A point of a body, or of the ground.
@@ -186,6 +194,8 @@ pub struct Prismatic {
     pub rod: Attachment,
     /// Its drive; the command with the same index is what it follows.
     pub drive: Drive,
+    /// How its true length differs from what its encoder and its drive read, in sum.
+    pub reading_errors: Vec<Arc<dyn ReadingError>>,
 }
 
 /// Commanded length of one prismatic joint at one time.
@@ -216,15 +226,76 @@ pub struct Mechanism {
     pub prismatics: Vec<Prismatic>,
     /// What the prismatic joints are told.
     pub commands: Arc<dyn Commands>,
+    /// What commands and loads take for the time at the start of a run, in s: a recording may begin
+    /// some time after its machine was released.
+    pub epoch: f64,
     /// Uniform gravity in m/s².
     pub gravity: Vector2<f64>,
+    /// What else acts on the bodies.
+    pub loads: Vec<Arc<dyn Load>>,
     /// The contacts of [`Bearing::Native`] joints.
     pub native: NativeContacts,
-    /// Index of the body whose pose is the mechanism's output.
+    /// Index of the body whose reference point and angle are the mechanism's output.
     pub output: usize,
 }
 
 impl Mechanism {
+    /// Motion of the output: position and velocity of its reference point.
+    pub fn output_state(&self, states: &[BodyState]) -> BodyState {
+        let state = states[self.output];
+        let frame = state.frame(self.bodies[self.output].reference);
+        let twist = Vector3::new(frame.velocity.x, frame.velocity.y, frame.spin);
+        BodyState { position: frame.centre, twist, ..state }
+    }
+
+    /// Acceleration of the output's reference point r from the centre of mass,
+    /// `a + α × r − ω² r`, and α (m/s², m/s², rad/s²).
+    pub fn output_acceleration(
+        &self,
+        states: &[BodyState],
+        accelerations: &[Vector3<f64>],
+    ) -> Vector3<f64> {
+        let (a, state) = (accelerations[self.output], states[self.output]);
+        let r = state.rotation * self.bodies[self.output].reference;
+        let omega2 = state.twist.z * state.twist.z;
+        Vector3::new(a.x - a.z * r.y - omega2 * r.x, a.y + a.z * r.x - omega2 * r.y, a.z)
+    }
+
+    /// Puts a point mass (kg) on body `index`, at a point given from the body's reference point in
+    /// its own axes (m). The centre of mass moves, `d = m r/(M + m)`, and the inertia about it
+    /// becomes `I + m M/(M + m) |r|²`, r from the old centre of mass (parallel axis theorem).
+    pub fn add_point_mass(&mut self, index: usize, mass: f64, point: Vector2<f64>) {
+        let body = &mut self.bodies[index];
+        let from_centre = body.reference + point;
+        let total = body.mass + mass;
+        let shift = from_centre * (mass / total);
+        let reduced = body.mass * mass / total;
+        body.inertia += reduced * from_centre.norm_squared();
+        body.mass = total;
+        body.reference -= shift;
+        let frame = body.start.frame(shift);
+        body.start.position = frame.centre;
+        body.start.twist = Vector3::new(frame.velocity.x, frame.velocity.y, frame.spin);
+        let revolutes = self.revolutes.iter_mut().flat_map(|j| [&mut j.ring, &mut j.journal]);
+        let prismatics = self.prismatics.iter_mut().flat_map(|j| [&mut j.cylinder, &mut j.rod]);
+        for attachment in revolutes.chain(prismatics) {
+            if attachment.body == Some(index) {
+                attachment.point -= shift;
+            }
+        }
+    }
+
+    /// Writes what the true length of each prismatic joint is commanded to do `t` s after the start.
+    /// Servos follow what is read: theirs are commands to be compared with readings.
+    pub fn true_commands(&self, t: f64, commands: &mut [Command]) {
+        self.commands.at(self.epoch + t, commands);
+        for (command, joint) in commands.iter_mut().zip(&self.prismatics) {
+            if !joint.reading_errors.is_empty() {
+                *command = joint.true_command(*command);
+            }
+        }
+    }
+
     /// Mass in kg that the two bodies of a revolute joint oppose to a hit, in the direction in which
     /// they give way most easily: `1/m = Σ (1/m_i + r_i²/I_i)`, r the distance of the joint from the
     /// centre of mass.

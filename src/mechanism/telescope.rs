@@ -25,7 +25,11 @@ pub(super) struct Telescope {
 impl Prismatic {
     /// Length of the joint in m at the given states.
     pub fn length(&self, states: &[BodyState]) -> f64 {
-        Telescope::new(self, states).length
+        self.telescope(states).length
+    }
+
+    pub(super) fn telescope(&self, states: &[BodyState]) -> Telescope {
+        Telescope::new(self, states)
     }
 }
 

@@ -24,6 +24,7 @@ use sha2::{Digest, Sha256};
 pub use problem::{Location, Problem, Problems};
 pub use sections::*;
 
+use crate::effects::{Setting, Wrong};
 use document::{Document, Origins};
 use reader::Reader;
 
@@ -105,6 +106,9 @@ pub struct Scenario {
     pub motion: Motion,
     /// `[simulation]`
     pub simulation: Simulation,
+    /// `[[effect]]`, any number of them: what acts on the machine beside what is declared above.
+    #[serde(rename = "effect", skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<Setting>,
     #[serde(skip)]
     folder: PathBuf,
     #[serde(skip)]
@@ -210,6 +214,7 @@ struct TopLevel {
     sensors: Option<toml::Table>,
     motion: toml::Table,
     simulation: toml::Table,
+    effect: Vec<toml::Table>,
 }
 
 impl Default for TopLevel {
@@ -227,6 +232,7 @@ impl Default for TopLevel {
             sensors: None,
             motion: toml::Table::new(),
             simulation: toml::Table::new(),
+            effect: Vec::new(),
         }
     }
 }
@@ -251,6 +257,7 @@ fn read(document: Document) -> Result<Scenario, Problems> {
         sensors: top.sensors.map(|table| reader.read("sensors", table)),
         motion: read_motion(&mut reader, top.motion),
         simulation: reader.read("simulation", top.simulation),
+        effects: read_effects(&mut reader, top.effect),
         folder: PathBuf::new(),
         origins: document.origins.clone(),
     };
@@ -268,6 +275,26 @@ fn read_mechanism(reader: &mut Reader<'_>, mut table: toml::Table) -> Mechanism 
     }
     reader.take_kind("mechanism", &mut table, &Mechanism::KINDS);
     Mechanism::ThreeRpr(reader.read("mechanism", table))
+}
+
+fn read_effects(reader: &mut Reader<'_>, tables: Vec<toml::Table>) -> Vec<Setting> {
+    let mut effects = Vec::new();
+    for (i, mut table) in tables.into_iter().enumerate() {
+        let section = format!("effect.{i}");
+        let Some(kind) = table.remove("kind") else {
+            let help = "write kind = \"…\"; `freeplay effects` lists them".to_owned();
+            reader.complain(&format!("{section}.kind"), "is missing".to_owned(), help);
+            continue;
+        };
+        let name = kind.as_str().map_or_else(|| kind.to_string(), str::to_owned);
+        match Setting::from_table(&name, &table) {
+            Ok(setting) => effects.push(setting),
+            Err(Wrong { key, message, help }) => {
+                reader.complain(&format!("{section}.{key}"), message, help);
+            }
+        }
+    }
+    effects
 }
 
 fn read_motion(reader: &mut Reader<'_>, mut table: toml::Table) -> Motion {

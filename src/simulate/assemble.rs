@@ -4,6 +4,7 @@
 use super::ideal::Ideal;
 use super::{motion, native, three_rpr};
 use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
+use crate::effects::Wrong;
 use crate::engine::{Schedule, StepControl};
 use crate::mechanism::motion::Motion;
 use crate::mechanism::{Bearing, Drive, Mechanism};
@@ -28,7 +29,7 @@ pub struct Machine {
 /// Makes the machine that a scenario describes.
 ///
 /// # Errors
-/// A motion table that cannot be read.
+/// A motion table that cannot be read, an effect that the machine cannot take.
 pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     let motion = motion::of(scenario)?;
     let (mut mechanism, ideal) = match &scenario.mechanism {
@@ -39,9 +40,27 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     if scenario.contact.law == Law::Native {
         mechanism.native = native::contacts(scenario, &mechanism);
     }
+    add_effects(scenario, &mut mechanism)?;
     let simulation = &scenario.simulation;
     let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
     Ok(Machine { mechanism, motion, ideal, schedule, control: scenario.step_control() })
+}
+
+/// Gives the mechanism the scenario's effects, and puts it together with them.
+fn add_effects(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Problem> {
+    for (i, effect) in scenario.effects.iter().enumerate() {
+        effect.apply(mechanism).map_err(|Wrong { key, message, help }| {
+            scenario.problem(&format!("effect.{i}.{key}"), message, help)
+        })?;
+    }
+    if scenario.effects.is_empty() {
+        return Ok(());
+    }
+    mechanism.close(0.0).map_err(|gap| {
+        let message = format!("leave the joints open by {gap:.1e} m at the start");
+        let help = "smaller offsets and scale errors, or another motion";
+        scenario.problem("effect", message, help)
+    })
 }
 
 /// The drive that a scenario asks for.

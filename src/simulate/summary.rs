@@ -179,9 +179,10 @@ impl Recorder {
         let start = self.span.map_or(instant.t, |[start, _]| start);
         self.span = Some([start, instant.t]);
 
-        let output = mechanism.output;
-        let acceleration = (now.accelerations[output] - ideal.acceleration).xy();
-        let path_error = (instant.states[output].position - ideal.position).norm();
+        let states = instant.states;
+        let acceleration = mechanism.output_acceleration(states, &now.accelerations);
+        let acceleration = (acceleration - ideal.acceleration).xy();
+        let path_error = (mechanism.output_state(states).position - ideal.position).norm();
         let drives = now.drive_forces.iter().zip(ideal.drive_forces);
         let drive_count = ideal.drive_forces.len().max(1) as f64;
         let deviations = [

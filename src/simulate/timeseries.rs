@@ -45,7 +45,7 @@ impl<W: Write> TimeSeries<W> {
     /// # Errors
     /// If the file refuses.
     pub fn row(&mut self, mechanism: &Mechanism, instant: &Instant) -> io::Result<()> {
-        let state = &instant.states[mechanism.output];
+        let state = mechanism.output_state(instant.states);
         let now = instant.evaluation;
         self.phi = unwrapped(state.rotation.angle(), self.phi);
         self.line.clear();
@@ -53,8 +53,10 @@ impl<W: Write> TimeSeries<W> {
         self.numbers(state.position.iter());
         self.numbers([&self.phi.clone()]);
         self.numbers(state.twist.iter());
-        self.numbers(now.accelerations[mechanism.output].iter());
-        self.numbers(&now.lengths);
+        self.numbers(mechanism.output_acceleration(instant.states, &now.accelerations).iter());
+        for (joint, length) in mechanism.prismatics.iter().zip(&now.lengths) {
+            self.numbers([&joint.read(*length, 0.0)[0]]);
+        }
         self.numbers(&now.drive_forces);
         for (contact, tally) in now.contacts.iter().zip(instant.tallies) {
             self.numbers([&contact.eccentricity.norm(), &contact.normal_force, &tally.peak]);

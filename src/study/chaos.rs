@@ -44,7 +44,7 @@ fn track(
 ) -> Option<Vec<(f64, Vector2<f64>)>> {
     let mut track = Vec::with_capacity(schedule.intervals() + 1);
     let done = engine::run(mechanism, control, schedule, &mut |instant| {
-        track.push((instant.t, instant.states[mechanism.output].position));
+        track.push((instant.t, mechanism.output_state(instant.states).position));
     });
     done.ok().map(|_| track)
 }

@@ -87,11 +87,11 @@ impl Gallery {
     pub fn row(&mut self, mechanism: &Mechanism, instant: &Instant, ideal: &IdealInstant) {
         let t = instant.t;
         let now = instant.evaluation;
-        let position = instant.states[mechanism.output].position;
+        let position = mechanism.output_state(instant.states).position;
         self.path.push(position.into());
         self.ideal_path.push(ideal.position.into());
         self.path_error.push(t, 1e3 * (position - ideal.position).norm());
-        let acceleration = &now.accelerations[mechanism.output];
+        let acceleration = mechanism.output_acceleration(instant.states, &now.accelerations);
         for (k, (envelope, ideal_envelope)) in
             self.accelerations.iter_mut().zip(&mut self.ideal_accelerations).enumerate()
         {

@@ -86,7 +86,7 @@ pub fn run(
         recorder.row(mechanism, instant, &ideal);
         gallery.row(mechanism, instant, &ideal);
         if instant.t <= chaos::WINDOW {
-            positions.push(instant.states[mechanism.output].position);
+            positions.push(mechanism.output_state(instant.states).position);
         }
         if written.is_ok() {
             written = series.row(mechanism, instant);

@@ -58,6 +58,7 @@ pub fn build(
                 mass: inertias[part].0,
                 inertia: inertias[part].1,
                 start: states[2 * leg + part],
+                reference: Vector2::zeros(),
             });
         }
         prismatics.push(Prismatic {
@@ -65,10 +66,13 @@ pub fn build(
             cylinder: at(2 * leg, -half[0]),
             rod: at(2 * leg + 1, half[1]),
             drive,
+            reading_errors: Vec::new(),
         });
     }
     let (mass, inertia) = platform;
-    bodies.push(Body { name: "platform".into(), mass, inertia, start: states[6] });
+    let start = states[6];
+    let reference = Vector2::zeros();
+    bodies.push(Body { name: "platform".into(), mass, inertia, start, reference });
     let revolutes = joints
         .into_iter()
         .enumerate()
@@ -88,7 +92,9 @@ pub fn build(
         revolutes,
         prismatics,
         commands: Arc::new(kinematics),
+        epoch: 0.0,
         gravity,
+        loads: Vec::new(),
         native: NativeContacts::default(),
         output: 6,
     }

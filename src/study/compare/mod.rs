@@ -182,7 +182,7 @@ fn looks(scenario: &Scenario, plan: &Plan) -> Result<Vec<Chaos>, Problem> {
         let mechanism = &machine.mechanism;
         let mut positions = Vec::new();
         let done = engine::run(mechanism, control, machine.schedule, &mut |instant| {
-            positions.push(instant.states[mechanism.output].position);
+            positions.push(mechanism.output_state(instant.states).position);
         });
         let direction = start as f64 / plan.starts as f64;
         Ok(done

@@ -130,7 +130,7 @@ fn beginnings(scenario: &Scenario, plan: &Plan) -> Result<Vec<Beginning>, Compar
         let mut curves = [const { Vec::new() }; 3];
         // What a run that breaks down has shown before is drawn.
         let _ = engine::run(mechanism, row.control, schedule, &mut |instant| {
-            let position = instant.states[mechanism.output].position;
+            let position = mechanism.output_state(instant.states).position;
             let force = instant.tallies.iter().fold(0.0f64, |peak, tally| peak.max(tally.peak));
             let error = (position - ideal.at(instant.t).position).norm();
             curves[0].push((instant.t, 1e3 * error));

@@ -1,0 +1,49 @@
+//! An encoder with a wrong scale.
+
+use super::kind::{linear, zeros};
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Mechanism, ReadingError};
+use std::sync::Arc;
+
+/// Length in m at which a scaled encoder reads right: near the middle of the stroke.
+const RIGHT_AT: f64 = 0.32;
+
+pub(super) const KIND: Kind = Kind {
+    name: "actuator-scale",
+    summary: "an encoder with a wrong scale",
+    equation: "true length = read length + relative (read length - 0.32 m); encoder and servo see the read length",
+    source: "definition",
+    trace: "measured pose against measured lengths: with the length itself",
+    joints: Joints::Prismatic,
+    parameters: &[Parameter {
+        name: "relative",
+        unit: "",
+        about: "relative error of the scale",
+        bounds: [-0.2, 0.2],
+        step: 1e-4,
+        default: Some(0.0),
+    }],
+    variants: &[&["relative"]],
+    neutral: zeros,
+    starts: linear,
+    apply,
+};
+
+#[derive(Debug)]
+struct Scale {
+    relative: f64,
+}
+
+impl ReadingError for Scale {
+    fn at(&self, read: f64) -> [f64; 3] {
+        [self.relative * (read - RIGHT_AT), self.relative, 0.0]
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    for index in setting.prismatics(mechanism)? {
+        let relative = setting.number("relative");
+        mechanism.prismatics[index].reading_errors.push(Arc::new(Scale { relative }));
+    }
+    Ok(())
+}

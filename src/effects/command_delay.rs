@@ -1,0 +1,46 @@
+//! Commands that reach the drives late.
+
+use super::kind::{linear, zeros};
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Command, Commands, Mechanism};
+use std::sync::Arc;
+
+pub(super) const KIND: Kind = Kind {
+    name: "command-delay",
+    summary: "commands that reach the drives late",
+    equation: "the drives follow q_cmd(t - delay); the sensors are not late",
+    source: "definition",
+    trace: "measured forces against the servo's own law: with the commanded speed",
+    joints: Joints::None,
+    parameters: &[Parameter {
+        name: "delay_s",
+        unit: "s",
+        about: "delay",
+        bounds: [0.0, 0.5],
+        step: 1e-5,
+        default: Some(0.0),
+    }],
+    variants: &[&["delay_s"]],
+    neutral: zeros,
+    starts: linear,
+    apply,
+};
+
+/// Commands as they were a while ago.
+#[derive(Debug)]
+struct Delayed {
+    inner: Arc<dyn Commands>,
+    delay: f64,
+}
+
+impl Commands for Delayed {
+    fn at(&self, t: f64, commands: &mut [Command]) {
+        self.inner.at(t - self.delay, commands);
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let inner = Arc::clone(&mechanism.commands);
+    mechanism.commands = Arc::new(Delayed { inner, delay: setting.number("delay_s") });
+    Ok(())
+}

@@ -1,0 +1,57 @@
+//! Viscous drag on the platform.
+
+use super::kind::{linear, zeros};
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Load, Mechanism, Situation};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+pub(super) const KIND: Kind = Kind {
+    name: "drag",
+    summary: "viscous drag on the platform",
+    equation: "force -c v at the platform's centre, torque -c_t omega",
+    source: "linear drag",
+    trace: "actuator forces: against the platform's velocity, all actuators together",
+    joints: Joints::None,
+    parameters: &[
+        Parameter {
+            name: "force_Ns_m",
+            unit: "N s/m",
+            about: "coefficient c",
+            bounds: [0.0, 1e4],
+            step: 0.1,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "torque_Nms",
+            unit: "N m s",
+            about: "coefficient c_t",
+            bounds: [0.0, 1e3],
+            step: 1e-3,
+            default: Some(0.0),
+        },
+    ],
+    variants: &[&["force_Ns_m", "torque_Nms"]],
+    neutral: zeros,
+    starts: linear,
+    apply,
+};
+
+#[derive(Debug)]
+struct Drag {
+    force: f64,
+    torque: f64,
+}
+
+impl Load for Drag {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let twist = at.mechanism.output_state(at.states).twist;
+        at.push_output(-self.force * twist.xy(), -self.torque * twist.z, wrenches);
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let [force, torque] = ["force_Ns_m", "torque_Nms"].map(|name| setting.number(name));
+    mechanism.loads.push(Arc::new(Drag { force, torque }));
+    Ok(())
+}

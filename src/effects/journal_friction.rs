@@ -1,0 +1,46 @@
+//! Dry friction between journal and bearing.
+
+use super::kind::{linear, zeros};
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::contact::CoulombFriction;
+use crate::mechanism::{Bearing, Mechanism};
+
+/// Sliding speed in m/s at which friction is near its full value where the machine has none of its
+/// own to say: that of a scenario's `contact.friction_velocity`.
+const SLIDING_SPEED: f64 = 1e-3;
+
+pub(super) const KIND: Kind = Kind {
+    name: "journal-friction",
+    summary: "Coulomb friction between journals and bearings",
+    equation: "mu F_N tanh(v_t/v_s) at the contact point, against the sliding v_t, on both bodies",
+    source: "Coulomb; tanh as a smooth sign",
+    trace: "with load: torques that follow the directions in which the joints turn; without: quieter rattle",
+    joints: Joints::RevoluteOrAll,
+    parameters: &[Parameter {
+        name: "mu",
+        unit: "",
+        about: "coefficient of friction, in place of the declared one",
+        bounds: [0.0, 2.0],
+        step: 0.02,
+        default: Some(0.0),
+    }],
+    variants: &[&["mu"]],
+    neutral: zeros,
+    starts: linear,
+    apply,
+};
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let coefficient = setting.number("mu");
+    for index in setting.revolutes(mechanism)? {
+        match &mut mechanism.revolutes[index].bearing {
+            Bearing::Clearance(clearance) => {
+                let velocity = clearance.friction.map_or(SLIDING_SPEED, |f| f.velocity);
+                clearance.friction = Some(CoulombFriction { coefficient, velocity });
+            }
+            Bearing::Native { friction, .. } => *friction = coefficient,
+            Bearing::Ideal => {}
+        }
+    }
+    Ok(())
+}

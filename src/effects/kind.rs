@@ -1,0 +1,104 @@
+//! What is said of an effect once, whatever machine it acts on.
+
+use super::{Setting, Wrong};
+use crate::mechanism::Mechanism;
+
+/// One number of an effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name, with the unit at its end, as in `mass_kg`.
+    pub name: &'static str,
+    /// Unit in words; empty for a pure number.
+    pub unit: &'static str,
+    /// What it means.
+    pub about: &'static str,
+    /// Smallest and largest value that make sense.
+    pub bounds: [f64; 2],
+    /// A small value by its own measure: what a finite difference takes, and about what can be told
+    /// from nothing on a machine like the paper's.
+    pub step: f64,
+    /// Value where none is given; `None` where the effect's own text says what then holds.
+    pub default: Option<f64>,
+}
+
+/// Which joints an effect can be given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Joints {
+    /// None: it acts on the whole machine.
+    None,
+    /// One prismatic joint.
+    Prismatic,
+    /// One prismatic joint, or all of them when none is named.
+    PrismaticOrAll,
+    /// One revolute joint whose ring is on the ground.
+    Anchor,
+    /// One revolute joint.
+    Revolute,
+    /// One revolute joint, or all of them when none is named.
+    RevoluteOrAll,
+}
+
+/// An effect by name, with everything that a user and a search need to know of it.
+#[derive(Debug)]
+pub struct Kind {
+    /// Its name in files.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// Its equation.
+    pub equation: &'static str,
+    /// Where the equation comes from.
+    pub source: &'static str,
+    /// Where its trace shows in measured data.
+    pub trace: &'static str,
+    /// Which joints it can be given.
+    pub joints: Joints,
+    /// Its numbers.
+    pub parameters: &'static [Parameter],
+    /// Sets of parameters that a search leaves free together, from the simplest on; the others keep
+    /// their defaults.
+    pub variants: &'static [&'static [&'static str]],
+    /// The values (of a variant's parameters) at which the effect changes nothing.
+    pub neutral: fn(&Mechanism, &Setting) -> Vec<f64>,
+    /// Where a search starts beside the neutral point, for parameters in which the machine's response
+    /// is not linear: values of a variant's parameters. Empty where neutral is enough.
+    pub starts: fn(variant: &[&str]) -> Vec<Vec<f64>>,
+    /// Changes a mechanism as the effect does.
+    pub apply: fn(&Setting, &mut Mechanism) -> Result<(), Wrong>,
+}
+
+impl Kind {
+    /// The parameter called `name`.
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// Names of the joints of `mechanism` that this effect can be given one of.
+    pub fn joints_of(&self, mechanism: &Mechanism) -> Vec<String> {
+        match self.joints {
+            Joints::None => Vec::new(),
+            Joints::Prismatic | Joints::PrismaticOrAll => {
+                mechanism.prismatics.iter().map(|joint| joint.name.clone()).collect()
+            }
+            Joints::Anchor => mechanism
+                .revolutes
+                .iter()
+                .filter(|joint| joint.ring.body.is_none())
+                .map(|joint| joint.name.clone())
+                .collect(),
+            Joints::Revolute | Joints::RevoluteOrAll => {
+                mechanism.revolutes.iter().map(|joint| joint.name.clone()).collect()
+            }
+        }
+    }
+}
+
+/// The neutral point of effects that vanish where all their numbers are zero.
+pub(super) fn zeros(_: &Mechanism, setting: &Setting) -> Vec<f64> {
+    vec![0.0; setting.values().count()]
+}
+
+/// The starts of effects to which the machine responds linearly.
+pub(super) fn linear(_: &[&str]) -> Vec<Vec<f64>> {
+    Vec::new()
+}

@@ -1,0 +1,102 @@
+//! A screw that is not quite even: an error, or a force, that repeats with each turn.
+
+use super::kind::zeros;
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Load, Mechanism, ReadingError, Situation};
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+pub(super) const KIND: Kind = Kind {
+    name: "screw-ripple",
+    summary: "an error of the length, or a force, that repeats with each turn of the actuator's screw",
+    equation: "true length = read length + amplitude_m sin(2 pi read/pitch + phase), and a force \
+               amplitude_N sin(2 pi read/pitch + phase) on the rod",
+    source: "definition",
+    trace: "measured pose against measured lengths (or the actuator's force): with the length, periodic",
+    joints: Joints::PrismaticOrAll,
+    parameters: &[
+        Parameter {
+            name: "amplitude_m",
+            unit: "m",
+            about: "amplitude of the error of the length",
+            bounds: [0.0, 5e-3],
+            step: 2e-6,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "amplitude_N",
+            unit: "N",
+            about: "amplitude of the force",
+            bounds: [0.0, 1e3],
+            step: 0.05,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "pitch_m",
+            unit: "m",
+            about: "length of one turn",
+            bounds: [5e-4, 0.1],
+            step: 1e-6,
+            default: Some(5e-3),
+        },
+        Parameter {
+            name: "phase_rad",
+            unit: "rad",
+            about: "phase at read length 0",
+            bounds: [-1e3, 1e3],
+            step: 1e-2,
+            default: Some(0.0),
+        },
+    ],
+    variants: &[&["amplitude_m", "pitch_m", "phase_rad"], &["amplitude_N", "pitch_m", "phase_rad"]],
+    neutral: zeros,
+    starts: |_| Vec::new(),
+    apply,
+};
+
+#[derive(Clone, Copy, Debug)]
+struct Ripple {
+    joint: usize,
+    amplitude: f64,
+    pitch: f64,
+    phase: f64,
+}
+
+impl Ripple {
+    /// Value and first and second derivative by the read length.
+    fn wave(&self, read: f64) -> [f64; 3] {
+        let number = TAU / self.pitch;
+        let (sin, cos) = (number * read + self.phase).sin_cos();
+        [sin, cos * number, -sin * number * number].map(|x| x * self.amplitude)
+    }
+}
+
+impl ReadingError for Ripple {
+    fn at(&self, read: f64) -> [f64; 3] {
+        self.wave(read)
+    }
+}
+
+impl Load for Ripple {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let [length, rate] = at.length(self.joint);
+        let [read, _] = at.mechanism.prismatics[self.joint].read(length, rate);
+        at.push_rod(self.joint, self.wave(read)[0], wrenches);
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let [length, force, pitch, phase] =
+        ["amplitude_m", "amplitude_N", "pitch_m", "phase_rad"].map(|name| setting.number(name));
+    for joint in setting.prismatics(mechanism)? {
+        let ripple = |amplitude| Ripple { joint, amplitude, pitch, phase };
+        if length != 0.0 {
+            mechanism.prismatics[joint].reading_errors.push(Arc::new(ripple(length)));
+        }
+        if force != 0.0 {
+            mechanism.loads.push(Arc::new(ripple(force)));
+        }
+    }
+    Ok(())
+}

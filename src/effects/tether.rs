@@ -1,0 +1,82 @@
+//! A cable or hose that pulls at the platform.
+
+use super::kind::zeros;
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Load, Mechanism, Situation};
+use nalgebra::{Vector2, Vector3};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+const fn anchor(name: &'static str, about: &'static str) -> Parameter {
+    Parameter { name, unit: "m", about, bounds: [-1.5, 1.5], step: 1e-3, default: Some(0.0) }
+}
+
+pub(super) const KIND: Kind = Kind {
+    name: "tether",
+    summary: "a spring from a fixed anchor to the platform's centre that only pulls: a cable, a hose",
+    equation: "k max(0, |a - C| - rest length) towards the anchor a",
+    source: "Hooke",
+    trace: "actuator forces: a pull that grows with the distance from one point",
+    joints: Joints::None,
+    parameters: &[
+        Parameter {
+            name: "stiffness_N_m",
+            unit: "N/m",
+            about: "stiffness k",
+            bounds: [0.0, 1e5],
+            step: 0.2,
+            default: Some(0.0),
+        },
+        anchor("anchor_x_m", "anchor along x"),
+        anchor("anchor_y_m", "anchor along y"),
+        Parameter {
+            name: "rest_length_m",
+            unit: "m",
+            about: "length at which it does not pull yet",
+            bounds: [0.0, 1.5],
+            step: 1e-3,
+            default: Some(0.0),
+        },
+    ],
+    variants: &[&["stiffness_N_m", "anchor_x_m", "anchor_y_m", "rest_length_m"]],
+    neutral: zeros,
+    starts: |_| {
+        // Anchors around the machine, near and far, taut and slack for a part of the motion.
+        let ring = |radius: f64| (0..8).map(move |k| (radius, TAU * f64::from(k) / 8.0));
+        let anchors = [0.15, 0.35, 0.8].into_iter().flat_map(ring);
+        anchors
+            .flat_map(|(r, angle)| {
+                [0.5, 0.9, 1.0].map(|slack| vec![20.0, r * angle.cos(), r * angle.sin(), slack * r])
+            })
+            .collect()
+    },
+    apply,
+};
+
+#[derive(Debug)]
+struct Tether {
+    stiffness: f64,
+    anchor: Vector2<f64>,
+    rest_length: f64,
+}
+
+impl Load for Tether {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let pull = self.anchor - at.mechanism.output_state(at.states).position;
+        let length = pull.norm();
+        if length > self.rest_length {
+            let force = pull * (self.stiffness * (length - self.rest_length) / length);
+            at.push_output(force, 0.0, wrenches);
+        }
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let anchor = Vector2::new(setting.number("anchor_x_m"), setting.number("anchor_y_m"));
+    mechanism.loads.push(Arc::new(Tether {
+        stiffness: setting.number("stiffness_N_m"),
+        anchor,
+        rest_length: setting.number("rest_length_m"),
+    }));
+    Ok(())
+}

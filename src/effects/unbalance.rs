@@ -1,0 +1,71 @@
+//! A rotor out of balance on the platform.
+
+use super::kind::zeros;
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Load, Mechanism, Situation};
+use nalgebra::{Vector2, Vector3};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+pub(super) const KIND: Kind = Kind {
+    name: "unbalance",
+    summary: "a rotor out of balance at the platform's centre: a spindle, a fan",
+    equation: "force m r w^2 [cos, sin](w t + phase) at the platform's centre, w = 2 pi f",
+    source: "centrifugal force",
+    trace: "actuator forces: one frequency, a force on the platform that goes round",
+    joints: Joints::None,
+    parameters: &[
+        Parameter {
+            name: "mass_radius_kg_m",
+            unit: "kg m",
+            about: "mass times its distance from the axis",
+            bounds: [0.0, 1.0],
+            step: 1e-6,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "frequency_Hz",
+            unit: "Hz",
+            about: "turns per second",
+            bounds: [0.1, 500.0],
+            step: 1e-3,
+            default: Some(10.0),
+        },
+        Parameter {
+            name: "phase_rad",
+            unit: "rad",
+            about: "direction at t = 0",
+            bounds: [-1e3, 1e3],
+            step: 1e-2,
+            default: Some(0.0),
+        },
+    ],
+    variants: &[&["mass_radius_kg_m", "frequency_Hz", "phase_rad"]],
+    neutral: zeros,
+    starts: |_| Vec::new(),
+    apply,
+};
+
+#[derive(Debug)]
+struct Rotor {
+    mass_radius: f64,
+    omega: f64,
+    phase: f64,
+}
+
+impl Load for Rotor {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let (sin, cos) = (self.omega * at.t + self.phase).sin_cos();
+        let force = Vector2::new(cos, sin) * (self.mass_radius * self.omega * self.omega);
+        at.push_output(force, 0.0, wrenches);
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    mechanism.loads.push(Arc::new(Rotor {
+        mass_radius: setting.number("mass_radius_kg_m"),
+        omega: TAU * setting.number("frequency_Hz"),
+        phase: setting.number("phase_rad"),
+    }));
+    Ok(())
+}

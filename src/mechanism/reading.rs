@@ -1,0 +1,51 @@
+//! What the encoder of a prismatic joint reads, against its true length.
+
+use super::{Command, Prismatic};
+use std::fmt::Debug;
+
+/// How a prismatic joint's true length differs from what its encoder and its drive read.
+pub trait ReadingError: Debug + Send + Sync {
+    /// `true − read` in m at the read length `read` (m), and its first and second derivative by it.
+    fn at(&self, read: f64) -> [f64; 3];
+}
+
+impl Prismatic {
+    /// True length in m at a read length, and its first and second derivative by it.
+    fn true_length(&self, read: f64) -> [f64; 3] {
+        self.reading_errors.iter().fold([read, 1.0, 0.0], |sum, error| {
+            let term = error.at(read);
+            [sum[0] + term[0], sum[1] + term[1], sum[2] + term[2]]
+        })
+    }
+
+    /// Length (m) and rate (m/s) that the encoder reads, by Newton's method on
+    /// `read + error(read) = length`.
+    pub fn read(&self, length: f64, rate: f64) -> [f64; 2] {
+        if self.reading_errors.is_empty() {
+            return [length, rate];
+        }
+        let mut read = length;
+        let mut slope = 1.0;
+        // Errors are small against what they vary over: two or three steps reach the last digit.
+        for _ in 0..8 {
+            let [value, first, _] = self.true_length(read);
+            slope = first;
+            let step = (value - length) / slope;
+            read -= step;
+            if step.abs() < 1e-16 {
+                break;
+            }
+        }
+        [read, rate / slope]
+    }
+
+    /// The motion of the true length that a motion of the read length means.
+    pub(super) fn true_command(&self, read: Command) -> Command {
+        let [length, first, second] = self.true_length(read.length);
+        Command {
+            length,
+            rate: first * read.rate,
+            acceleration: first * read.acceleration + second * read.rate * read.rate,
+        }
+    }
+}
