@@ -21,6 +21,7 @@
 //!
 //! SI units everywhere.
 
+pub mod calibrate;
 pub mod cli;
 pub mod contact;
 pub mod effects;

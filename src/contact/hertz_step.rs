@@ -64,6 +64,10 @@ impl ForceLaw for HertzStep {
         if self.clip { force.max(0.0) } else { force }
     }
 
+    fn resting_penetration(&self, force: f64) -> f64 {
+        (force / self.stiffness).powf(1.0 / self.exponent)
+    }
+
     /// Five steps per hit (the leapfrog turns unstable near two); the damper needs `h C/m ≤ 1`
     /// (explicit, unstable from 2).
     fn longest_step(&self, mass: f64, speed: f64) -> f64 {

@@ -24,6 +24,9 @@ pub trait ForceLaw: std::fmt::Debug + Send + Sync {
     /// `penetration` δ in m (only asked for δ > 0), `rate` δ̇ in m/s, positive while approaching.
     fn normal_force(&self, penetration: f64, rate: f64) -> f64;
 
+    /// Penetration in m at which a contact at rest bears `force` N.
+    fn resting_penetration(&self, force: f64) -> f64;
+
     /// The longest step in s (fixed step, explicit) that resolves a hit of `mass` kg at `speed`
     /// m/s under this law. Users are told when their step is longer.
     fn longest_step(&self, mass: f64, speed: f64) -> f64;

@@ -55,6 +55,7 @@ pub(super) const KIND: Kind = Kind {
     ],
     neutral: zeros,
     starts: linear,
+    scan: None,
     apply,
 };
 

@@ -26,6 +26,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["relative"]],
     neutral: zeros,
     starts: linear,
+    scan: None,
     apply,
 };
 

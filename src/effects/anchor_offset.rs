@@ -23,6 +23,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["dx_m", "dy_m"]],
     neutral: zeros,
     starts: linear,
+    scan: None,
     apply,
 };
 

@@ -1,6 +1,6 @@
 //! A base that shakes.
 
-use super::kind::zeros;
+use super::kind::{Range, Scan, linear, zeros};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
@@ -47,7 +47,8 @@ pub(super) const KIND: Kind = Kind {
     ],
     variants: &[&["ax_m_s2", "ay_m_s2", "frequency_Hz", "phase_rad"]],
     neutral: zeros,
-    starts: |_| Vec::new(),
+    starts: linear,
+    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Peaks }),
     apply,
 };
 

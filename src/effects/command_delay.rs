@@ -23,6 +23,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["delay_s"]],
     neutral: zeros,
     starts: linear,
+    scan: None,
     apply,
 };
 

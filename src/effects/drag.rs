@@ -34,6 +34,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["force_Ns_m", "torque_Nms"]],
     neutral: zeros,
     starts: linear,
+    scan: None,
     apply,
 };
 

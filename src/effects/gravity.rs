@@ -23,6 +23,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["gx_m_s2", "gy_m_s2"]],
     neutral: |mechanism, _| vec![mechanism.gravity.x, mechanism.gravity.y],
     starts: linear,
+    scan: None,
     apply,
 };
 

@@ -31,6 +31,7 @@ pub(super) const KIND: Kind = Kind {
         }]
     },
     starts: linear,
+    scan: None,
     apply,
 };
 

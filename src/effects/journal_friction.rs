@@ -27,6 +27,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["mu"]],
     neutral: zeros,
     starts: linear,
+    scan: None,
     apply,
 };
 

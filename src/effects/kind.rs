@@ -38,6 +38,27 @@ pub enum Joints {
     RevoluteOrAll,
 }
 
+/// How a repeating effect is found: over which period or frequency, and by which phase. At each
+/// frequency the response is linear in amplitude times sine and cosine of the phase.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scan {
+    /// The parameter that is scanned.
+    pub over: &'static str,
+    /// The parameter that is a phase in rad.
+    pub phase: &'static str,
+    /// What is tried.
+    pub range: Range,
+}
+
+/// Values that a [`Scan`] tries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    /// Frequencies in Hz at which the residual stands out.
+    Peaks,
+    /// Periods `1/k` for wave numbers k from the first to the second by steps of the third.
+    WaveNumbers([f64; 3]),
+}
+
 /// An effect by name, with everything that a user and a search need to know of it.
 #[derive(Debug)]
 pub struct Kind {
@@ -63,6 +84,8 @@ pub struct Kind {
     /// Where a search starts beside the neutral point, for parameters in which the machine's response
     /// is not linear: values of a variant's parameters. Empty where neutral is enough.
     pub starts: fn(variant: &[&str]) -> Vec<Vec<f64>>,
+    /// How to find a repeating effect, if it is one.
+    pub scan: Option<Scan>,
     /// Changes a mechanism as the effect does.
     pub apply: fn(&Setting, &mut Mechanism) -> Result<(), Wrong>,
 }

@@ -20,7 +20,7 @@ mod setting;
 mod tether;
 mod unbalance;
 
-pub use kind::{Joints, Kind, Parameter};
+pub use kind::{Joints, Kind, Parameter, Range, Scan};
 pub use setting::{Setting, Wrong};
 
 /// Every effect there is, in the order in which they are listed.

@@ -1,6 +1,6 @@
 //! A screw that is not quite even: an error, or a force, that repeats with each turn.
 
-use super::kind::zeros;
+use super::kind::{Range, Scan, linear, zeros};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Load, Mechanism, ReadingError, Situation};
 use nalgebra::Vector3;
@@ -51,7 +51,13 @@ pub(super) const KIND: Kind = Kind {
     ],
     variants: &[&["amplitude_m", "pitch_m", "phase_rad"], &["amplitude_N", "pitch_m", "phase_rad"]],
     neutral: zeros,
-    starts: |_| Vec::new(),
+    starts: linear,
+    // From 20 mm to 1 mm a turn, finer than a stroke of 0.2 m can tell apart.
+    scan: Some(Scan {
+        over: "pitch_m",
+        phase: "phase_rad",
+        range: Range::WaveNumbers([50.0, 1000.0, 4.0]),
+    }),
     apply,
 };
 

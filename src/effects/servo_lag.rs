@@ -23,6 +23,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["time_constant_s"]],
     neutral: zeros,
     starts: linear,
+    scan: None,
     apply,
 };
 

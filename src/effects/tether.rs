@@ -50,6 +50,7 @@ pub(super) const KIND: Kind = Kind {
             })
             .collect()
     },
+    scan: None,
     apply,
 };
 

@@ -1,6 +1,6 @@
 //! A rotor out of balance on the platform.
 
-use super::kind::zeros;
+use super::kind::{Range, Scan, linear, zeros};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
@@ -42,7 +42,8 @@ pub(super) const KIND: Kind = Kind {
     ],
     variants: &[&["mass_radius_kg_m", "frequency_Hz", "phase_rad"]],
     neutral: zeros,
-    starts: |_| Vec::new(),
+    starts: linear,
+    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Peaks }),
     apply,
 };
 

@@ -1,4 +1,6 @@
-//! Signals as plain numbers: interpolation, thinning, statistics.
+//! Signals as plain numbers: interpolation, filters, thinning, logs.
 
 pub mod envelope;
+pub mod filter;
+pub mod log;
 pub mod spline;

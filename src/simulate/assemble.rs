@@ -6,9 +6,10 @@ use super::{motion, native, three_rpr};
 use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
 use crate::effects::Wrong;
 use crate::engine::{Schedule, StepControl};
-use crate::mechanism::motion::Motion;
-use crate::mechanism::{Bearing, Drive, Mechanism};
+use crate::mechanism::motion::{Line, Motion};
+use crate::mechanism::{Bearing, Commands, Drive, Mechanism};
 use crate::scenario::{self, DriveMode, Law, Problem, Scenario};
+use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
 /// A machine, its motion, how it is to be stepped, and itself without clearance.
@@ -41,21 +42,53 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
         mechanism.native = native::contacts(scenario, &mechanism);
     }
     add_effects(scenario, &mut mechanism)?;
+    if !scenario.effects.is_empty() {
+        close(scenario, &mut mechanism)?;
+    }
     let simulation = &scenario.simulation;
     let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
     Ok(Machine { mechanism, motion, ideal, schedule, control: scenario.step_control() })
 }
 
-/// Gives the mechanism the scenario's effects, and puts it together with them.
+/// The machine of a scenario with its effects, at rest at the pose (m, m, rad) of its output, under
+/// other commands than its motion's. Commands and loads take the start for the time `epoch` in s.
+/// What it is simulated from has to be closed first ([`close`]).
+///
+/// # Errors
+/// An effect that the machine cannot take.
+pub fn driven(
+    scenario: &Scenario,
+    pose: Vector3<f64>,
+    commands: Arc<dyn Commands>,
+    epoch: f64,
+) -> Result<Mechanism, Problem> {
+    let rest = Line { start: pose.xy(), velocity: Vector2::zeros(), phi: pose.z };
+    let mut mechanism = match &scenario.mechanism {
+        scenario::Mechanism::ThreeRpr(machine) => {
+            three_rpr::assemble(scenario, machine, Arc::new(rest)).0
+        }
+    };
+    mechanism.commands = commands;
+    mechanism.epoch = epoch;
+    add_effects(scenario, &mut mechanism)?;
+    Ok(mechanism)
+}
+
+/// Gives the mechanism the scenario's effects.
 fn add_effects(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Problem> {
     for (i, effect) in scenario.effects.iter().enumerate() {
         effect.apply(mechanism).map_err(|Wrong { key, message, help }| {
             scenario.problem(&format!("effect.{i}.{key}"), message, help)
         })?;
     }
-    if scenario.effects.is_empty() {
-        return Ok(());
-    }
+    Ok(())
+}
+
+/// Centres the journals and gives the drives their commanded lengths.
+///
+/// # Errors
+/// Joints that cannot be closed.
+pub fn close(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Problem> {
     mechanism.close(0.0).map_err(|gap| {
         let message = format!("leave the joints open by {gap:.1e} m at the start");
         let help = "smaller offsets and scale errors, or another motion";

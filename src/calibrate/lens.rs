@@ -1,0 +1,311 @@
+//! What a model says about measured signals without being simulated: three residuals of a 3-RPR log,
+//! each blind to what the others see.
+//!
+//! * **Servo** `F − [k_p (q_cmd − q) + k_d d/dt(q_cmd − q)]`: does the drive obey its own law?
+//! * **Closure** `q − |PQ|`: do measured pose and measured lengths fit the geometry? Each journal
+//!   leans on its ring in the direction of the joint's force, `P = A − (c + δ) R_A/|R_A|` and so at C;
+//!   the forces come from the measured actuator forces and the leg's own dynamics, so that what acts
+//!   on the platform does not matter here.
+//! * **Dynamics** `F − F_inv`: the forces that the measured motion takes, by inverse dynamics of the
+//!   machine without clearance at the measured pose.
+//!
+//! Everything about the machine is read off its [`Mechanism`], effects included.
+
+use super::spectrum::{Signal, fast_length};
+use crate::contact::CoulombFriction;
+use crate::measure::filter::{ZeroPhase, derivative};
+use crate::measure::log::{Channel, Log};
+use crate::mechanism::{Bearing, Body, BodyState, Command, Drive, Mechanism, Revolute, Situation};
+use nalgebra::{Matrix3, UnitComplex, Vector2, Vector3};
+use std::ops::Range;
+
+/// Corner of the low-pass in Hz that measured pose and forces pass before the inverse dynamics:
+/// tracker noise grows with the square of the frequency when differentiated twice.
+const CORNER: f64 = 120.0;
+/// The same of the forces that say where journals lean: there noise turns directions.
+const LEAN_CORNER: f64 = 40.0;
+/// Highest frequencies in Hz that are looked at. Dynamics: below the corner. Servo: below the resonance of
+/// the drives and the sensors' own filter. Closure: a screw of 5 mm at 0.3 m/s is 60 Hz.
+const DYNAMICS_BAND: f64 = 90.0;
+const SERVO_BAND: f64 = 100.0;
+const CLOSURE_BAND: f64 = 150.0;
+/// Left out at both ends in s, where filters see beyond the log.
+const TRIM: f64 = 0.06;
+
+/// A log prepared for looking at through models.
+#[derive(Clone, Debug)]
+pub struct Lens {
+    interval: f64,
+    /// Rows left out at each end.
+    trim: usize,
+    forces: Vec<[f64; 3]>,
+    smooth_forces: Vec<[f64; 3]>,
+    leaning_forces: Vec<[f64; 3]>,
+    lengths: Vec<[f64; 3]>,
+    rates: Vec<[f64; 3]>,
+    poses: Vec<Vector3<f64>>,
+    smooth: Vec<[Vector3<f64>; 3]>,
+}
+
+fn triples(columns: [&[f64]; 3]) -> Vec<[f64; 3]> {
+    (0..columns[0].len()).map(|i| columns.map(|column| column[i])).collect()
+}
+
+impl Lens {
+    /// Prepares a log that has lengths, forces and pose.
+    pub fn new(log: &Log) -> Option<Self> {
+        let h = log.interval;
+        let filter = ZeroPhase::butterworth(4, CORNER, h);
+        let columns = |channel: fn(usize) -> Channel| -> Option<[&[f64]; 3]> {
+            Some([log.get(channel(0))?, log.get(channel(1))?, log.get(channel(2))?])
+        };
+        let (q, f, pose) =
+            (columns(Channel::Length)?, columns(Channel::Force)?, columns(Channel::Pose)?);
+        let smooth_f = f.map(|column| filter.apply(column));
+        let slow = ZeroPhase::butterworth(4, LEAN_CORNER, h);
+        let leaning = f.map(|column| slow.apply(column));
+        let smooth = pose.map(|column| filter.apply(column));
+        let rate = [0, 1, 2].map(|k| derivative(&smooth[k], h));
+        let acceleration = [0, 1, 2].map(|k| derivative(&rate[k], h));
+        let at = |columns: &[Vec<f64>; 3], i: usize| Vector3::from_fn(|k, _| columns[k][i]);
+        Some(Self {
+            interval: h,
+            trim: (TRIM / h).round() as usize,
+            forces: triples(f),
+            smooth_forces: triples([&smooth_f[0], &smooth_f[1], &smooth_f[2]]),
+            leaning_forces: triples([&leaning[0], &leaning[1], &leaning[2]]),
+            lengths: triples(q),
+            rates: {
+                let rates = q.map(|column| derivative(column, h));
+                triples([&rates[0], &rates[1], &rates[2]])
+            },
+            poses: triples(pose).into_iter().map(Vector3::from).collect(),
+            smooth: (0..log.samples)
+                .map(|i| [at(&smooth, i), at(&rate, i), at(&acceleration, i)])
+                .collect(),
+        })
+    }
+
+    /// The rows that residuals can be had of: all but the ends.
+    pub fn rows(&self) -> Range<usize> {
+        let available = self.poses.len() - 2 * self.trim;
+        self.trim..self.trim + fast_length(available)
+    }
+
+    /// The nine residuals: servo, closure, dynamics, of each leg in turn.
+    pub fn residuals(&self, mechanism: &Mechanism, rows: Range<usize>) -> Vec<Signal> {
+        let mut signals: Vec<Signal> = [SERVO_BAND, CLOSURE_BAND, DYNAMICS_BAND]
+            .into_iter()
+            .flat_map(|band| (0..3).map(move |_| Signal { values: Vec::new(), band }))
+            .collect();
+        let mut machine = Machine::new(mechanism);
+        let mut commands = [Command::default(); 3];
+        for i in rows {
+            let t = i as f64 * self.interval;
+            mechanism.commands.at(t, &mut commands);
+            let [pose, rate, acceleration] = self.smooth[i];
+            let look = machine.look(t, pose, rate, acceleration, self.leaning_forces[i]);
+            for leg in 0..3 {
+                let joint = &mechanism.prismatics[leg];
+                let (q, command) = (self.lengths[i][leg], commands[leg]);
+                let servo = match joint.drive {
+                    Drive::Servo { stiffness, damping } => {
+                        self.forces[i][leg]
+                            - stiffness * (command.length - q)
+                            - damping * (command.rate - self.rates[i][leg])
+                    }
+                    Drive::Prescribed => 0.0,
+                };
+                signals[leg].values.push(servo);
+                let length = machine.length(leg, self.poses[i], look.leans[leg]);
+                signals[3 + leg].values.push(q - joint.read(length, 0.0)[0]);
+                signals[6 + leg].values.push(self.smooth_forces[i][leg] - look.forces[leg]);
+            }
+        }
+        signals
+    }
+}
+
+/// A 3-RPR at measured poses.
+struct Machine<'a> {
+    mechanism: &'a Mechanism,
+    states: Vec<BodyState>,
+    wrenches: Vec<Vector3<f64>>,
+}
+
+/// What the dynamics say at one instant.
+struct Look {
+    /// Force of each drive by inverse dynamics, N.
+    forces: [f64; 3],
+    /// By how much the journals' leaning lengthens each leg as a vector, m.
+    leans: [Vector2<f64>; 3],
+}
+
+fn turned(v: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-v.y, v.x)
+}
+
+impl<'a> Machine<'a> {
+    fn new(mechanism: &'a Mechanism) -> Self {
+        let bodies = mechanism.bodies.len();
+        Self {
+            mechanism,
+            states: vec![BodyState::ground(); bodies],
+            wrenches: vec![Vector3::zeros(); bodies],
+        }
+    }
+
+    /// From ring to ring in m: C_i − A_i at a pose (m, m, rad) of the platform's reference point.
+    fn span(&self, leg: usize, pose: Vector3<f64>) -> Vector2<f64> {
+        let platform = &self.mechanism.bodies[self.mechanism.output];
+        let [base, top] = [leg, leg + 3].map(|joint| self.mechanism.revolutes[joint].ring.point);
+        pose.xy() + UnitComplex::new(pose.z) * (top - platform.reference) - base
+    }
+
+    /// Length of a leg in m whose journals lean by `lean` (m).
+    fn length(&self, leg: usize, pose: Vector3<f64>, lean: Vector2<f64>) -> f64 {
+        (self.span(leg, pose) + lean).norm()
+    }
+
+    fn look(
+        &mut self,
+        t: f64,
+        pose: Vector3<f64>,
+        rate: Vector3<f64>,
+        acceleration: Vector3<f64>,
+        measured: [f64; 3],
+    ) -> Look {
+        let mechanism = self.mechanism;
+        let platform = &mechanism.bodies[mechanism.output];
+        let rotation = UnitComplex::new(pose.z);
+        let moved = |point: Vector2<f64>| {
+            let arm = rotation * point;
+            let velocity = rate.xy() + turned(arm) * rate.z;
+            let second = acceleration.xy() + turned(arm) * acceleration.z - arm * rate.z.powi(2);
+            [pose.xy() + arm, velocity, second]
+        };
+        // States of all bodies, and what each would need as force: M a.
+        let mut needed = vec![Vector3::zeros(); mechanism.bodies.len()];
+        let [position, velocity, second] = moved(-platform.reference);
+        let twist = Vector3::new(velocity.x, velocity.y, rate.z);
+        self.states[mechanism.output] = BodyState { position, rotation, twist };
+        needed[mechanism.output] = Vector3::new(
+            platform.mass * second.x,
+            platform.mass * second.y,
+            platform.inertia * acceleration.z,
+        );
+        let mut axes = [[Vector2::zeros(); 2]; 3];
+        let mut spans = [0.0; 3];
+        let mut spins = [0.0; 3];
+        for leg in 0..3 {
+            let joint = &mechanism.prismatics[leg];
+            let base = mechanism.revolutes[leg].ring.point;
+            let top = mechanism.revolutes[leg + 3].ring.point;
+            let [corner, corner_rate, corner_second] = moved(top - platform.reference);
+            let d = corner - base;
+            let q = d.norm();
+            let u = d / q;
+            let n = turned(u);
+            let (q_rate, omega) = (corner_rate.dot(&u), corner_rate.dot(&n) / q);
+            let q_second = corner_second.dot(&u) + q * omega * omega;
+            let alpha = (corner_second.dot(&n) - 2.0 * q_rate * omega) / q;
+            axes[leg] = [u, n];
+            spans[leg] = q;
+            spins[leg] = omega;
+            let rotation = UnitComplex::from_cos_sin_unchecked(u.x, u.y);
+            // Distances of the centres of mass from A, and their rates along the leg.
+            let parts = [
+                (joint.cylinder.body, -joint.cylinder.point.x, 0.0, 0.0),
+                (joint.rod.body, q - joint.rod.point.x, q_rate, q_second),
+            ];
+            for (body, s, s_rate, s_second) in parts {
+                let Some(body) = body else { continue };
+                let velocity = u * s_rate + n * (s * omega);
+                let twist = Vector3::new(velocity.x, velocity.y, omega);
+                self.states[body] = BodyState { position: base + u * s, rotation, twist };
+                let a = u * (s_second - s * omega * omega) + n * (s * alpha + 2.0 * s_rate * omega);
+                let Body { mass, inertia, .. } = &mechanism.bodies[body];
+                needed[body] = Vector3::new(mass * a.x, mass * a.y, inertia * alpha);
+            }
+        }
+        // What is left for joints and drives to give.
+        for (wrench, body) in self.wrenches.iter_mut().zip(&mechanism.bodies) {
+            *wrench = (mechanism.gravity * body.mass).push(0.0);
+        }
+        for load in &mechanism.loads {
+            load.add(Situation { t, mechanism, states: &self.states }, &mut self.wrenches);
+        }
+        for (needed, given) in needed.iter_mut().zip(&self.wrenches) {
+            *needed -= given;
+        }
+        // Friction in the joints depends on their forces: once without, once with it.
+        let mut joint_forces = [[Vector2::zeros(); 2]; 3];
+        let mut look = Look { forces: [0.0; 3], leans: [Vector2::zeros(); 3] };
+        let rubbing = mechanism.revolutes.iter().any(|joint| friction(joint).is_some());
+        for pass in 0..=usize::from(rubbing) {
+            let centre = self.states[mechanism.output].position;
+            let mut matrix = Matrix3::zeros();
+            let mut rhs = needed[mechanism.output];
+            let mut across = [0.0; 3];
+            for leg in 0..3 {
+                let [u, n] = axes[leg];
+                let base = mechanism.revolutes[leg].ring.point;
+                let mut moment = 0.0;
+                let joint = &mechanism.prismatics[leg];
+                for body in [joint.cylinder.body, joint.rod.body].into_iter().flatten() {
+                    let arm = self.states[body].position - base;
+                    moment += arm.perp(&needed[body].xy()) + needed[body].z;
+                }
+                if pass > 0 {
+                    let spin = spins[leg];
+                    let torques = [(leg, spin), (leg + 3, spin - rate.z)].map(|(joint, slip)| {
+                        let revolute = &mechanism.revolutes[joint];
+                        let force = joint_forces[leg][joint / 3].norm();
+                        friction(revolute)
+                            .map_or(0.0, |(law, radius)| -radius * law.force(force, slip * radius))
+                    });
+                    moment -= torques[0] + torques[1];
+                    rhs.z += torques[1];
+                }
+                across[leg] = moment / spans[leg];
+                // The rod's end pushes the platform by −(s u + across n).
+                let arm = base + u * spans[leg] - centre;
+                let push = n * across[leg];
+                rhs += Vector3::new(push.x, push.y, arm.perp(&push));
+                matrix.set_column(leg, &-Vector3::new(u.x, u.y, arm.perp(&u)));
+            }
+            let along = matrix.lu().solve(&rhs).unwrap_or_default();
+            for leg in 0..3 {
+                let [u, n] = axes[leg];
+                let joint = &mechanism.prismatics[leg];
+                let rod = joint.rod.body.map_or_else(Vector3::zeros, |b| needed[b]);
+                let cylinder = joint.cylinder.body.map_or_else(Vector3::zeros, |b| needed[b]);
+                let rod_along = rod.xy().dot(&u);
+                look.forces[leg] = rod_along - along[leg];
+                let top = u * (rod_along - measured[leg]) + n * across[leg];
+                let base = rod.xy() + cylinder.xy() - top;
+                joint_forces[leg] = [base, top];
+                let [lean_base, lean_top] = [(leg, base), (leg + 3, top)].map(|(joint, force)| {
+                    let size = force.norm();
+                    match &mechanism.revolutes[joint].bearing {
+                        Bearing::Clearance(clearance) if size > 0.0 => {
+                            let depth = clearance.law.resting_penetration(size);
+                            force * (-(clearance.radial() + depth) / size)
+                        }
+                        _ => Vector2::zeros(),
+                    }
+                });
+                look.leans[leg] = lean_top - lean_base;
+            }
+        }
+        look
+    }
+}
+
+/// Friction of a joint and its journal's radius in m, if it rubs.
+fn friction(joint: &Revolute) -> Option<(CoulombFriction, f64)> {
+    match &joint.bearing {
+        Bearing::Clearance(clearance) => Some((clearance.friction?, clearance.journal_radius)),
+        Bearing::Ideal | Bearing::Native { .. } => None,
+    }
+}

@@ -1,0 +1,257 @@
+//! A model and the runs it is held against.
+
+use super::commands::LoggedCommands;
+use super::lens::Lens;
+use super::replica;
+use super::spectrum::{Noise, Signal, transform};
+use crate::effects::Setting;
+use crate::engine::{Halt, StepControl};
+use crate::measure::log::{Channel, Log};
+use crate::mechanism::Mechanism;
+use crate::scenario::{Problem, Scenario, Sensors};
+use crate::simulate::{close, driven};
+use nalgebra::{DVector, Vector3};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Time in s for which the machine was held at its first command before a log begins.
+pub const LEAD: f64 = 0.25;
+
+/// A recorded run, ready to be explained.
+#[derive(Debug)]
+pub struct Run {
+    /// The log.
+    pub log: Log,
+    lens: Lens,
+    commands: Arc<LoggedCommands>,
+    pose: Vector3<f64>,
+}
+
+impl Run {
+    /// Prepares a log that has commands, lengths, forces and pose; or the missing channel.
+    pub fn new(log: Log) -> Result<Self, Channel> {
+        let commands = Arc::new(LoggedCommands::new(&log, 3)?);
+        let missing = Channel::all(3).into_iter().find(|c| log.get(*c).is_none());
+        if let Some(channel) = missing {
+            return Err(channel);
+        }
+        let lens = Lens::new(&log).ok_or(Channel::Pose(0))?;
+        let first = |k| log.get(Channel::Pose(k)).map_or(0.0, |values| values[0]);
+        let pose = Vector3::new(first(0), first(1), first(2));
+        Ok(Self { lens, commands, pose, log })
+    }
+
+    /// The machine of a scenario with these effects, driven by this run's commands, to be looked at.
+    pub fn machine(&self, rig: &Scenario, effects: &[Setting]) -> Result<Mechanism, Problem> {
+        let mut scenario = rig.clone();
+        scenario.effects = effects.to_vec();
+        driven(&scenario, self.pose, Arc::clone(&self.commands) as _, -LEAD)
+    }
+
+    /// Rows that residuals can be had of.
+    pub fn rows(&self) -> Range<usize> {
+        self.lens.rows()
+    }
+}
+
+/// A stretch of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Which run.
+    pub run: usize,
+    /// Which of its rows.
+    pub rows: Range<usize>,
+}
+
+/// A rig, its recorded runs, and how to simulate them.
+#[derive(Debug)]
+pub struct Case {
+    /// What its maker declares.
+    pub rig: Scenario,
+    /// Its instruments.
+    pub sensors: Sensors,
+    /// What was recorded.
+    pub runs: Vec<Run>,
+    /// How to step simulations.
+    pub control: StepControl,
+    /// Simulations of each run that a floor and a bias are taken from.
+    pub replicas: usize,
+}
+
+/// What simulations of a model say of its own residuals: their mean, which is the lens's fault, and
+/// their spread, which is noise.
+#[derive(Clone, Debug)]
+pub struct Baseline {
+    /// One per segment.
+    parts: Vec<Part>,
+}
+
+#[derive(Clone, Debug)]
+struct Part {
+    segment: Segment,
+    bias: Vec<Vec<f64>>,
+    noise: Noise,
+}
+
+/// Draws of sensor noise from which a covariance is taken.
+const DRAWS: usize = 16;
+
+impl Case {
+    /// Coefficients of the residuals of a log under a mechanism.
+    fn coefficients(&self, lens: &Lens, mechanism: &Mechanism, segment: &Segment) -> Vec<Vec<f64>> {
+        let interval = self.runs[segment.run].log.interval;
+        transform(&lens.residuals(mechanism, segment.rows.clone()), interval)
+    }
+
+    /// Noiseless logs of a model: `[run][replica]`.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn simulate(&self, machines: &[Mechanism]) -> Result<Vec<Vec<Log>>, Halt> {
+        let jobs: Vec<(usize, u64)> = (0..self.runs.len())
+            .flat_map(|run| (0..self.replicas as u64).map(move |replica| (run, replica)))
+            .collect();
+        let logs: Result<Vec<Log>, Halt> = jobs
+            .into_par_iter()
+            .map(|(run, replica)| {
+                let log = &self.runs[run].log;
+                replica::simulate(&machines[run], &self.sensors, self.control, log, replica)
+            })
+            .collect();
+        let mut logs = logs?.into_iter();
+        Ok(self.runs.iter().map(|_| logs.by_ref().take(self.replicas).collect()).collect())
+    }
+
+    /// The machine of each run, with these effects, ready to be simulated.
+    pub fn machines(&self, effects: &[Setting]) -> Result<Vec<Mechanism>, Problem> {
+        let build = |run: &Run| {
+            let mut machine = run.machine(&self.rig, effects)?;
+            close(&self.rig, &mut machine)?;
+            Ok(machine)
+        };
+        self.runs.iter().map(build).collect()
+    }
+
+    /// The baseline of a model from its noiseless logs.
+    pub fn baseline(
+        &self,
+        machines: &[Mechanism],
+        logs: &[Vec<Log>],
+        segments: &[Segment],
+    ) -> Baseline {
+        let part = |segment: &Segment| {
+            let machine = &machines[segment.run];
+            let look = |log: &Log| {
+                let lens = Lens::new(log).expect("the channels of the recorded log");
+                self.coefficients(&lens, machine, segment)
+            };
+            let clean: Vec<Vec<Vec<f64>>> = logs[segment.run].par_iter().map(look).collect();
+            let bias = mean(&clean);
+            let count = clean.len() as f64;
+            // A replica stands for the data, the mean of the others for the bias: sensor noise, the
+            // rattle of one run, and what is left of it in a mean.
+            let draws: Vec<Vec<Vec<f64>>> = (0..DRAWS)
+                .into_par_iter()
+                .map(|draw| {
+                    let index = draw % clean.len();
+                    let log = &logs[segment.run][index];
+                    let mut noisy =
+                        look(&replica::with_noise(log, &self.sensors, draw as u64 + 1000));
+                    for (c, channel) in noisy.iter_mut().enumerate() {
+                        for (k, value) in channel.iter_mut().enumerate() {
+                            let own = clean[index][c][k];
+                            let others = if clean.len() > 1 {
+                                (bias[c][k] * count - own) / (count - 1.0)
+                            } else {
+                                own
+                            };
+                            *value -= others;
+                        }
+                    }
+                    noisy
+                })
+                .collect();
+            Part { segment: segment.clone(), bias, noise: Noise::from_draws(&draws) }
+        };
+        Baseline { parts: segments.iter().map(part).collect() }
+    }
+
+    /// Residuals of the data on a segment as they are, with the measured lengths of the legs.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take.
+    pub fn plain(
+        &self,
+        effects: &[Setting],
+        segment: &Segment,
+    ) -> Result<(Vec<Signal>, [&[f64]; 3]), Problem> {
+        let run = &self.runs[segment.run];
+        let machine = run.machine(&self.rig, effects)?;
+        let lengths = [0, 1, 2].map(|i| {
+            let whole = run.log.get(Channel::Length(i)).unwrap_or_default();
+            &whole[segment.rows.clone()]
+        });
+        Ok((run.lens.residuals(&machine, segment.rows.clone()), lengths))
+    }
+
+    /// Residuals of the data under a model in units of noise, of all segments in a row.
+    pub fn white(
+        &self,
+        baseline: &Baseline,
+        effects: &[Setting],
+        segments: &[Segment],
+    ) -> Result<DVector<f64>, Problem> {
+        let mut all = Vec::new();
+        for part in baseline.parts.iter().filter(|part| segments.contains(&part.segment)) {
+            let run = &self.runs[part.segment.run];
+            let machine = run.machine(&self.rig, effects)?;
+            let mut coefficients = self.coefficients(&run.lens, &machine, &part.segment);
+            for (values, bias) in coefficients.iter_mut().zip(&part.bias) {
+                for (value, bias) in values.iter_mut().zip(bias) {
+                    *value -= bias;
+                }
+            }
+            all.extend(part.noise.whiten(&coefficients).iter());
+        }
+        Ok(DVector::from_vec(all))
+    }
+}
+
+impl Baseline {
+    /// The same bias in units of another baseline's noise.
+    pub fn with_noise_of(mut self, other: &Baseline) -> Self {
+        for (part, other) in self.parts.iter_mut().zip(&other.parts) {
+            part.noise.clone_from(&other.noise);
+        }
+        self
+    }
+
+    /// Channel (servo, closure, dynamics of each leg) and frequency in Hz of each number of
+    /// [`Case::white`] for these segments.
+    pub fn places(&self, case: &Case, segments: &[Segment]) -> Vec<(usize, f64)> {
+        let parts = self.parts.iter().filter(|part| segments.contains(&part.segment));
+        parts
+            .flat_map(|part| {
+                let rows = part.segment.rows.len() as f64;
+                let step = 0.5 / (rows * case.runs[part.segment.run].log.interval);
+                part.noise.places().into_iter().map(move |(c, k)| (c, k as f64 * step))
+            })
+            .collect()
+    }
+}
+
+fn mean(draws: &[Vec<Vec<f64>>]) -> Vec<Vec<f64>> {
+    let mut sum = draws[0].clone();
+    for draw in &draws[1..] {
+        for (sum, values) in sum.iter_mut().zip(draw) {
+            for (sum, value) in sum.iter_mut().zip(values) {
+                *sum += value;
+            }
+        }
+    }
+    for value in sum.iter_mut().flatten() {
+        *value /= draws.len() as f64;
+    }
+    sum
+}

@@ -1,0 +1,124 @@
+//! A model simulated as a recording was made, through the same sensors.
+
+use crate::engine::{Halt, Schedule, StepControl, run};
+use crate::measure::filter::ZeroPhase;
+use crate::measure::log::{Channel, Log};
+use crate::mechanism::Mechanism;
+use crate::scenario::Sensors;
+use nalgebra::Vector2;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use std::f64::consts::{PI, TAU};
+
+/// Longest time between two samples of a simulated force in s: a fine grid for the sensors'
+/// low-pass. It is also the longest step under error control, so that such rows cost nothing.
+const FINE: f64 = 2e-4;
+
+/// Speed in m/s by which starts of replicas differ: far below what any sensor sees, and after some
+/// e-foldings of a rattling machine its rattle is another.
+const START_SPREAD: f64 = 1e-6;
+
+/// What the sensors would have recorded without noise and rounding: one log a replica.
+///
+/// `mechanism` starts at its epoch before the log's first row; `replica` chooses the start of the
+/// rattle.
+///
+/// # Errors
+/// A run that broke down.
+pub fn simulate(
+    mechanism: &Mechanism,
+    sensors: &Sensors,
+    control: StepControl,
+    log: &Log,
+    replica: u64,
+) -> Result<Log, Halt> {
+    let mut mechanism = mechanism.clone();
+    let mut random = ChaCha8Rng::seed_from_u64(replica);
+    for body in &mut mechanism.bodies {
+        let push = Vector2::from_fn(|_, _| sample(&mut random)) * START_SPREAD;
+        body.start.twist += push.push(0.0);
+    }
+    let mechanism = &mechanism;
+    let fine = (log.interval / FINE).ceil().max(1.0) as usize;
+    let interval = log.interval / fine as f64;
+    // The log's rows fall on rows of the simulation: the epoch is a whole number of them.
+    let lead = (-mechanism.epoch / interval).round() as usize;
+    let rows = lead + (log.samples - 1) * fine;
+    let schedule = Schedule { duration: rows as f64 * interval, interval };
+    let drives = mechanism.prismatics.len();
+    let mut forces = vec![Vec::with_capacity(rows + 1); drives];
+    let mut lengths = vec![Vec::with_capacity(log.samples); drives];
+    let mut poses = [const { Vec::new() }; 3];
+    let (mut row, mut phi) = (0, f64::NAN);
+    run(mechanism, control, schedule, &mut |instant| {
+        let now = instant.evaluation;
+        for (force, value) in forces.iter_mut().zip(&now.drive_forces) {
+            force.push(*value);
+        }
+        if row >= lead && (row - lead).is_multiple_of(fine) {
+            for ((joint, length), column) in
+                mechanism.prismatics.iter().zip(&now.lengths).zip(&mut lengths)
+            {
+                column.push(joint.read(*length, 0.0)[0]);
+            }
+            let output = mechanism.output_state(instant.states);
+            let angle = output.rotation.angle();
+            let turns = if phi.is_nan() { 0.0 } else { ((phi - angle) / TAU).round() };
+            phi = angle + turns * TAU;
+            for (column, value) in poses.iter_mut().zip([output.position.x, output.position.y, phi])
+            {
+                column.push(value);
+            }
+        }
+        row += 1;
+    })?;
+    // The angle of a log may count whole turns that a rotation does not know.
+    if let Some(measured) = log.get(Channel::Pose(2)) {
+        let turns = ((measured[0] - poses[2][0]) / PI / 2.0).round() * TAU;
+        poses[2].iter_mut().for_each(|phi| *phi += turns);
+    }
+    let mut channels = Vec::new();
+    for i in 0..drives {
+        let command = Channel::Command(i);
+        channels.push((command, log.get(command).unwrap_or_default().to_vec()));
+    }
+    channels.extend(lengths.into_iter().enumerate().map(|(i, q)| (Channel::Length(i), q)));
+    let corner = sensors.force_lowpass;
+    let filter = (corner > 0.0 && corner < 0.5 / interval)
+        .then(|| ZeroPhase::butterworth(2, corner, interval));
+    for (i, force) in forces.into_iter().enumerate() {
+        let force = filter.as_ref().map_or(force.clone(), |filter| filter.apply(&force));
+        let rows = force.into_iter().skip(lead).step_by(fine).collect();
+        channels.push((Channel::Force(i), rows));
+    }
+    channels.extend(poses.into_iter().enumerate().map(|(i, pose)| (Channel::Pose(i), pose)));
+    channels.retain(|(channel, _)| log.get(*channel).is_some());
+    Ok(Log::new(&log.name, log.start, log.interval, channels))
+}
+
+/// The log with the sensors' noise and rounding.
+pub fn with_noise(clean: &Log, sensors: &Sensors, seed: u64) -> Log {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let channels = clean.channels().map(|channel| {
+        let values = clean.get(channel).unwrap_or_default();
+        let noisy = values.iter().map(|value| match channel {
+            Channel::Command(_) => *value,
+            Channel::Length(_) if sensors.length_resolution > 0.0 => {
+                (value / sensors.length_resolution).round() * sensors.length_resolution
+            }
+            Channel::Length(_) => *value,
+            Channel::Force(_) => value + sensors.force_std * sample(&mut random),
+            Channel::Pose(2) => value + sensors.angle_std * sample(&mut random),
+            Channel::Pose(_) => value + sensors.pose_std * sample(&mut random),
+        });
+        (channel, noisy.collect())
+    });
+    let channels = channels.collect();
+    Log::new(&clean.name, clean.start, clean.interval, channels)
+}
+
+/// A standard normal number.
+fn sample(random: &mut ChaCha8Rng) -> f64 {
+    StandardNormal.sample(random)
+}

@@ -1,0 +1,123 @@
+//! Residuals by frequency: what noise is expected there, and residuals measured in it.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rustdct::DctPlanner;
+use std::cell::RefCell;
+
+/// One channel of a residual over time, and the highest frequency (Hz) at which it means something.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    /// Samples.
+    pub values: Vec<f64>,
+    /// Highest frequency in Hz.
+    pub band: f64,
+}
+
+thread_local! {
+    static PLANNER: RefCell<DctPlanner<f64>> = RefCell::new(DctPlanner::new());
+}
+
+/// The largest number of samples up to `available` that transforms fast: a product of 2, 3 and 5.
+pub fn fast_length(available: usize) -> usize {
+    let smooth = |mut n: usize| {
+        for factor in [2, 3, 5] {
+            while n.is_multiple_of(factor) && n > 1 {
+                n /= factor;
+            }
+        }
+        n <= 1
+    };
+    (1..=available).rev().find(|&n| smooth(n)).unwrap_or(available)
+}
+
+/// Cosine transforms of several signals of equal length, each up to its band: `coefficients[c][k]`
+/// belongs to the frequency `k/(2 N h)`. Orthonormal, so that white noise of variance σ² has the
+/// variance σ² in each coefficient.
+pub fn transform(signals: &[Signal], interval: f64) -> Vec<Vec<f64>> {
+    signals
+        .iter()
+        .map(|signal| {
+            let n = signal.values.len();
+            let mut values = signal.values.clone();
+            // Planning costs more than transforming; a thread's plans serve all of its residuals.
+            PLANNER.with_borrow_mut(|planner| planner.plan_dct2(n)).process_dct2(&mut values);
+            let kept = ((signal.band * 2.0 * n as f64 * interval) as usize + 1).min(n);
+            values.truncate(kept);
+            let scale = (2.0 / n as f64).sqrt();
+            for value in &mut values {
+                *value *= scale;
+            }
+            values[0] *= 0.5f64.sqrt();
+            values
+        })
+        .collect()
+}
+
+/// What noise is expected at each frequency: the covariance of the channels that reach so far.
+#[derive(Clone, Debug)]
+pub struct Noise {
+    factors: Vec<Cholesky<f64, Dyn>>,
+    /// Channels that reach each frequency.
+    active: Vec<Vec<usize>>,
+}
+
+/// Half the number of neighbouring frequencies over which a covariance is averaged, at least; as a
+/// share of the frequency where that is more: noise is smooth on such a scale.
+const NEIGHBOURS: usize = 8;
+const SHARE: f64 = 0.12;
+
+impl Noise {
+    /// From coefficients of pure noise, several draws of it.
+    pub fn from_draws(draws: &[Vec<Vec<f64>>]) -> Self {
+        let channels = draws[0].len();
+        let bins = draws[0].iter().map(Vec::len).max().unwrap_or(0);
+        let mut factors = Vec::with_capacity(bins);
+        let mut all_active = Vec::with_capacity(bins);
+        for k in 0..bins {
+            let active: Vec<usize> = (0..channels).filter(|&c| draws[0][c].len() > k).collect();
+            let reach = NEIGHBOURS.max((SHARE * k as f64) as usize);
+            let mut covariance = DMatrix::<f64>::zeros(active.len(), active.len());
+            let mut count = 0.0;
+            for j in k.saturating_sub(reach)..=k + reach {
+                if active.iter().any(|&c| draws[0][c].len() <= j) {
+                    continue;
+                }
+                for draw in draws {
+                    let vector =
+                        DVector::from_iterator(active.len(), active.iter().map(|&c| draw[c][j]));
+                    covariance.ger(1.0, &vector, &vector, 1.0);
+                    count += 1.0;
+                }
+            }
+            covariance /= count;
+            // A hair of the diagonal keeps channels without noise from being singular.
+            for i in 0..active.len() {
+                covariance[(i, i)] = covariance[(i, i)] * (1.0 + 1e-6) + 1e-30;
+            }
+            let diagonal = DMatrix::from_diagonal(&covariance.diagonal());
+            let factor = covariance.cholesky().or_else(|| diagonal.cholesky());
+            // A positive diagonal always has a factor.
+            factors.push(factor.expect("positive diagonal"));
+            all_active.push(active);
+        }
+        Self { factors, active: all_active }
+    }
+
+    /// Coefficients in units of the noise: independent, of variance one, if they are noise.
+    pub fn whiten(&self, coefficients: &[Vec<f64>]) -> DVector<f64> {
+        let mut white = Vec::new();
+        for (k, (factor, active)) in self.factors.iter().zip(&self.active).enumerate() {
+            let vector =
+                DVector::from_iterator(active.len(), active.iter().map(|&c| coefficients[c][k]));
+            let solved = factor.l_dirty().solve_lower_triangular(&vector);
+            white.extend(solved.iter().flat_map(|v| v.iter().copied()));
+        }
+        DVector::from_vec(white)
+    }
+
+    /// Channel and frequency bin of each number that [`whiten`](Self::whiten) returns.
+    pub fn places(&self) -> Vec<(usize, usize)> {
+        let bins = self.active.iter().enumerate();
+        bins.flat_map(|(k, active)| active.iter().map(move |&c| (c, k))).collect()
+    }
+}

@@ -1,0 +1,221 @@
+//! Recorded runs: a CSV file, one row a sample, at a constant rate.
+
+use std::fmt;
+use std::path::Path;
+
+/// What a column of a log holds. Joints count from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Channel {
+    /// Commanded length of a prismatic joint, m: `q1_cmd`.
+    Command(usize),
+    /// Its length by its encoder, m: `q1`.
+    Length(usize),
+    /// Force of its drive, N: `F1`.
+    Force(usize),
+    /// Pose of the output, x and y in m, φ in rad: `x`, `y`, `phi`.
+    Pose(usize),
+}
+
+impl Channel {
+    /// Unit of the column.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Channel::Command(_) | Channel::Length(_) | Channel::Pose(0 | 1) => "m",
+            Channel::Force(_) => "N",
+            Channel::Pose(_) => "rad",
+        }
+    }
+
+    /// The channels of a machine with so many prismatic joints, in the order of a log's columns.
+    pub fn all(prismatics: usize) -> Vec<Channel> {
+        let joints = 0..prismatics;
+        let commands = joints.clone().map(Channel::Command);
+        let lengths = joints.clone().map(Channel::Length);
+        commands
+            .chain(lengths)
+            .chain(joints.map(Channel::Force))
+            .chain((0..3).map(Channel::Pose))
+            .collect()
+    }
+}
+
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Channel::Command(i) => write!(f, "q{}_cmd", i + 1),
+            Channel::Length(i) => write!(f, "q{}", i + 1),
+            Channel::Force(i) => write!(f, "F{}", i + 1),
+            Channel::Pose(i) => f.write_str(["x", "y", "phi"][*i]),
+        }
+    }
+}
+
+/// A recorded run.
+#[derive(Clone, Debug)]
+pub struct Log {
+    /// Name of its file.
+    pub name: String,
+    /// Time of the first sample and between two samples, in s.
+    pub start: f64,
+    /// Time between two samples in s.
+    pub interval: f64,
+    /// Number of samples.
+    pub samples: usize,
+    channels: Vec<(Channel, Vec<f64>)>,
+}
+
+/// What is wrong with a log: where, what, and what would be right.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {message}; {help}")]
+pub struct LogError {
+    /// File, and line where there is one.
+    pub place: String,
+    /// What was found.
+    pub message: String,
+    /// What would be right.
+    pub help: String,
+}
+
+/// Deviation of a time step from the first, as a share of it, that is rounding in the file.
+const JITTER: f64 = 0.05;
+
+impl Log {
+    /// A log of the given samples.
+    pub fn new(name: &str, start: f64, interval: f64, channels: Vec<(Channel, Vec<f64>)>) -> Self {
+        let samples = channels.first().map_or(0, |(_, values)| values.len());
+        Self { name: name.to_owned(), start, interval, samples, channels }
+    }
+
+    /// Reads a CSV file with a column `t` and any of `known`.
+    ///
+    /// # Errors
+    /// A file that cannot be read, unknown or double columns, values that are no numbers, time that
+    /// does not advance by a constant step.
+    pub fn read(path: &Path, known: &[Channel]) -> Result<Log, LogError> {
+        let file = path.display().to_string();
+        let wrong = |line: Option<u64>, message: String, help: &str| LogError {
+            place: line.map_or_else(|| file.clone(), |line| format!("{file}:{line}")),
+            message,
+            help: help.to_owned(),
+        };
+        let names: Vec<String> = known.iter().map(Channel::to_string).collect();
+        let expected = format!("expected a header with t and any of {}", names.join(", "));
+        let mut reader =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|error| {
+                wrong(None, format!("cannot be read: {error}"), "is this the right file?")
+            })?;
+        let header = reader
+            .headers()
+            .map_err(|error| wrong(Some(1), format!("cannot be read: {error}"), &expected))?
+            .clone();
+        let mut columns: Vec<Option<Channel>> = Vec::new();
+        let mut time_column = None;
+        for (i, name) in header.iter().enumerate() {
+            let channel = names.iter().position(|known| known == name).map(|k| known[k]);
+            if name == "t" && time_column.is_none() {
+                time_column = Some(i);
+            } else if channel.is_none() {
+                return Err(wrong(Some(1), format!("unknown column `{name}`"), &expected));
+            } else if columns.contains(&channel) {
+                return Err(wrong(Some(1), format!("column `{name}` twice"), "keep one of them"));
+            }
+            columns.push(channel);
+        }
+        let Some(time_column) = time_column else {
+            return Err(wrong(Some(1), "no column `t`".to_owned(), &expected));
+        };
+        let mut rows: Vec<Vec<f64>> = vec![Vec::new(); header.len()];
+        let mut record = csv::StringRecord::new();
+        loop {
+            let more = reader.read_record(&mut record).map_err(|error| {
+                let line = error.position().map(csv::Position::line);
+                wrong(
+                    line,
+                    format!("cannot be read: {error}"),
+                    "as many values as the header has names",
+                )
+            })?;
+            if !more {
+                break;
+            }
+            let line = record.position().map(csv::Position::line);
+            for ((field, name), column) in record.iter().zip(&header).zip(&mut rows) {
+                let value = field.parse::<f64>().ok().filter(|value| value.is_finite());
+                let Some(value) = value else {
+                    let what = if field.is_empty() { "nothing" } else { field };
+                    let message = format!("column `{name}` holds {what}");
+                    return Err(wrong(line, message, "expected a finite number in every row"));
+                };
+                column.push(value);
+            }
+        }
+        let times = std::mem::take(&mut rows[time_column]);
+        let interval = constant_step(&times).map_err(|(row, message)| {
+            // The header is line 1.
+            wrong(
+                Some(row as u64 + 2),
+                message,
+                "expected samples at a constant rate, time growing",
+            )
+        })?;
+        let channels = columns.into_iter().zip(rows).filter_map(|(c, values)| Some((c?, values)));
+        let name =
+            path.file_name().map_or(file.clone(), |name| name.to_string_lossy().into_owned());
+        Ok(Log::new(&name, times[0], interval, channels.collect()))
+    }
+
+    /// Samples of a channel, if the log has it.
+    pub fn get(&self, channel: Channel) -> Option<&[f64]> {
+        self.channels.iter().find(|(c, _)| *c == channel).map(|(_, values)| values.as_slice())
+    }
+
+    /// The channels that the log has, in the order of its columns.
+    pub fn channels(&self) -> impl Iterator<Item = Channel> + '_ {
+        self.channels.iter().map(|(channel, _)| *channel)
+    }
+
+    /// Length of the log in s.
+    pub fn duration(&self) -> f64 {
+        self.samples.saturating_sub(1) as f64 * self.interval
+    }
+
+    /// Samples `range` as a log of their own; its time starts where they do.
+    pub fn part(&self, range: std::ops::Range<usize>) -> Log {
+        let cut =
+            |(channel, values): &(Channel, Vec<f64>)| (*channel, values[range.clone()].to_vec());
+        let start = self.start + range.start as f64 * self.interval;
+        Log::new(&self.name, start, self.interval, self.channels.iter().map(cut).collect())
+    }
+}
+
+/// The step of a time column, or the first row that breaks it and how.
+fn constant_step(times: &[f64]) -> Result<f64, (usize, String)> {
+    let [first, .., last] = times else {
+        return Err((0, format!("the log has {} row(s)", times.len())));
+    };
+    let mean = (last - first) / (times.len() - 1) as f64;
+    // The middle step stands for all: a gap would spoil the mean.
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    for (i, pair) in times.windows(2).enumerate() {
+        let [before, now] = [pair[0], pair[1]];
+        if now == before {
+            return Err((i + 1, format!("t = {now} s is repeated")));
+        }
+        if now < before {
+            return Err((i + 1, format!("time runs backwards, from {before} to {now} s")));
+        }
+    }
+    steps.sort_by(f64::total_cmp);
+    let step = steps[steps.len() / 2];
+    for (i, pair) in times.windows(2).enumerate() {
+        if ((pair[1] - pair[0]) / step - 1.0).abs() > JITTER {
+            let message = format!(
+                "a step of {:.6} s from t = {} s, where others are {step:.6} s",
+                pair[1] - pair[0],
+                pair[0]
+            );
+            return Err((i + 1, message));
+        }
+    }
+    Ok(mean)
+}
