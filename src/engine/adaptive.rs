@@ -13,7 +13,7 @@
 
 use super::run::Stepper;
 use super::world::{Target, World};
-use crate::mechanism::{Bearing, BodyState, Dynamics, Evaluation, Mechanism};
+use crate::mechanism::{Bearing, BodyState, Drive, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
 /// Inner nodes of the four-point Lobatto rule on [0, 1]: ½(1 ∓ 1/√5); weights 1, 5, 5, 1 over 12.
@@ -29,9 +29,10 @@ const FIRST_STEP: f64 = 1e-6;
 pub(super) struct Adaptive {
     tolerance: f64,
     longest: f64,
-    world: World,
+    pub(super) world: World,
     dynamics: Dynamics,
-    loops: bool,
+    /// Joints share bodies: rapier is handed the joint forces with the others.
+    coupled: bool,
     /// The present instant: synchronised states and their evaluation.
     states: Vec<BodyState>,
     now: Evaluation,
@@ -52,6 +53,7 @@ pub(super) struct Adaptive {
     path: Evaluation,
     ends: Vec<Vector3<f64>>,
     sums: Vec<Vector3<f64>>,
+    turns: Vec<f64>,
     peaks: Vec<f64>,
     errors: Vec<Vector3<f64>>,
 }
@@ -78,12 +80,13 @@ impl Adaptive {
         let bodies = mechanism.bodies.len();
         let zeros = vec![Vector3::zeros(); bodies];
         let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
+        let dynamics = Dynamics::new(mechanism);
         Self {
             tolerance: tolerance * share(mechanism),
             longest: mechanism.longest_servo_step().map_or(LONGEST_STEP, |s| s.min(LONGEST_STEP)),
             world: World::new(mechanism, false),
-            dynamics: Dynamics::new(mechanism),
-            loops: mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Ideal)),
+            coupled: dynamics.coupled(),
+            dynamics,
             half: states.iter().map(|s| s.twist).collect(),
             path_states: states.clone(),
             states,
@@ -98,6 +101,7 @@ impl Adaptive {
             step_error: 0.0,
             ends: zeros.clone(),
             sums: zeros.clone(),
+            turns: vec![0.0; bodies],
             peaks: vec![0.0; mechanism.revolutes.len()],
             errors: zeros,
         }
@@ -109,7 +113,7 @@ impl Adaptive {
             *point = self.states[i].moved(self.now.accelerations[i], self.jerks[i], tau);
         }
         self.dynamics.forces(mechanism, t + tau, &self.path_states, &mut self.path);
-        if self.loops {
+        if self.coupled {
             self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
             self.dynamics.replace_wrenches(&mut self.path);
         }
@@ -176,7 +180,7 @@ impl Stepper for Adaptive {
             self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
             self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
         }
-        if self.loops {
+        if self.coupled {
             self.dynamics.replace_wrenches(&mut self.now);
         }
         if hp > 0.0 {
@@ -250,16 +254,21 @@ impl Stepper for Adaptive {
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {
             *sum = (*sum + forward) / h;
         }
-        // The path was last looked at where the step ends, so its commands are the targets.
-        let (states, now, jerks) = (&self.states, &self.now, &self.jerks);
-        let targets = &self.path.commands;
-        self.world.step(h, &self.sums, |i| {
+        for (i, turn) in self.turns.iter_mut().enumerate() {
+            let (a, j) = (self.now.accelerations[i].z, self.jerks[i].z);
+            *turn = (self.states[i].twist.z + (a / 2.0 + j * (h / 6.0)) * h) * h;
+        }
+        // The path was last looked at where the step ends, so its commands and lengths are the
+        // targets.
+        let (turns, now, path) = (&self.turns, &self.now, &self.path);
+        self.world.step(h, &self.sums, Some(turns), |i| {
             let joint = &mechanism.prismatics[i];
-            let turn = joint.cylinder.body.map_or(0.0, |body| {
-                let (a, j) = (now.accelerations[body].z, jerks[body].z);
-                (states[body].twist.z + (a / 2.0 + j * (h / 6.0)) * h) * h
-            });
-            Target::new(joint, targets[i].length, now.lengths[i], turn)
+            let length = match joint.drive {
+                Drive::Prescribed => path.commands[i].length,
+                Drive::Servo { .. } => path.lengths[i],
+            };
+            let turn = joint.cylinder.body.map_or(0.0, |body| turns[body]);
+            Some(Target::new(joint, length, now.lengths[i], turn))
         });
         self.previous_wrenches.copy_from_slice(&self.now.wrenches);
         self.previous_accelerations.copy_from_slice(&self.now.accelerations);

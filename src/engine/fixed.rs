@@ -11,7 +11,7 @@
 
 use super::run::{Stepper, equal_step};
 use super::world::{Target, World};
-use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism};
+use crate::mechanism::{BodyState, Command, Drive, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
 /// Where inside a step the contact forces are looked at for peaks. A hard hit's force has a cusp
@@ -21,7 +21,7 @@ const LOOKS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 /// Steps of equal length under the forces of the present state.
 pub(super) struct Fixed {
     step: f64,
-    world: World,
+    pub(super) world: World,
     dynamics: Dynamics,
     states: Vec<BodyState>,
     now: Evaluation,
@@ -32,9 +32,11 @@ pub(super) struct Fixed {
     previous_step: f64,
     targets: Vec<Command>,
     wrenches: Vec<Vector3<f64>>,
-    /// Ideal joints close loops, which one sweep of rapier's solver does not: it is handed the
+    /// Turn of each body in the next step in rad, as predicted.
+    turns: Vec<f64>,
+    /// Joints that share a body are more than one sweep of rapier's solver does: it is handed the
     /// joint forces with the others, and has only the drift to correct.
-    loops: bool,
+    coupled: bool,
     /// Work space for looking inside a step, and what was seen there.
     inside_states: Vec<BodyState>,
     inside: Evaluation,
@@ -47,10 +49,12 @@ impl Fixed {
     pub fn new(mechanism: &Mechanism, step: f64) -> Self {
         let zeros = vec![Vector3::zeros(); mechanism.bodies.len()];
         let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
+        let dynamics = Dynamics::new(mechanism);
         Self {
             step,
             world: World::new(mechanism, false),
-            dynamics: Dynamics::new(mechanism),
+            coupled: dynamics.coupled(),
+            dynamics,
             half: states.iter().map(|s| s.twist).collect(),
             inside_states: states.clone(),
             states,
@@ -59,7 +63,7 @@ impl Fixed {
             previous_step: 0.0,
             targets: vec![Command::default(); mechanism.prismatics.len()],
             wrenches: zeros,
-            loops: mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Ideal)),
+            turns: vec![0.0; mechanism.bodies.len()],
             inside: Evaluation::new(mechanism),
             touched: false,
             peaks: vec![0.0; mechanism.revolutes.len()],
@@ -110,7 +114,7 @@ impl Stepper for Fixed {
             }
         }
         self.evaluate(mechanism, t);
-        if self.loops {
+        if self.coupled {
             self.dynamics.replace_wrenches(&mut self.now);
         }
         if h > 0.0 {
@@ -139,13 +143,16 @@ impl Stepper for Fixed {
             *wrench = now * kick;
         }
         mechanism.true_commands(reached, &mut self.targets);
-        let (states, now) = (&self.states, &self.now);
-        self.world.step(dt, &self.wrenches, |i| {
+        let now = &self.now;
+        for ((turn, state), a) in self.turns.iter_mut().zip(&self.states).zip(&now.accelerations) {
+            *turn = (state.twist.z + a.z * (0.5 * dt)) * dt;
+        }
+        let turns = &self.turns;
+        self.world.step(dt, &self.wrenches, Some(turns), |i| {
             let joint = &mechanism.prismatics[i];
-            let turn = joint.cylinder.body.map_or(0.0, |body| {
-                (states[body].twist.z + now.accelerations[body].z * (0.5 * dt)) * dt
-            });
-            Target::new(joint, self.targets[i].length, now.lengths[i], turn)
+            let turn = joint.cylinder.body.map_or(0.0, |body| turns[body]);
+            (joint.drive == Drive::Prescribed)
+                .then(|| Target::new(joint, self.targets[i].length, now.lengths[i], turn))
         });
         let [before, before_that] = &mut self.past;
         std::mem::swap(before, before_that);

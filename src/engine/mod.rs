@@ -14,6 +14,8 @@ mod leapfrog;
 mod native;
 mod ring;
 mod run;
+#[cfg(test)]
+mod tests;
 mod world;
 
 pub use clearance_joints::{ClearanceJoint, ClearanceJoints};

@@ -89,9 +89,10 @@ impl Stepper for Native {
         let (dt, reached) = equal_step(self.step, t, until);
         mechanism.true_commands(reached, &mut self.targets);
         let before: Vec<Vector3<f64>> = self.states.iter().map(|s| s.twist).collect();
-        self.world.step(dt, &self.now.wrenches, |i| Target {
-            length: self.targets[i].length,
-            side: mechanism.prismatics[i].cylinder.point.y,
+        self.world.step(dt, &self.now.wrenches, None, |i| {
+            let (length, joint) = (self.targets[i].length, &mechanism.prismatics[i]);
+            let side = joint.cylinder.point.y;
+            (joint.drive == Drive::Prescribed).then_some(Target { length, side })
         });
         self.world.read(&mut self.states);
         for ((a, state), before) in self.now.accelerations.iter_mut().zip(&self.states).zip(before)

@@ -21,11 +21,11 @@ const MOTOR_FORCE: f64 = 1e30;
 const RIGID: SpringCoefficients<f64> =
     SpringCoefficients { natural_frequency: 1e15, damping_ratio: 1.0 };
 
-/// Where a prescribed joint goes in one step, along and across the axis that its cylinder has at the
+/// Where a prismatic joint goes in one step, along and across the axis that its cylinder has at the
 /// step's beginning, in m.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
-    /// Length of the joint along that axis.
+    /// Length of the joint along that axis; what a motor is told.
     pub length: f64,
     /// Across: where the cylinder's attachment point would have to be for the rod's to go straight.
     pub side: f64,
@@ -35,26 +35,53 @@ impl Target {
     /// Where rapier must be sent for `joint` to have the length `length` (m) at the end of a step
     /// in which it turns by `turn` rad from the length `before`.
     ///
-    /// rapier's joint rows are linear: they send the rod's centre to `κ + L cos 0` along the axis
-    /// that was and to `turn·L_before` across it, where the truth is `L cos turn` and `L sin turn`
-    /// (L the distance of the centres, q = L + κ). The difference, of second order in the step, is
-    /// put into the targets.
+    /// rapier's joint rows are linear in the step, and turn by T = tan `turn` (see [`excess`]). With
+    /// d from the cylinder's centre of mass to the rod's, u and n along and across the axis that was,
+    /// L = d·u (q = L + κ), w = d·n as the joint holds it, and w' what rapier is told for w, they ask
+    /// for
+    ///
+    /// `d·n = w' + T L_before`, `d·u + T w' + κ = length`
+    ///
+    /// at the end, where the truth is `d·u = L cos turn − w sin turn`, `d·n = L sin turn + w cos
+    /// turn`. The difference, of second order in the step, is put into the targets.
     pub fn new(joint: &Prismatic, length: f64, before: f64, turn: f64) -> Self {
-        let offset = joint.rod.point.x - joint.cylinder.point.x;
+        let [cylinder, rod] = [joint.cylinder.point, joint.rod.point];
+        let (offset, w) = (rod.x - cylinder.x, cylinder.y - rod.y);
         let (sin, cos) = turn.sin_cos();
-        Self {
-            length: offset + (length - offset) * cos,
-            side: joint.cylinder.point.y + (length - offset) * sin - (before - offset) * turn,
-        }
+        let (now, before, tan) = (length - offset, before - offset, sin / cos);
+        let side = now * sin + w * cos - before * tan;
+        Self { length: offset + now * cos - w * sin + tan * side, side: rod.y + side }
     }
+}
+
+/// By how much rapier's angular velocity must exceed the mean one of a step in which a body turns by
+/// `turn` rad, times the step: `tan turn − turn`.
+///
+/// rapier turns a body by the arc tangent of what its angular velocity says (it adds a perpendicular
+/// to the axes and makes them unit vectors again), a relative error of `turn²/3`.
+fn excess(turn: f64) -> f64 {
+    // Beyond a radian in one step nothing is resolved, and the tangent ends at a quarter turn.
+    let turn = turn.clamp(-1.0, 1.0);
+    if turn.abs() > 0.01 {
+        return turn.tan() - turn;
+    }
+    // Exact to the last digit, and a fifth of the cost.
+    let s = turn * turn;
+    turn * s / 3.0 * (1.0 + s * (0.4 + s * (17.0 / 105.0)))
 }
 
 /// A rapier world that holds one mechanism, gravity included in the wrenches it is given.
 pub(super) struct World {
     physics: PhysicsWorld,
     stepped: bool,
+    inertias: Vec<f64>,
+    /// By how much rapier's angular velocities exceed the mean ones of the last step, in rad/s.
+    excess: Vec<f64>,
     pub handles: Vec<RigidBodyHandle>,
-    motors: Vec<Option<ImpulseJointHandle>>,
+    /// The prismatic joints, and whether their length is prescribed.
+    prismatics: Vec<(ImpulseJointHandle, bool)>,
+    /// The ideal revolute joints.
+    pivots: Vec<(ImpulseJointHandle, [Attachment; 2])>,
     pub colliders: JointColliders,
 }
 
@@ -98,7 +125,7 @@ impl World {
             })
             .collect();
         let of = |a: &Attachment| a.body.map_or(ground, |i| handles[i]);
-        let motors = mechanism
+        let prismatics = mechanism
             .prismatics
             .iter()
             .map(|joint| {
@@ -111,9 +138,10 @@ impl World {
                     .motor_max_force(MOTOR_FORCE);
                 let (cylinder, rod) = (of(&joint.cylinder), of(&joint.rod));
                 let handle = physics.impulse_joints.insert(cylinder, rod, builder, true);
-                (joint.drive == Drive::Prescribed).then_some(handle)
+                (handle, joint.drive == Drive::Prescribed)
             })
             .collect();
+        let mut pivots = Vec::new();
         let mut joint_colliders = JointColliders::default();
         for joint in &mechanism.revolutes {
             let bodies = [of(&joint.ring), of(&joint.journal)];
@@ -125,7 +153,8 @@ impl World {
                         .softness(RIGID)
                         .local_anchor1(to_rapier(points[0]))
                         .local_anchor2(to_rapier(points[1]));
-                    physics.impulse_joints.insert(bodies[0], bodies[1], builder, true);
+                    let handle = physics.impulse_joints.insert(bodies[0], bodies[1], builder, true);
+                    pivots.push((handle, [joint.ring, joint.journal]));
                     continue;
                 }
                 Bearing::Clearance(c) => ([c.bearing_radius, c.journal_radius], 0.0, Solver::Law),
@@ -139,13 +168,23 @@ impl World {
                 joint_colliders.insert(&mut physics, bodies, points, radii, friction, solver);
             }
         }
-        Self { physics, stepped: false, handles, motors, colliders: joint_colliders }
+        Self {
+            physics,
+            stepped: false,
+            inertias: mechanism.bodies.iter().map(|body| body.inertia).collect(),
+            excess: vec![0.0; mechanism.bodies.len()],
+            handles,
+            prismatics,
+            pivots,
+            colliders: joint_colliders,
+        }
     }
 
     /// States as rapier holds them: the twists are those of the last half step.
     pub fn read(&self, states: &mut [BodyState]) {
-        for (state, &handle) in states.iter_mut().zip(&self.handles) {
+        for ((state, &handle), excess) in states.iter_mut().zip(&self.handles).zip(&self.excess) {
             *state = read(&self.physics.bodies, handle);
+            state.twist.z -= excess;
         }
     }
 
@@ -159,28 +198,53 @@ impl World {
 
     /// Impulse in N·s of the motor of prismatic joint `index` on its rod in the last step.
     pub fn motor_impulse(&self, index: usize) -> f64 {
-        let joint = self.motors[index].and_then(|h| self.physics.impulse_joints.get(h));
+        let joint = self.physics.impulse_joints.get(self.prismatics[index].0);
         let motor = joint.and_then(|j| j.data.motor(JointAxis::LinX));
         motor.map_or(0.0, |motor| -motor.impulse)
     }
 
-    /// One rapier step of `dt` s under the given wrench on each body. `targets` says where each
-    /// prescribed joint goes.
-    pub fn step(&mut self, dt: f64, wrenches: &[Vector3<f64>], targets: impl Fn(usize) -> Target) {
-        for (&handle, wrench) in self.handles.iter().zip(wrenches) {
+    /// One rapier step of `dt` s under the given wrench on each body. `turns` says by how many rad
+    /// each body is predicted to turn in it, and `targets` where each prismatic joint goes; without
+    /// them, bodies and joints move as rapier moves them.
+    pub fn step(
+        &mut self,
+        dt: f64,
+        wrenches: &[Vector3<f64>],
+        turns: Option<&[f64]>,
+        targets: impl Fn(usize) -> Option<Target>,
+    ) {
+        for (i, (&handle, wrench)) in self.handles.iter().zip(wrenches).enumerate() {
             if let Some(body) = self.physics.bodies.get_mut(handle) {
+                let mut torque = wrench.z;
+                if let Some(turns) = turns {
+                    let next = excess(turns[i]) / dt;
+                    torque += self.inertias[i] * (next - self.excess[i]) / dt;
+                    self.excess[i] = next;
+                }
                 body.reset_forces(false);
                 body.reset_torques(false);
                 body.add_force(to_rapier(wrench.xy()), false);
-                body.add_torque(wrench.z, false);
+                body.add_torque(torque, false);
             }
         }
-        for (i, motor) in self.motors.iter().enumerate() {
-            if let Some(joint) = motor.and_then(|h| self.physics.impulse_joints.get_mut(h, false)) {
-                let target = targets(i);
-                // A stiffness far beyond any mass over dt² makes the spring a constraint.
-                joint.data.set_motor(JointAxis::LinX, target.length, 0.0, MOTOR_FORCE, 0.0);
+        let joints = &mut self.physics.impulse_joints;
+        for (i, (handle, prescribed)) in self.prismatics.iter().enumerate() {
+            if let (Some(target), Some(joint)) = (targets(i), joints.get_mut(*handle, false)) {
+                if *prescribed {
+                    // A stiffness far beyond any mass over dt² makes the spring a constraint.
+                    joint.data.set_motor(JointAxis::LinX, target.length, 0.0, MOTOR_FORCE, 0.0);
+                }
                 joint.data.local_frame1.translation.y = target.side;
+            }
+        }
+        for (handle, sides) in &self.pivots {
+            if let (Some(turns), Some(joint)) = (turns, joints.get_mut(*handle, false)) {
+                // rapier's rows carry an arm r linearly, in complex numbers to r' (1 + i tan turn),
+                // where the truth is r e^(i turn): both are the same for r' = r cos turn.
+                let [ring, journal] = sides
+                    .map(|side| to_rapier(side.point * side.body.map_or(1.0, |i| turns[i].cos())));
+                joint.data.local_frame1.translation = ring;
+                joint.data.local_frame2.translation = journal;
             }
         }
         // A step rebuilds rapier's joint assembly when a body with joints was touched; the collision

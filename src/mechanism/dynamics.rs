@@ -10,7 +10,7 @@
 
 use super::rows::{Row, prismatic_rows, revolute_rows};
 use super::telescope::Telescope;
-use super::{Bearing, BodyState, Command, Drive, Mechanism, Situation};
+use super::{Bearing, BodyState, Command, Drive, Mechanism, Prismatic, Situation};
 use crate::contact::{Contact, circle_in_ring};
 use nalgebra::Vector3;
 
@@ -24,6 +24,7 @@ pub struct Dynamics {
     telescopes: Vec<(usize, [usize; 2])>,
     /// The other rigid joints, group by group.
     groups: Vec<Vec<RigidJoint>>,
+    coupled: bool,
     /// Each prismatic joint at the state last asked for.
     prismatics: Vec<Telescope>,
     rows: Vec<Row>,
@@ -118,7 +119,9 @@ impl Dynamics {
                 others.push(group);
             }
         }
+        let beside = |joint: &Prismatic| joint.cylinder.point.y != joint.rod.point.y;
         Self {
+            coupled: !others.is_empty() || mechanism.prismatics.iter().any(beside),
             inverse_masses: bodies.iter().map(|b| inverse(b.mass, b.inertia)).collect(),
             masses: bodies.iter().map(|b| Vector3::new(b.mass, b.mass, b.inertia)).collect(),
             weights: mechanism
@@ -138,6 +141,12 @@ impl Dynamics {
             matrix: Vec::new(),
             multipliers: Vec::new(),
         }
+    }
+
+    /// Whether rigid joints act on each other: where they share a body, or a prismatic joint's axis
+    /// is not that of its two centres of mass. Joints solved one after another then miss the forces.
+    pub fn coupled(&self) -> bool {
+        self.coupled
     }
 
     /// M⁻¹ of each body as the diagonal (1/kg, 1/kg, 1/(kg·m²)).
@@ -388,7 +397,7 @@ fn groups(mechanism: &Mechanism) -> Vec<Vec<RigidJoint>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::{Attachment, Body, Commands, Prismatic};
+    use crate::mechanism::{Attachment, Body, Commands};
     use nalgebra::{UnitComplex, Vector2};
     use std::sync::Arc;
 
