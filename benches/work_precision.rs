@@ -1,8 +1,9 @@
 //! Error against time: this project's ways of stepping, and a solver in minimal coordinates written
-//! for this one machine (`minimal_coordinates/`), all measured in one run.
+//! for this one machine (`minimal_coordinates/`), all measured in one run; and error against
+//! tolerance.
 //!
-//! `cargo bench --bench work_precision` prints the tables and draws
-//! `assets/work-precision.svg`. Errors of the diagram are geometric means over start phases,
+//! `cargo bench --bench work_precision` prints the tables and draws `assets/work-precision.svg` and
+//! `assets/error-over-tolerance.svg`. Errors of the diagrams are geometric means over start phases,
 //! against the minimal-coordinate solver at a tolerance of 1e-12 (a single run's error is luck by a
 //! factor of five); those of the table are of the default phase, against the reference curves.
 
@@ -23,6 +24,8 @@ const PHASES: usize = 8;
 const INTERVAL: f64 = 0.01;
 /// Each time is the shortest of so many.
 const REPEATS: usize = 5;
+/// Tolerances of the diagrams, in m/s.
+const DECADES: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
 struct Study {
     name: &'static str,
@@ -61,9 +64,29 @@ fn main() {
     for study in &studies {
         at_1e_8(study);
     }
-    let panels: Vec<Panel> = studies[..3].iter().map(diagram).collect();
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/work-precision.svg");
-    match panels_svg(&panels).map(|svg| std::fs::write(file, svg)) {
+    let friction = Case { friction: 0.1, ..servo };
+    let means: Vec<Means> = studies
+        .iter()
+        .map(|study| Means::new(study.name, study.case, study.until))
+        .chain([Means::new("servo, friction 0.1", friction, 0.04)])
+        .collect();
+    let by_tolerance: Vec<Vec<(f64, f64)>> = means
+        .iter()
+        .map(|means| DECADES.map(|t| means.ours(StepControl::Tolerance(t))).to_vec())
+        .collect();
+    let panels: Vec<Panel> = means
+        .iter()
+        .zip(&by_tolerance)
+        .take(3)
+        .map(|(means, found)| diagram(means, found))
+        .collect();
+    draw("work-precision.svg", &panels);
+    draw("error-over-tolerance.svg", &[over_tolerance(&means, &by_tolerance)]);
+}
+
+fn draw(name: &str, panels: &[Panel]) {
+    let file = format!("{}/assets/{name}", env!("CARGO_MANIFEST_DIR"));
+    match panels_svg(panels).map(|svg| std::fs::write(&file, svg)) {
         Ok(Ok(())) => println!("drawn: {file}"),
         other => println!("not drawn: {other:?}"),
     }
@@ -102,50 +125,93 @@ fn at_1e_8(study: &Study) {
     );
 }
 
+/// A case at several start phases, with what a run at each should give.
+struct Means {
+    name: &'static str,
+    until: f64,
+    phases: Vec<Case>,
+    truths: Vec<Vec<[f64; 2]>>,
+    mechanisms: Vec<Mechanism>,
+}
+
+impl Means {
+    fn new(name: &'static str, case: Case, until: f64) -> Self {
+        let phases: Vec<Case> = (0..PHASES)
+            .map(|k| std::f64::consts::TAU * k as f64 / PHASES as f64)
+            .map(|phase| Case { phase, ..case })
+            .collect();
+        let truth = |case| minimal::positions(case, 1e-12, &times(until)).0;
+        let truths = phases.iter().map(truth).collect();
+        let mechanisms = phases.iter().map(Case::mechanism).collect();
+        Self { name, until, phases, truths, mechanisms }
+    }
+
+    /// Wall seconds per simulated second and error in m of this project.
+    fn ours(&self, control: StepControl) -> (f64, f64) {
+        mean(self.mechanisms.iter().zip(&self.truths).map(|(mechanism, truth)| {
+            let (error, wall, _) = measure(mechanism, control, self.until, truth);
+            (error, wall)
+        }))
+    }
+
+    /// The same of the minimal-coordinate solver.
+    fn theirs(&self, tolerance: f64) -> (f64, f64) {
+        mean(self.phases.iter().zip(&self.truths).map(|(case, truth)| {
+            let (error, wall, _) = measure_minimal(case, tolerance, self.until, truth);
+            (error, wall)
+        }))
+    }
+}
+
 /// One panel: log10 of the error over log10 of the wall time per simulated second.
-fn diagram(study: &Study) -> Panel {
-    let phases: Vec<Case> = (0..PHASES)
-        .map(|k| std::f64::consts::TAU * k as f64 / PHASES as f64)
-        .map(|phase| Case { phase, ..study.case })
-        .collect();
-    let truths: Vec<_> =
-        phases.iter().map(|case| minimal::positions(case, 1e-12, &times(study.until)).0).collect();
-    let mechanisms: Vec<Mechanism> = phases.iter().map(Case::mechanism).collect();
-    let ours = |control: StepControl| {
-        let runs = mechanisms.iter().zip(&truths);
-        mean(runs.map(|(m, truth)| {
-            let (error, wall, _) = measure(m, control, study.until, truth);
-            (error, wall)
-        }))
-    };
-    let theirs = |tolerance: f64| {
-        let runs = phases.iter().zip(&truths);
-        mean(runs.map(|(case, truth)| {
-            let (error, wall, _) = measure_minimal(case, tolerance, study.until, truth);
-            (error, wall)
-        }))
-    };
-    let line = |name: &str, points: Vec<(f64, f64)>| {
-        println!("{} — {name}: wall s/s, error m", study.name);
-        for (wall, error) in &points {
+fn diagram(means: &Means, by_tolerance: &[(f64, f64)]) -> Panel {
+    let line = |name: &str, points: &[(f64, f64)]| {
+        println!("{} — {name}: wall s/s, error m", means.name);
+        for (wall, error) in points {
             println!("  {wall:.4} {error:.2e}");
         }
         let points = points.iter().map(|(wall, error)| (wall.log10(), error.log10())).collect();
         Line { name: name.to_owned(), points, style: Style::Solid }
     };
-    let fixed = [2e-5, 1e-5, 5e-6, 2e-6, 1e-6].map(|step| ours(StepControl::Fixed(step)));
-    let decades = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
-    let tolerance = decades.map(|tolerance| ours(StepControl::Tolerance(tolerance)));
-    let minimal = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(theirs);
+    let fixed = [2e-5, 1e-5, 5e-6, 2e-6, 1e-6].map(|step| means.ours(StepControl::Fixed(step)));
+    let minimal = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|tolerance| means.theirs(tolerance));
     Panel {
-        title: format!("{}, up to {:.0} ms", study.name, study.until * 1e3),
+        title: format!("{}, up to {:.0} ms", means.name, means.until * 1e3),
         x_label: "log10 of wall time (s) per simulated second".to_owned(),
         y_label: "log10 of error (m)".to_owned(),
         curves: vec![
-            line("fixed step", fixed.to_vec()),
-            line("tolerance", tolerance.to_vec()),
-            line("minimal coordinates, this machine only", minimal.to_vec()),
+            line("fixed step", &fixed),
+            line("tolerance", by_tolerance),
+            line("minimal coordinates, this machine only", &minimal),
         ],
+    }
+}
+
+/// log10 of the error over log10 of the tolerance, a line for each case.
+fn over_tolerance(means: &[Means], by_tolerance: &[Vec<(f64, f64)>]) -> Panel {
+    println!("Error in m at tolerances of {DECADES:?} m/s:");
+    let mut curves: Vec<Line> = means
+        .iter()
+        .zip(by_tolerance)
+        .map(|(means, found)| {
+            let errors: Vec<String> = found.iter().map(|(_, e)| format!("{e:.1e}")).collect();
+            println!("  {}: {}", means.name, errors.join(", "));
+            let points = DECADES.iter().zip(found).map(|(t, (_, e))| (t.log10(), e.log10()));
+            let name = format!("{}, {:.0} ms", means.name, means.until * 1e3);
+            Line { name, points: points.collect(), style: Style::Solid }
+        })
+        .collect();
+    let proportional = DECADES.map(|tolerance| (tolerance.log10(), (1e-4 * tolerance).log10()));
+    curves.push(Line {
+        name: "in proportion".to_owned(),
+        points: proportional.to_vec(),
+        style: Style::Reference,
+    });
+    Panel {
+        title: "error of the platform's position, mean of 8 starts".to_owned(),
+        x_label: "log10 of tolerance (m/s)".to_owned(),
+        y_label: "log10 of error (m)".to_owned(),
+        curves,
     }
 }
 

@@ -83,7 +83,7 @@ fn simulate(sets: &[String]) -> Result<Outcome, Box<dyn Error>> {
         outcome.peak = outcome.peak.max(instant.peaks.drive_force);
         outcome.force.push((instant.t, now.drive_forces[0]));
         let row = outcome.force.len() - 1;
-        if row % 100 == 0 {
+        if row.is_multiple_of(100) {
             println!(
                 "{:7.3} {:9.3} {:9.3} {:11.3} {:9.3} {:11.3}",
                 instant.t,

@@ -94,7 +94,7 @@ fn steps_for_an_error_of_1e_8() {
 }
 
 #[test]
-#[ignore = "not reached: 15.7k steps per second where 14k are wanted"]
+#[ignore = "not reached: 16.9k steps per second where 14k are wanted"]
 fn steps_for_an_error_of_1e_8_servo_with_gravity() {
     require_steps(studies()[SERVO_WITH_GRAVITY]);
 }
