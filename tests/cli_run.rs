@@ -5,14 +5,16 @@ mod cli_common;
 use cli_common::{Place, WRONG, names, write_wrong_files};
 use serde_json::Value;
 
-const FILES: [&str; 10] = [
+const FILES: [&str; 12] = [
     "acceleration.svg",
     "actuator-forces.svg",
+    "animation.svg",
     "index.html",
     "joint-forces.svg",
     "orbits.svg",
     "path-error.svg",
     "path.svg",
+    "player.html",
     "scenario.toml",
     "summary.json",
     "timeseries.csv",

@@ -13,7 +13,8 @@ use std::fmt::Write as _;
 
 /// Simulate a scenario and write time series, summary, pictures and a page
 ///
-/// The results go into a new folder: index.html (look at this first), timeseries.csv (one row each
+/// The results go into a new folder: index.html (look at this first), player.html (the machine and
+/// its joints in slow motion), animation.svg (the first 0.15 s of that as a picture), timeseries.csv (one row each
 /// simulation.output_interval: pose, velocity, acceleration, actuator lengths and forces, and for
 /// each joint the eccentricity in m and the contact force in N), summary.json (the main figures),
 /// scenario.toml (the scenario with every default filled in: `freeplay run` on it repeats the run)

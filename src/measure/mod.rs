@@ -2,5 +2,6 @@
 
 pub mod envelope;
 pub mod filter;
+pub mod frames;
 pub mod log;
 pub mod spline;

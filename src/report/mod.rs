@@ -5,19 +5,25 @@
 //! finite numbers are left out of them, and data that leave nothing to draw give a picture that says
 //! "no data".
 
+mod animation;
 mod axis;
 mod canvas;
 mod chart;
 mod orbits;
 mod page;
 mod path;
+mod player;
 mod quantity;
+mod scene;
 
+pub use animation::animation_svg;
 pub use chart::panels_svg;
 pub use orbits::orbits_svg;
 pub use page::{Part, Table, document, page};
 pub use path::path_svg;
+pub use player::player_html;
 pub use quantity::{length, number};
+pub use scene::{Outline, Scene, SceneBody, SceneChart, SceneCurve, SceneJoint};
 
 /// How a curve is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

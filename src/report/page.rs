@@ -38,6 +38,13 @@ pub enum Part<'a> {
         /// One text each.
         paragraphs: &'a [String],
     },
+    /// A link to another page of the result, by itself.
+    Link {
+        /// The file beside this page.
+        file: &'a str,
+        /// What is there.
+        text: &'a str,
+    },
     /// Where the numbers come from, as (label, value) pairs.
     Provenance(&'a [(String, String)]),
 }
@@ -89,6 +96,9 @@ fn section(part: &Part) -> String {
         Part::Table(table) => table_section(table),
         Part::Pictures(pictures) => (1..).zip(*pictures).map(|(n, p)| figure(n, p)).collect(),
         Part::Text { id, title, paragraphs } => text_section(id, title, paragraphs),
+        Part::Link { file, text } => {
+            format!("<p><a href=\"{}\">{}</a></p>\n", escaped(file), escaped(text))
+        }
         Part::Provenance(provenance) => provenance_section(provenance),
     }
 }
@@ -100,7 +110,7 @@ fn contents(parts: &[Part]) -> String {
     };
     for part in parts {
         match part {
-            Part::Facts([]) | Part::Provenance([]) => {}
+            Part::Facts([]) | Part::Provenance([]) | Part::Link { .. } => {}
             Part::Facts(_) => entry("facts", "Results"),
             Part::Table(table) => entry(table.id, &escaped(&table.title)),
             Part::Pictures(pictures) => {
@@ -184,7 +194,7 @@ fn provenance_section(provenance: &[(String, String)]) -> String {
 }
 
 /// `text` with everything that HTML would read as markup written as entities.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

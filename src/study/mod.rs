@@ -4,6 +4,7 @@
 pub mod chaos;
 mod check;
 pub mod compare;
+mod film;
 mod folder;
 mod pictures;
 mod recent;

@@ -1,6 +1,7 @@
 //! One run into a folder.
 
 use super::chaos::{self, Chaos};
+use super::film::Film;
 use super::folder::{Folder, FolderError};
 use super::pictures::Gallery;
 use super::run_page::page;
@@ -20,6 +21,8 @@ pub const SUMMARY_FILE: &str = "summary.json";
 const TIME_SERIES_FILE: &str = "timeseries.csv";
 pub(super) const SCENARIO_FILE: &str = "scenario.toml";
 pub(super) const PAGE_FILE: &str = "index.html";
+pub(super) const PLAYER_FILE: &str = "player.html";
+const ANIMATION_FILE: &str = "animation.svg";
 
 /// What a run came to.
 #[derive(Debug)]
@@ -72,6 +75,7 @@ pub fn run(
     let mechanism = &machine.mechanism;
     let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
     let mut gallery = Gallery::new(mechanism, machine.schedule);
+    let mut film = Film::new(&scenario.name, mechanism);
 
     let file = File::create(folder.file(TIME_SERIES_FILE)).map_err(refused(TIME_SERIES_FILE))?;
     let phi = machine.motion.at(0.0).pose.z;
@@ -85,6 +89,7 @@ pub fn run(
         let ideal = ideal.at(instant.t);
         recorder.row(mechanism, instant, &ideal);
         gallery.row(mechanism, instant, &ideal);
+        film.row(mechanism, instant, &ideal);
         if instant.t <= chaos::WINDOW {
             positions.push(mechanism.output_state(instant.states).position);
         }
@@ -101,7 +106,8 @@ pub fn run(
     let wall = started.elapsed().as_secs_f64();
 
     let pictures = gallery.draw()?;
-    let texts = [TIME_SERIES_FILE, SUMMARY_FILE, SCENARIO_FILE, PAGE_FILE];
+    let texts =
+        [TIME_SERIES_FILE, SUMMARY_FILE, SCENARIO_FILE, PAGE_FILE, PLAYER_FILE, ANIMATION_FILE];
     let files: Vec<String> = texts
         .into_iter()
         .map(str::to_owned)
@@ -124,6 +130,8 @@ pub fn run(
         write(&picture.file, &picture.svg)?;
     }
     write(PAGE_FILE, &page(&summary, &pictures))?;
+    write(PLAYER_FILE, &film.player())?;
+    write(ANIMATION_FILE, &film.animation())?;
     Ok(Outcome { summary, json, folder: folder.finish()? })
 }
 

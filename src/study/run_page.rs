@@ -1,13 +1,19 @@
 //! The page of a run: the main result in words, the figures in a table, the pictures.
 
-use crate::report::{self, Fact, Picture, length, number};
+use super::run::PLAYER_FILE;
+use crate::report::{self, Fact, Part, Picture, length, number};
 use crate::scenario::{DriveMode, Law};
 use crate::simulate::Summary;
 
 /// The page as HTML.
 pub(super) fn page(summary: &Summary, pictures: &[Picture]) -> String {
     let title = format!("Run: {}", summary.scenario_name);
-    report::page(&title, &lead(summary), &facts(summary), pictures, &provenance(summary))
+    let (facts, provenance) = (facts(summary), provenance(summary));
+    let player =
+        Part::Link { file: PLAYER_FILE, text: "▶ Watch the machine and its joints move" };
+    let parts =
+        [player, Part::Facts(&facts), Part::Pictures(pictures), Part::Provenance(&provenance)];
+    report::document(&title, &lead(summary), &parts)
 }
 
 /// The main result in words.
