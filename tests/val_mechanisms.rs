@@ -26,6 +26,7 @@ fn bar(mass: f64, from: Vector2<f64>, to: Vector2<f64>, velocity: Vector2<f64>, 
         name: "bar".into(),
         mass,
         inertia: mass * along.norm_squared() / 12.0,
+        reference: Vector2::zeros(),
         start: BodyState {
             position: (from + to) / 2.0,
             rotation: UnitComplex::new(along.y.atan2(along.x)),
@@ -52,6 +53,8 @@ fn free(bodies: Vec<Body>, revolutes: Vec<Revolute>, gravity: f64) -> Mechanism 
         revolutes,
         prismatics: Vec::new(),
         commands: Arc::new(NoCommands),
+        epoch: 0.0,
+        loads: Vec::new(),
         gravity: Vector2::new(0.0, gravity),
         native: NativeContacts::default(),
     }
@@ -246,6 +249,7 @@ fn slider_crank(bearing: Bearing, speed: f64) -> Mechanism {
         name: "slider".into(),
         mass: MASSES[2],
         inertia: 1e-5,
+        reference: Vector2::zeros(),
         start: BodyState {
             position: slider,
             rotation: UnitComplex::identity(),
@@ -267,6 +271,7 @@ fn slider_crank(bearing: Bearing, speed: f64) -> Mechanism {
         cylinder: GROUND,
         rod: at(2, 0.0),
         drive: Drive::Servo { stiffness: 0.0, damping: 0.0 },
+        reading_errors: Vec::new(),
     };
     Mechanism { prismatics: vec![guide], ..free(bodies, joints, 0.0) }
 }
@@ -349,6 +354,7 @@ fn a_chain_of_prismatic_joints_keeps_energy_and_momentum() {
         cylinder: at(i, 0.0),
         rod: at(i + 1, 0.0),
         drive: Drive::Servo { stiffness, damping: 0.0 },
+        reading_errors: Vec::new(),
     };
     let mechanism =
         Mechanism { prismatics: vec![prismatic(0), prismatic(1)], ..free(bodies, vec![], 0.0) };
