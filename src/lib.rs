@@ -12,6 +12,7 @@
 //! | [`measure`] | thinning of long signals, interpolation, statistics |
 //! | [`contact`] | force laws as plain functions, and the forces in one clearance joint |
 //! | [`mechanism`] | bodies, joints, drives, motions as plain data; the 3-RPR; equations of motion |
+//! | [`effects`] | what may act on a machine undeclared: payloads, friction, worn joints, late servos |
 //! | [`engine`] | the only room that knows rapier: ring shape, contact hook, stepping |
 //! | [`scenario`] | the TOML file, validated |
 //! | [`simulate`] | scenario → mechanism → samples and summary |

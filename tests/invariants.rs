@@ -129,6 +129,7 @@ impl Pair {
                     law: Arc::new(self.law(c_max)),
                     friction,
                 }),
+                out_of_round: None,
             }],
             prismatics: Vec::new(),
             commands: Arc::new(NoCommands),

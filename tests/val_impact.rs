@@ -132,6 +132,7 @@ impl Row {
                 ring: Attachment { body: None, point: Vector2::zeros() },
                 journal: Attachment { body: Some(0), point: Vector2::zeros() },
                 bearing: Bearing::Clearance(self.clearance()),
+                out_of_round: None,
             }],
             prismatics: Vec::new(),
             commands: Arc::new(NoCommands),

@@ -8,6 +8,7 @@ mod check;
 mod check_text;
 mod compare;
 mod completions;
+mod effects;
 mod failure;
 mod merge;
 mod options;
@@ -39,6 +40,7 @@ Examples:
   freeplay compare                              contact law, native contacts, no clearance
   freeplay check my-machine.toml                what can be said without simulating
   freeplay sweep --vary joints.clearance=1e-8..1e-3:log:100     many clearances, one table
+  freeplay effects payload                      what a scenario can add to a machine
 
 Exit codes: 0 done, 2 wrong input, 1 anything else.";
 
@@ -49,6 +51,7 @@ enum Command {
     Check(check::Arguments),
     Sweep(sweep::Arguments),
     Merge(merge::Arguments),
+    Effects(effects::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -60,6 +63,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::main(&arguments),
         Command::Sweep(arguments) => sweep::main(&arguments),
         Command::Merge(arguments) => merge::main(&arguments),
+        Command::Effects(arguments) => effects::main(&arguments),
         Command::Completions(arguments) => completions::main(&arguments),
     };
     match done {

@@ -1,6 +1,7 @@
 //! The Hertz spring with STEP damping: ADAMS' IMPACT function, equations 4–6 of the source paper.
 
 use super::ForceLaw;
+use std::sync::Arc;
 
 /// Hertz spring plus a damper that fades in with penetration (paper eqs. 4 and 6):
 ///
@@ -75,6 +76,10 @@ impl ForceLaw for HertzStep {
         let damping = step(depth, self.d_max, self.c_max);
         let elastic = self.contact_time(mass, speed) / 5.0;
         if damping > 0.0 { elastic.min(mass / damping) } else { elastic }
+    }
+
+    fn damped(&self, factor: f64) -> Option<Arc<dyn ForceLaw>> {
+        Some(Arc::new(HertzStep { c_max: self.c_max * factor, ..*self }))
     }
 }
 

@@ -81,18 +81,34 @@ impl Clearance {
             return (contact, None);
         }
         contact.normal_force = self.law.normal_force(penetration, rate);
-        let tangent = Vector2::new(-normal.y, normal.x);
         let to_surface = [self.journal_radius + penetration + self.radial(), self.journal_radius];
+        let arms = to_surface.map(|radius| normal * radius);
+        let wrenches = self.press(&mut contact, [bearing, journal], normal, to_surface, arms);
+        (contact, Some(wrenches))
+    }
+
+    /// Adds friction to a contact whose normal force is known, and puts both on bearing and journal: the
+    /// normal force along `normal`, at `arms` from the centre of each, whose part along the normal is
+    /// `to_surface` (m).
+    #[inline]
+    pub(super) fn press(
+        &self,
+        contact: &mut Contact,
+        [bearing, journal]: [&Frame; 2],
+        normal: Vector2<f64>,
+        to_surface: [f64; 2],
+        arms: [Vector2<f64>; 2],
+    ) -> [Vector3<f64>; 2] {
+        let tangent = Vector2::new(-normal.y, normal.x);
         if let Some(friction) = &self.friction {
+            let relative = journal.velocity - bearing.velocity;
             let sliding = relative.dot(&tangent) + journal.spin * to_surface[1]
                 - bearing.spin * to_surface[0];
             contact.friction_force = friction.force(contact.normal_force, sliding);
         }
         let force = normal * contact.normal_force + tangent * contact.friction_force;
         let wrench = |arm: Vector2<f64>, f: Vector2<f64>| Vector3::new(f.x, f.y, arm.perp(&f));
-        let on_bearing = wrench(bearing.arm + normal * to_surface[0], force);
-        let on_journal = wrench(journal.arm + normal * to_surface[1], -force);
-        (contact, Some([on_bearing, on_journal]))
+        [wrench(bearing.arm + arms[0], force), wrench(journal.arm + arms[1], -force)]
     }
 }
 

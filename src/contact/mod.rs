@@ -7,12 +7,16 @@ mod friction;
 mod hertz_step;
 mod impact;
 mod joint;
+mod out_of_round;
 mod stiffness;
+
+use std::sync::Arc;
 
 pub use friction::CoulombFriction;
 pub use hertz_step::{HertzStep, step};
 pub use impact::{Impact, impact};
 pub use joint::{Clearance, Contact, Frame, circle_in_ring};
+pub use out_of_round::OutOfRound;
 pub use stiffness::{Material, StiffnessForm, hertz_stiffness};
 
 /// Normal force of a contact as a function of how deep and how fast the surfaces interpenetrate.
@@ -30,4 +34,9 @@ pub trait ForceLaw: std::fmt::Debug + Send + Sync {
     /// The longest step in s (fixed step, explicit) that resolves a hit of `mass` kg at `speed`
     /// m/s under this law. Users are told when their step is longer.
     fn longest_step(&self, mass: f64, speed: f64) -> f64;
+
+    /// The same law with its damping times `factor`, or `None` for a law whose damping does not scale.
+    fn damped(&self, _factor: f64) -> Option<Arc<dyn ForceLaw>> {
+        None
+    }
 }

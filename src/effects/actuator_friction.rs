@@ -1,6 +1,6 @@
 //! Friction between rod and cylinder.
 
-use super::kind::{linear, zeros};
+use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
@@ -53,7 +53,7 @@ pub(super) const KIND: Kind = Kind {
         &["coulomb_N", "viscous_Ns_m", "offset_N"],
         &["coulomb_pos_N", "coulomb_neg_N", "viscous_pos_Ns_m", "viscous_neg_Ns_m"],
     ],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     scan: None,
     apply,
@@ -76,6 +76,11 @@ impl Load for Friction {
         let [coulomb, viscous] = if rate < 0.0 { self.inward } else { self.outward };
         let force = self.offset - coulomb * (rate / self.velocity).tanh() - viscous * rate;
         at.push_rod(self.joint, force, wrenches);
+    }
+
+    fn longest_step(&self, mechanism: &Mechanism) -> Option<f64> {
+        let steepest = |[coulomb, viscous]: [f64; 2]| coulomb / self.velocity + viscous;
+        mechanism.rod_damper_step(self.joint, steepest(self.inward).max(steepest(self.outward)))
     }
 }
 

@@ -1,6 +1,6 @@
 //! An encoder with a wrong scale.
 
-use super::kind::{linear, zeros};
+use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Mechanism, ReadingError};
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub(super) const KIND: Kind = Kind {
         default: Some(0.0),
     }],
     variants: &[&["relative"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     scan: None,
     apply,

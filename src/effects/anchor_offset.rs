@@ -1,6 +1,6 @@
 //! A base joint that is not where it was declared.
 
-use super::kind::{linear, zeros};
+use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::Mechanism;
 use nalgebra::Vector2;
@@ -21,7 +21,7 @@ pub(super) const KIND: Kind = Kind {
         component("dy_m", "where it really is along y, less declared"),
     ],
     variants: &[&["dx_m", "dy_m"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     scan: None,
     apply,

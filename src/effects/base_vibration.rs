@@ -1,6 +1,6 @@
 //! A base that shakes.
 
-use super::kind::{Range, Scan, linear, zeros};
+use super::kind::{Range, Scan, defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
@@ -46,7 +46,7 @@ pub(super) const KIND: Kind = Kind {
         },
     ],
     variants: &[&["ax_m_s2", "ay_m_s2", "frequency_Hz", "phase_rad"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Peaks }),
     apply,

@@ -1,6 +1,6 @@
 //! Commands that reach the drives late.
 
-use super::kind::{linear, zeros};
+use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Command, Commands, Mechanism};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub(super) const KIND: Kind = Kind {
         default: Some(0.0),
     }],
     variants: &[&["delay_s"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     scan: None,
     apply,

@@ -1,6 +1,6 @@
 //! Viscous drag on the platform.
 
-use super::kind::{linear, zeros};
+use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
@@ -32,7 +32,7 @@ pub(super) const KIND: Kind = Kind {
         },
     ],
     variants: &[&["force_Ns_m", "torque_Nms"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     scan: None,
     apply,
@@ -48,6 +48,12 @@ impl Load for Drag {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let twist = at.mechanism.output_state(at.states).twist;
         at.push_output(-self.force * twist.xy(), -self.torque * twist.z, wrenches);
+    }
+
+    fn longest_step(&self, mechanism: &Mechanism) -> Option<f64> {
+        let body = &mechanism.bodies[mechanism.output];
+        let rate = (self.force / body.mass).max(self.torque / body.inertia);
+        (rate > 0.0).then(|| 1.0 / rate)
     }
 }
 

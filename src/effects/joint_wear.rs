@@ -60,6 +60,13 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
                 help: format!("expected below the bearing's radius, {bearing_radius} m"),
             });
         }
+        if let Some(shape) = joint.out_of_round.filter(|shape| worn <= shape.amplitude) {
+            return Err(Wrong {
+                key: "clearance_m".to_owned(),
+                message: format!("is {worn}"),
+                help: format!("expected above the ring's out-of-round, {} m", shape.amplitude),
+            });
+        }
         *journal_radius = bearing_radius - worn;
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Dry friction between journal and bearing.
 
-use super::kind::{linear, zeros};
+use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::contact::CoulombFriction;
 use crate::mechanism::{Bearing, Mechanism};
@@ -25,7 +25,7 @@ pub(super) const KIND: Kind = Kind {
         default: Some(0.0),
     }],
     variants: &[&["mu"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     scan: None,
     apply,

@@ -116,9 +116,11 @@ impl Kind {
     }
 }
 
-/// The neutral point of effects that vanish where all their numbers are zero.
-pub(super) fn zeros(_: &Mechanism, setting: &Setting) -> Vec<f64> {
-    vec![0.0; setting.values().count()]
+/// The neutral point of effects that vanish where all their numbers have their defaults; a number
+/// without one takes 0.
+pub(super) fn defaults(_: &Mechanism, setting: &Setting) -> Vec<f64> {
+    let default = |name| setting.kind.parameter(name).and_then(|p| p.default).unwrap_or(0.0);
+    setting.values().map(|(name, _)| default(name)).collect()
 }
 
 /// The starts of effects to which the machine responds linearly.

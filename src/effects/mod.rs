@@ -8,15 +8,24 @@ mod actuator_scale;
 mod anchor_offset;
 mod base_vibration;
 mod command_delay;
+mod contact_damping;
 mod drag;
+mod drive_backlash;
+mod drive_compliance;
 mod gravity;
 mod joint_wear;
 mod journal_friction;
 mod kind;
+mod leg_density;
+mod lubricant_film;
+mod out_of_round;
 mod payload;
 mod screw_ripple;
+mod sensor_offset;
+mod servo_gain;
 mod servo_lag;
 mod setting;
+mod stribeck_friction;
 mod tether;
 mod unbalance;
 
@@ -26,13 +35,22 @@ pub use setting::{Setting, Wrong};
 /// Every effect there is, in the order in which they are listed.
 pub const ALL: &[&Kind] = &[
     &payload::KIND,
+    &leg_density::KIND,
     &gravity::KIND,
     &actuator_friction::KIND,
+    &stribeck_friction::KIND,
     &journal_friction::KIND,
     &anchor_offset::KIND,
     &joint_wear::KIND,
+    &out_of_round::KIND,
+    &lubricant_film::KIND,
+    &contact_damping::KIND,
     &command_delay::KIND,
     &servo_lag::KIND,
+    &servo_gain::KIND,
+    &drive_backlash::KIND,
+    &drive_compliance::KIND,
+    &sensor_offset::KIND,
     &actuator_scale::KIND,
     &screw_ripple::KIND,
     &tether::KIND,

@@ -39,7 +39,7 @@ pub(super) const KIND: Kind = Kind {
         },
     ],
     variants: &[&["mass_kg", "com_x_m", "com_y_m"]],
-    neutral: super::kind::zeros,
+    neutral: super::kind::defaults,
     starts: |_| vec![vec![0.05, 0.0, 0.0]],
     scan: None,
     apply,

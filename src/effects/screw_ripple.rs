@@ -1,6 +1,6 @@
 //! A screw that is not quite even: an error, or a force, that repeats with each turn.
 
-use super::kind::{Range, Scan, linear, zeros};
+use super::kind::{Range, Scan, defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Load, Mechanism, ReadingError, Situation};
 use nalgebra::Vector3;
@@ -50,7 +50,7 @@ pub(super) const KIND: Kind = Kind {
         },
     ],
     variants: &[&["amplitude_m", "pitch_m", "phase_rad"], &["amplitude_N", "pitch_m", "phase_rad"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     // From 20 mm to 1 mm a turn, finer than a stroke of 0.2 m can tell apart.
     scan: Some(Scan {

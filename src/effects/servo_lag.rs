@@ -1,6 +1,6 @@
 //! Commands that pass a first-order filter before the servo follows them.
 
-use super::kind::{linear, zeros};
+use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Command, Commands, Mechanism};
 use std::sync::Arc;
@@ -15,13 +15,13 @@ pub(super) const KIND: Kind = Kind {
     parameters: &[Parameter {
         name: "time_constant_s",
         unit: "s",
-        about: "time constant tau",
+        about: "time constant tau, below 1/(2 pi f) of the fastest command",
         bounds: [0.0, 0.5],
         step: 1e-5,
         default: Some(0.0),
     }],
     variants: &[&["time_constant_s"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     scan: None,
     apply,
@@ -39,7 +39,8 @@ const LAGUERRE: [[f64; 2]; 6] = [
 ];
 
 /// `q_f(t) = ∫₀^∞ e^{−s} q_cmd(t − τ s) ds`: the filter's answer to all of its past. It needs no
-/// state, and commands are smooth functions of time.
+/// state, and commands are smooth functions of time. The quadrature errs by 2e-7 of an oscillation at
+/// ω τ = 0.5, by 3e-4 at 1 and by 5 % at 2.
 #[derive(Debug)]
 struct Filtered {
     inner: Arc<dyn Commands>,

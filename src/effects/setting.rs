@@ -1,6 +1,6 @@
 //! An effect with its numbers.
 
-use super::{Joints, Kind, named};
+use super::{Joints, Kind, Parameter, named};
 use crate::mechanism::Mechanism;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -107,6 +107,12 @@ impl Setting {
     /// The values that were given, by name.
     pub fn values(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
         self.values.iter().copied()
+    }
+
+    /// The same effect with every value that it takes, defaults included.
+    pub fn filled(&self) -> Self {
+        let value = |p: &Parameter| Some((p.name, self.value(p.name)?));
+        Self { values: self.kind.parameters.iter().filter_map(value).collect(), ..self.clone() }
     }
 
     /// The same effect with other values of the parameters that were given.

@@ -1,6 +1,6 @@
 //! A cable or hose that pulls at the platform.
 
-use super::kind::zeros;
+use super::kind::defaults;
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
@@ -39,7 +39,7 @@ pub(super) const KIND: Kind = Kind {
         },
     ],
     variants: &[&["stiffness_N_m", "anchor_x_m", "anchor_y_m", "rest_length_m"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: |_| {
         // Anchors around the machine, near and far, taut and slack for a part of the motion.
         let ring = |radius: f64| (0..8).map(move |k| (radius, TAU * f64::from(k) / 8.0));

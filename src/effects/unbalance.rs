@@ -1,6 +1,6 @@
 //! A rotor out of balance on the platform.
 
-use super::kind::{Range, Scan, linear, zeros};
+use super::kind::{Range, Scan, defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
@@ -41,7 +41,7 @@ pub(super) const KIND: Kind = Kind {
         },
     ],
     variants: &[&["mass_radius_kg_m", "frequency_Hz", "phase_rad"]],
-    neutral: zeros,
+    neutral: defaults,
     starts: linear,
     scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Peaks }),
     apply,

@@ -83,7 +83,7 @@ impl Adaptive {
         let dynamics = Dynamics::new(mechanism);
         Self {
             tolerance: tolerance * share(mechanism),
-            longest: mechanism.longest_servo_step().map_or(LONGEST_STEP, |s| s.min(LONGEST_STEP)),
+            longest: mechanism.longest_smooth_step().map_or(LONGEST_STEP, |s| s.min(LONGEST_STEP)),
             world: World::new(mechanism, false),
             coupled: dynamics.coupled(),
             dynamics,

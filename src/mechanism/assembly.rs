@@ -64,7 +64,7 @@ impl Mechanism {
             let bodies = [joint.cylinder.body, joint.rod.body];
             let telescope = joint.telescope(states);
             let [from, to] = [&joint.cylinder, &joint.rod].map(|a| a.frame(states).centre);
-            let [a, b] = bodies.map(|b| b.map_or(UnitComplex::identity(), |b| states[b].rotation));
+            let [a, b] = [&joint.cylinder, &joint.rod].map(|a| a.rotation(states));
             rows.extend(prismatic_rows(&telescope, bodies));
             gaps.extend([
                 (to - from).dot(&telescope.n),

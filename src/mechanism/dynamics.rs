@@ -169,7 +169,12 @@ impl Dynamics {
         for (joint, contact) in mechanism.revolutes.iter().zip(&mut out.contacts) {
             let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
             if let Bearing::Clearance(clearance) = &joint.bearing {
-                let (state, forces) = clearance.forces(&ring, &journal);
+                let (state, forces) = match &joint.out_of_round {
+                    None => clearance.forces(&ring, &journal),
+                    Some(shape) => {
+                        shape.forces(clearance, joint.ring.rotation(states), &ring, &journal)
+                    }
+                };
                 *contact = state;
                 if let Some([on_bearing, on_journal]) = forces {
                     add(&mut out.wrenches, joint.ring.body, on_bearing);
@@ -192,7 +197,11 @@ impl Dynamics {
                 out.command(mechanism);
                 let command = &out.commands[i];
                 let [length, rate] = joint.read(state.length, state.length_rate);
-                let force = stiffness * (command.length - length) + damping * (command.rate - rate);
+                let (error, error_rate) = (command.length - length, command.rate - rate);
+                let force = match &joint.transmission {
+                    None => stiffness * error + damping * error_rate,
+                    Some(link) => link.force([stiffness, damping], error, error_rate),
+                };
                 out.drive_forces[i] = force;
                 let [on_cylinder, on_rod] = state.drive(force);
                 add(&mut out.wrenches, joint.cylinder.body, on_cylinder);
@@ -438,6 +447,7 @@ mod tests {
                 rod: attachment(1, 0.1),
                 drive,
                 reading_errors: Vec::new(),
+                transmission: None,
             }],
             commands: Arc::new(Constant),
             epoch: 0.0,

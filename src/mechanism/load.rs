@@ -1,6 +1,6 @@
 //! What acts on a mechanism beside gravity, contacts and drives.
 
-use super::{BodyState, Mechanism};
+use super::{BodyState, Drive, Mechanism};
 use nalgebra::{Vector2, Vector3};
 use std::fmt::Debug;
 
@@ -19,6 +19,12 @@ pub struct Situation<'a> {
 pub trait Load: Debug + Send + Sync {
     /// Adds the load's wrenches (N, N, N·m about each centre of mass) to those of the bodies.
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]);
+
+    /// The longest step in s (fixed step, explicit) that the load stands on this mechanism, or `None`
+    /// where it sets no limit: a damper c on a mass m needs `h c/m ≤ 1` (unstable from 2).
+    fn longest_step(&self, _mechanism: &Mechanism) -> Option<f64> {
+        None
+    }
 }
 
 impl Situation<'_> {
@@ -44,5 +50,15 @@ impl Situation<'_> {
                 wrenches[body] += wrench;
             }
         }
+    }
+}
+
+impl Mechanism {
+    /// The longest step in s that a damper of at most `damping` N·s/m along prismatic joint `index`
+    /// stands, or `None` where there is none; a prescribed length does not heed it.
+    pub fn rod_damper_step(&self, index: usize, damping: f64) -> Option<f64> {
+        let joint = &self.prismatics[index];
+        let felt = joint.drive != Drive::Prescribed && damping > 0.0;
+        felt.then(|| self.stroke_mass(joint) / damping)
     }
 }

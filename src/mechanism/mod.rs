@@ -14,12 +14,14 @@ mod load;
 mod reading;
 mod rows;
 mod telescope;
+mod transmission;
 
 pub use dynamics::{Dynamics, Evaluation};
 pub use load::{Load, Situation};
 pub use reading::ReadingError;
+pub use transmission::Transmission;
 
-use crate::contact::{Clearance, Frame};
+use crate::contact::{Clearance, Frame, OutOfRound};
 use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -166,6 +168,8 @@ pub struct Revolute {
     pub journal: Attachment,
     /// What the joint does.
     pub bearing: Bearing,
+    /// How its ring departs from a circle, if it does; [`Bearing::Clearance`] alone looks at it.
+    pub out_of_round: Option<OutOfRound>,
 }
 
 /// How a prismatic joint is driven along its axis.
@@ -196,6 +200,8 @@ pub struct Prismatic {
     pub drive: Drive,
     /// How its true length differs from what its encoder and its drive read, in sum.
     pub reading_errors: Vec<Arc<dyn ReadingError>>,
+    /// What gives between drive and rod, if anything does; a [`Drive::Servo`] alone feels it.
+    pub transmission: Option<Transmission>,
 }
 
 /// Commanded length of one prismatic joint at one time.
@@ -316,24 +322,43 @@ impl Mechanism {
             let Bearing::Clearance(clearance) = &joint.bearing else { return None };
             Some(clearance.law.longest_step(self.joint_mass(joint), speed))
         });
-        joints.chain(self.longest_servo_step()).reduce(f64::min)
+        joints.chain(self.longest_smooth_step()).reduce(f64::min)
+    }
+
+    /// The longest step in s that every servo and every load stands, or `None` where nothing limits it.
+    pub fn longest_smooth_step(&self) -> Option<f64> {
+        let loads = self.loads.iter().filter_map(|load| load.longest_step(self));
+        loads.chain(self.longest_servo_step()).reduce(f64::min)
     }
 
     /// The longest step in s that every servo stands: on two bodies of reduced mass μ,
     /// `h ≤ √(μ/k_p)` and `h ≤ μ/k_d` (explicit), or `None` without servos.
     pub fn longest_servo_step(&self) -> Option<f64> {
-        let lightness =
-            |attachment: &Attachment| attachment.body.map_or(0.0, |i| 1.0 / self.bodies[i].mass);
         let servos = self.prismatics.iter().filter_map(|joint| {
             let Drive::Servo { stiffness, damping } = joint.drive else { return None };
-            let mass = 1.0 / (lightness(&joint.cylinder) + lightness(&joint.rod));
+            let gains = [stiffness, damping];
+            let [stiffness, damping] = joint.transmission.map_or(gains, |t| t.gains(gains));
+            let mass = self.stroke_mass(joint);
             Some((mass / stiffness).sqrt().min(mass / damping))
         });
         servos.reduce(f64::min)
     }
+
+    /// Mass in kg that the two bodies of a prismatic joint oppose to its drive,
+    /// `1/m = 1/m_1 + 1/m_2`.
+    pub fn stroke_mass(&self, joint: &Prismatic) -> f64 {
+        let lightness =
+            |attachment: &Attachment| attachment.body.map_or(0.0, |i| 1.0 / self.bodies[i].mass);
+        1.0 / (lightness(&joint.cylinder) + lightness(&joint.rod))
+    }
 }
 
 impl Attachment {
+    /// Rotation of the body that carries the point.
+    pub fn rotation(&self, states: &[BodyState]) -> UnitComplex<f64> {
+        self.body.map_or(UnitComplex::identity(), |i| states[i].rotation)
+    }
+
     /// Where the point is and how it moves, given the states of all bodies.
     pub fn frame(&self, states: &[BodyState]) -> Frame {
         match self.body {

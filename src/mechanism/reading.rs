@@ -1,6 +1,6 @@
 //! What the encoder of a prismatic joint reads, against its true length.
 
-use super::{Command, Prismatic};
+use super::{Command, Evaluation, Mechanism, Prismatic};
 use std::fmt::Debug;
 
 /// How a prismatic joint's true length differs from what its encoder and its drive read.
@@ -47,5 +47,18 @@ impl Prismatic {
             rate: first * read.rate,
             acceleration: first * read.acceleration + second * read.rate * read.rate,
         }
+    }
+}
+
+impl Mechanism {
+    /// Length in m that the encoder of prismatic joint `index` shows at an instant. It sits at the
+    /// drive's end of the [`Transmission`](super::Transmission): play and give show there, beside the
+    /// errors of the encoder itself.
+    pub fn encoder(&self, index: usize, now: &Evaluation) -> f64 {
+        let joint = &self.prismatics[index];
+        let [read, _] = joint.read(now.lengths[index], 0.0);
+        let error = now.commands[index].length - read;
+        let force = now.drive_forces[index];
+        read + joint.transmission.map_or(0.0, |link| link.ahead(error, force))
     }
 }

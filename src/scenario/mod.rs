@@ -183,6 +183,7 @@ impl Scenario {
         machine.platform_inertia = Some(machine.platform_inertia());
         full.simulation.settle = Some(full.simulation.settle());
         full.simulation.set_step_control(self.step_control());
+        full.effects = self.effects.iter().map(Setting::filled).collect();
         if let Motion::Table(table) = &mut full.motion {
             let file = self.resolve(&table.file);
             let file = std::path::absolute(&file).unwrap_or(file);

@@ -19,7 +19,8 @@ pub struct Machine {
     pub mechanism: Mechanism,
     /// What the output body is asked to do.
     pub motion: Arc<dyn Motion>,
-    /// The same machine with ideal joints and prescribed drives: what results are compared with.
+    /// The machine as declared, without effects, with ideal joints and prescribed drives: what results
+    /// are compared with.
     pub ideal: Ideal,
     /// Which instants are wanted.
     pub schedule: Schedule,

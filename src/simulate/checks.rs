@@ -76,8 +76,13 @@ fn step(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
         ))),
         (Law::HertzStep, StepControl::Fixed(step)) => {
             let longest = machine.mechanism.longest_step(TYPICAL_IMPACT_SPEED)?;
-            let servo = machine.mechanism.longest_servo_step() == Some(longest);
-            let what = if servo { "servos" } else { "hits of the journals" };
+            let what = if machine.mechanism.longest_servo_step() == Some(longest) {
+                "servos"
+            } else if machine.mechanism.longest_smooth_step() == Some(longest) {
+                "effects"
+            } else {
+                "hits of the journals"
+            };
             let message = format!("is {step:e} s, too long for the {what}");
             let help =
                 format!("use at most {:.1e} s, or simulation.tolerance", two_digits_below(longest));

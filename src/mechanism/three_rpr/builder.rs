@@ -67,6 +67,7 @@ pub fn build(
             rod: at(2 * leg + 1, half[1]),
             drive,
             reading_errors: Vec::new(),
+            transmission: None,
         });
     }
     let (mass, inertia) = platform;
@@ -84,7 +85,7 @@ pub fn build(
                 let ring = Attachment { body: Some(6), point: geometry.corner(leg) };
                 (ring, at(2 * leg + 1, half[1]))
             };
-            Revolute { name: JOINTS[i].into(), ring, journal, bearing }
+            Revolute { name: JOINTS[i].into(), ring, journal, bearing, out_of_round: None }
         })
         .collect();
     Mechanism {

@@ -1,0 +1,69 @@
+//! A drive that is not rigidly connected to its rod.
+
+use super::kind::{defaults, linear};
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Drive, Mechanism, Prismatic, Transmission};
+
+/// Compliance in m/N below which a prescribed drive stays rigid: its motion would ask for steps below
+/// 5 µs and differ from the rigid one by a nanometre per newton.
+const RIGID: f64 = 1e-9;
+
+/// Stiffness in N/m with which a prescribed drive holds its end of a link that gives: a million times
+/// any link's, so that the link alone counts.
+const HELD: f64 = 1e15;
+
+pub(super) const KIND: Kind = Kind {
+    name: "drive-compliance",
+    summary: "an elastic link between drive and rod: a belt, a coupling, a long screw",
+    equation: "read length = true length + compliance F, F the force on the rod: the encoder sits at the drive. \
+               Servo and link are springs and dampers in series, the drive's end without mass: \
+               F = k k_p/(k + k_p) e + (k^2 k_d + k_p^2 d)/(k + k_p)^2 de/dt, k = 1/compliance, \
+               e = q_cmd - q; a prescribed drive holds its end as commanded",
+    source: "springs in series; massless drive to first order in frequency",
+    trace: "measured pose against measured lengths: with the force of the same actuator",
+    joints: Joints::PrismaticOrAll,
+    parameters: &[
+        Parameter {
+            name: "compliance_m_N",
+            unit: "m/N",
+            about: "give of the link, 1/k; under 1e-9 m/N a prescribed drive stays rigid",
+            bounds: [0.0, 1e-3],
+            step: 1e-7,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "damping_Ns_m",
+            unit: "N s/m",
+            about: "damping d of the link: a few percent of critical for a rod of 0.1 kg on 1e6 N/m",
+            bounds: [0.0, 1e5],
+            step: 1.0,
+            default: Some(20.0),
+        },
+    ],
+    variants: &[&["compliance_m_N"]],
+    neutral: defaults,
+    starts: linear,
+    apply,
+};
+
+/// Lets the motor of a prescribed drive hold the end of a link in place of the rod.
+pub(super) fn release(joint: &mut Prismatic) {
+    if joint.drive == Drive::Prescribed {
+        joint.drive = Drive::Servo { stiffness: HELD, damping: 0.0 };
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let compliance = setting.number("compliance_m_N");
+    for index in setting.prismatics(mechanism)? {
+        let joint = &mut mechanism.prismatics[index];
+        if compliance == 0.0 || joint.drive == Drive::Prescribed && compliance < RIGID {
+            continue;
+        }
+        release(joint);
+        let link = joint.transmission.get_or_insert(Transmission::default());
+        link.compliance += compliance;
+        link.damping = setting.number("damping_Ns_m");
+    }
+    Ok(())
+}

@@ -1,0 +1,118 @@
+//! Friction between rod and cylinder that is larger near rest.
+
+use super::kind::defaults;
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Load, Mechanism, Situation};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+const fn speed(name: &'static str, about: &'static str, default: f64) -> Parameter {
+    Parameter { name, unit: "m/s", about, bounds: [1e-6, 1.0], step: 1e-3, default: Some(default) }
+}
+
+pub(super) const KIND: Kind = Kind {
+    name: "stribeck-friction",
+    summary: "friction between rod and cylinder that is larger near rest than in motion: stick-slip",
+    equation: "force on the rod -([F_c + (F_s - F_c) exp(-(v/v_s)^2)] tanh(v/v_0) + F_v v), v the rod's speed",
+    source: "Stribeck; Bo and Pavelescu, Wear 82 (1982) 277-289; Armstrong-Helouvry, Dupont, Canudas de \
+             Wit, Automatica 30 (1994) 1083-1138",
+    trace: "the force of one actuator: with the direction of its own motion, most where it turns round",
+    joints: Joints::Prismatic,
+    parameters: &[
+        Parameter {
+            name: "coulomb_N",
+            unit: "N",
+            about: "friction F_c in motion",
+            bounds: [0.0, 1e4],
+            step: 0.05,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "static_N",
+            unit: "N",
+            about: "friction F_s near rest; where not given, coulomb_N",
+            bounds: [0.0, 1e4],
+            step: 0.05,
+            default: None,
+        },
+        Parameter {
+            name: "viscous_Ns_m",
+            unit: "N s/m",
+            about: "viscous friction F_v",
+            bounds: [0.0, 1e5],
+            step: 0.2,
+            default: Some(0.0),
+        },
+        speed(
+            "stribeck_m_s",
+            "speed v_s over which F_s falls to F_c: a tenth of working speeds",
+            0.02,
+        ),
+        speed(
+            "velocity_m_s",
+            "speed v_0 at which friction is near its full value: slow against v_s",
+            1e-3,
+        ),
+    ],
+    variants: &[
+        &["coulomb_N", "static_N", "stribeck_m_s"],
+        &["coulomb_N", "static_N", "stribeck_m_s", "viscous_Ns_m"],
+    ],
+    neutral: defaults,
+    // A fall over the slowest tenth of the motion, and over most of it.
+    starts: |variant| {
+        [0.01, 0.1]
+            .map(|fall| {
+                let value = |name: &&str| match *name {
+                    "coulomb_N" => 0.1,
+                    "static_N" => 0.2,
+                    "stribeck_m_s" => fall,
+                    _ => 0.0,
+                };
+                variant.iter().map(value).collect()
+            })
+            .into()
+    },
+    apply,
+};
+
+/// The friction of one prismatic joint.
+#[derive(Debug)]
+struct Friction {
+    joint: usize,
+    coulomb: f64,
+    static_friction: f64,
+    viscous: f64,
+    stribeck: f64,
+    velocity: f64,
+}
+
+impl Load for Friction {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let [_, rate] = at.length(self.joint);
+        let near_rest = (-(rate / self.stribeck).powi(2)).exp();
+        let dry = self.coulomb + (self.static_friction - self.coulomb) * near_rest;
+        let force = -dry * (rate / self.velocity).tanh() - self.viscous * rate;
+        at.push_rod(self.joint, force, wrenches);
+    }
+
+    fn longest_step(&self, mechanism: &Mechanism) -> Option<f64> {
+        let steepest = self.coulomb.max(self.static_friction) / self.velocity + self.viscous;
+        mechanism.rod_damper_step(self.joint, steepest)
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let coulomb = setting.number("coulomb_N");
+    for joint in setting.prismatics(mechanism)? {
+        mechanism.loads.push(Arc::new(Friction {
+            joint,
+            coulomb,
+            static_friction: setting.value("static_N").unwrap_or(coulomb),
+            viscous: setting.number("viscous_Ns_m"),
+            stribeck: setting.number("stribeck_m_s"),
+            velocity: setting.number("velocity_m_s"),
+        }));
+    }
+    Ok(())
+}
