@@ -29,10 +29,10 @@ pub(super) const KIND: Kind = Kind {
         Parameter {
             name: "eccentricity_max",
             unit: "",
-            about: "eps_max, from which the film grows no stiffer: surfaces are rough, and films tear",
+            about: "eps_max, from which the film grows no stiffer: surfaces are rough, and films tear; steps shorten with its stiffness there",
             bounds: [0.0, 0.99],
             step: 0.01,
-            default: Some(0.9),
+            default: Some(0.8),
         },
     ],
     variants: &[&["damping_Ns_m"]],
