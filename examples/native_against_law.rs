@@ -83,6 +83,7 @@ fn mechanism(bearing: Bearing, x: f64) -> Mechanism {
         name: "journal".into(),
         mass: MASS,
         inertia: 4.5e-6,
+        reference: Vector2::zeros(),
         start: BodyState {
             position: Vector2::new(x, 0.0),
             twist: Vector3::new(SPEED, 0.0, 0.0),
@@ -100,6 +101,8 @@ fn mechanism(bearing: Bearing, x: f64) -> Mechanism {
         }],
         prismatics: Vec::new(),
         commands: Arc::new(Undriven),
+        epoch: 0.0,
+        loads: Vec::new(),
         gravity: Vector2::zeros(),
         native: NativeContacts::default(),
         output: 0,

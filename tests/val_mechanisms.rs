@@ -42,7 +42,7 @@ fn at(body: usize, x: f64) -> Attachment {
 const GROUND: Attachment = Attachment { body: None, point: Vector2::new(0.0, 0.0) };
 
 fn joint(ring: Attachment, journal: Attachment, bearing: Bearing) -> Revolute {
-    Revolute { name: "joint".into(), ring, journal, bearing }
+    Revolute { name: "joint".into(), ring, journal, bearing, out_of_round: None }
 }
 
 /// A mechanism without drives.
@@ -272,6 +272,7 @@ fn slider_crank(bearing: Bearing, speed: f64) -> Mechanism {
         rod: at(2, 0.0),
         drive: Drive::Servo { stiffness: 0.0, damping: 0.0 },
         reading_errors: Vec::new(),
+        transmission: None,
     };
     Mechanism { prismatics: vec![guide], ..free(bodies, joints, 0.0) }
 }
@@ -355,6 +356,7 @@ fn a_chain_of_prismatic_joints_keeps_energy_and_momentum() {
         rod: at(i + 1, 0.0),
         drive: Drive::Servo { stiffness, damping: 0.0 },
         reading_errors: Vec::new(),
+        transmission: None,
     };
     let mechanism =
         Mechanism { prismatics: vec![prismatic(0), prismatic(1)], ..free(bodies, vec![], 0.0) };

@@ -22,6 +22,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["relative"]],
     neutral: defaults,
     starts: linear,
+    scan: None,
     apply,
 };
 

@@ -44,6 +44,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["play_m"]],
     neutral: defaults,
     starts: linear,
+    scan: None,
     apply,
 };
 

@@ -43,6 +43,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["compliance_m_N"]],
     neutral: defaults,
     starts: linear,
+    scan: None,
     apply,
 };
 

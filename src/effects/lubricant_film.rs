@@ -38,6 +38,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["damping_Ns_m"]],
     neutral: defaults,
     starts: linear,
+    scan: None,
     apply,
 };
 

@@ -44,6 +44,7 @@ pub(super) const KIND: Kind = Kind {
     neutral: defaults,
     // An oval of a tenth of a millimetre in eight directions of its half turn.
     starts: |_| (0..8).map(|k| vec![1e-4, TAU * f64::from(k) / 16.0]).collect(),
+    scan: None,
     apply,
 };
 

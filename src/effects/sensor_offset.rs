@@ -23,6 +23,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["offset_m"]],
     neutral: defaults,
     starts: linear,
+    scan: None,
     apply,
 };
 

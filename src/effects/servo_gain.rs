@@ -22,6 +22,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["stiffness_relative"], &["stiffness_relative", "damping_relative"]],
     neutral: defaults,
     starts: linear,
+    scan: None,
     apply,
 };
 

@@ -73,6 +73,7 @@ pub(super) const KIND: Kind = Kind {
             })
             .into()
     },
+    scan: None,
     apply,
 };
 
