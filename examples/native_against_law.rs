@@ -98,6 +98,7 @@ fn mechanism(bearing: Bearing, x: f64) -> Mechanism {
             ring: centre(None),
             journal: centre(Some(0)),
             bearing,
+            out_of_round: None,
         }],
         prismatics: Vec::new(),
         commands: Arc::new(Undriven),

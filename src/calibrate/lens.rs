@@ -118,7 +118,11 @@ impl Lens {
                 };
                 signals[leg].values.push(servo);
                 let length = machine.length(leg, self.poses[i], look.leans[leg]);
-                signals[3 + leg].values.push(q - joint.read(length, 0.0)[0]);
+                let read = joint.read(length, 0.0)[0];
+                let force = self.smooth_forces[i][leg];
+                let ahead =
+                    joint.transmission.map_or(0.0, |link| link.ahead(command.length - read, force));
+                signals[3 + leg].values.push(q - read - ahead);
                 signals[6 + leg].values.push(self.smooth_forces[i][leg] - look.forces[leg]);
             }
         }

@@ -6,6 +6,7 @@ pub mod fit;
 pub mod lens;
 pub mod model;
 pub mod replica;
+pub mod search;
 pub mod spectrum;
 
 pub use commands::LoggedCommands;

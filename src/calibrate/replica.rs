@@ -57,10 +57,8 @@ pub fn simulate(
             force.push(*value);
         }
         if row >= lead && (row - lead).is_multiple_of(fine) {
-            for ((joint, length), column) in
-                mechanism.prismatics.iter().zip(&now.lengths).zip(&mut lengths)
-            {
-                column.push(joint.read(*length, 0.0)[0]);
+            for (joint, column) in lengths.iter_mut().enumerate() {
+                column.push(mechanism.encoder(joint, now));
             }
             let output = mechanism.output_state(instant.states);
             let angle = output.rotation.angle();

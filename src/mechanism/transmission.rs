@@ -45,7 +45,7 @@ impl Transmission {
 
     /// How far in m the drive's end of the link is ahead of the rod while q_cmd − q is `error` (m) and
     /// the drive pushes with `force` N.
-    pub(super) fn ahead(&self, error: f64, force: f64) -> f64 {
+    pub fn ahead(&self, error: f64, force: f64) -> f64 {
         self.gap(error) + self.compliance * force
     }
 
