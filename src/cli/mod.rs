@@ -13,6 +13,7 @@ mod failure;
 mod merge;
 mod options;
 mod output;
+mod paper;
 mod progress;
 mod run;
 mod sweep;
@@ -38,6 +39,7 @@ Examples:
   freeplay run                                  the built-in machine, into ./freeplay-run-default
   freeplay run --set joints.clearance=1e-4      the same with 0.1 mm of clearance
   freeplay compare                              contact law, native contacts, no clearance
+  freeplay paper                                the paper's figures and claims, each checked
   freeplay check my-machine.toml                what can be said without simulating
   freeplay sweep --vary joints.clearance=1e-8..1e-3:log:100     many clearances, one table
   freeplay effects payload                      what a scenario can add to a machine
@@ -48,6 +50,7 @@ Exit codes: 0 done, 2 wrong input, 1 anything else.";
 enum Command {
     Run(run::Arguments),
     Compare(compare::Arguments),
+    Paper(paper::Arguments),
     Check(check::Arguments),
     Sweep(sweep::Arguments),
     Merge(merge::Arguments),
@@ -60,6 +63,7 @@ pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(arguments) => run::main(&arguments),
         Command::Compare(arguments) => compare::main(&arguments),
+        Command::Paper(arguments) => paper::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
         Command::Sweep(arguments) => sweep::main(&arguments),
         Command::Merge(arguments) => merge::main(&arguments),

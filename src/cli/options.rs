@@ -10,6 +10,13 @@ pub(super) struct ScenarioOptions {
     /// Scenario file (TOML); without one, the built-in scenario
     #[arg(value_name = "SCENARIO")]
     file: Option<PathBuf>,
+    #[command(flatten)]
+    overrides: Overrides,
+}
+
+/// What is changed in a scenario.
+#[derive(Debug, Args)]
+pub(super) struct Overrides {
     /// Set one value of the scenario; may be given many times
     ///
     /// PATH is section.key, VALUE is TOML (a bare word is a string), SI units:
@@ -34,6 +41,13 @@ impl ScenarioOptions {
     }
 
     /// All overrides, in their order.
+    pub fn sets(&self) -> Vec<String> {
+        self.overrides.sets()
+    }
+}
+
+impl Overrides {
+    /// All of them, in their order.
     pub fn sets(&self) -> Vec<String> {
         let duration = self.duration.map(|s| format!("simulation.duration={s:?}"));
         self.sets.iter().cloned().chain(duration).collect()

@@ -29,6 +29,9 @@ pub(super) const PALETTE: [RGBColor; 6] = [
     RGBColor(0x56, 0xb4, 0xe9),
 ];
 
+/// Areas between curves: faint enough for the grid and every line to show on it.
+pub(super) const BAND: RGBColor = RGBColor(0xd8, 0xdd, 0xe3);
+
 pub(super) type Backend<'a> = SVGBackend<'a>;
 pub(super) type Area<'a> = DrawingArea<Backend<'a>, Shift>;
 pub(super) type DrawError = DrawingAreaErrorKind<std::io::Error>;

@@ -7,8 +7,8 @@ use plotters::style::text_anchor::HPos;
 
 use super::axis::{Axis, drawable, padded, range_of, with_room};
 use super::canvas::{
-    Area, DrawError, FAINT_INK, FRAME, GRID, INK, PALETTE, PX, REFERENCE, WIDTH, empty_frame, font,
-    heading, line, part, picture, shortened, write,
+    Area, BAND, DrawError, FAINT_INK, FRAME, GRID, INK, PALETTE, PX, REFERENCE, WIDTH, empty_frame,
+    font, heading, line, part, picture, shortened, write,
 };
 use super::{Curve, Panel, ReportError, Style};
 
@@ -109,6 +109,7 @@ fn line_styles(curves: &[Curve]) -> Vec<ShapeStyle> {
     let mut colors = PALETTE.iter().cycle();
     let style = |curve: &Curve| match curve.style {
         Style::Solid | Style::Dots => line(colors.next().unwrap_or(&INK), 12),
+        Style::Band => line(&BAND, 12),
         Style::Reference => line(&REFERENCE, 10),
     };
     curves.iter().map(style).collect()
@@ -138,6 +139,9 @@ impl Chart<'_> {
             let y = TITLE + row * LEGEND_ROW + LEGEND_ROW / 3;
             if curve.style == Style::Dots {
                 area.draw(&Circle::new((x + 13 * PX, y), LEGEND_DOT, style.color.filled()))?;
+            } else if curve.style == Style::Band {
+                let (upper, lower) = ((x, y - LEGEND_DOT * 2), (x + 26 * PX, y + LEGEND_DOT * 2));
+                area.draw(&Rectangle::new([upper, lower], style.color.filled()))?;
             } else {
                 let swatch = vec![(x, y), (x + 26 * PX, y)];
                 area.draw(&PathElement::new(swatch, style.stroke_width(20)))?;
@@ -190,13 +194,15 @@ impl Chart<'_> {
             }
         }
         // References last: they stay visible on a busy signal.
-        for wanted in [Style::Dots, Style::Solid, Style::Reference] {
+        for wanted in [Style::Band, Style::Dots, Style::Solid, Style::Reference] {
             for (curve, style) in self.curves.iter().zip(styles) {
                 if curve.style != wanted {
                     continue;
                 }
                 let points: Vec<_> = drawable_points(curve).collect();
-                if wanted == Style::Dots {
+                if wanted == Style::Band {
+                    chart.draw_series([Polygon::new(points, style.color.filled())])?;
+                } else if wanted == Style::Dots {
                     let dot = style.color.mix(0.6).filled();
                     chart.draw_series(points.into_iter().map(|p| Circle::new(p, DOT, dot)))?;
                 } else if let Some(first) = points.first()
@@ -285,6 +291,16 @@ mod tests {
         let svg = panels_svg(&[panel(vec![ideal, real])]).unwrap();
         assert!(svg.contains("polyline[stroke=\"#222222\"]"));
         assert!(svg.rfind("stroke=\"#222222\"") > svg.rfind("stroke=\"#0072B2\""));
+    }
+
+    #[test]
+    fn a_band_is_an_area_below_the_lines() {
+        let area = vec![(0.0, 0.0), (1.0, 1.0), (1.0, 2.0), (0.0, 3.0)];
+        let band = Curve { style: Style::Band, ..curve("all", area) };
+        let svg = panels_svg(&[panel(vec![curve("one", vec![(0.0, 1.0), (1.0, 1.5)]), band])]);
+        let svg = svg.unwrap();
+        let polygon = svg.find("<polygon").unwrap();
+        assert!(svg.rfind("<polyline").unwrap() > polygon);
     }
 
     #[test]

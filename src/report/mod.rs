@@ -32,6 +32,8 @@ pub enum Style {
     Solid,
     /// A dot for each point, each such curve of a panel in its own colour.
     Dots,
+    /// The area inside the points, faint and below all lines: between what and what curves lie.
+    Band,
     /// A thin dark dashed line on top of the others: what the ideal machine does.
     Reference,
 }

@@ -94,6 +94,13 @@ fn growth(mechanism: &Mechanism, distances: &Distances) -> Option<f64> {
     (points.len() >= 10).then_some(covariance / variance)
 }
 
+/// Largest Lyapunov exponent in 1/s of a mechanism, from one pair of runs of `duration` s that starts
+/// displaced in a direction (share of a turn). `None` where there is nothing to see: no joint has
+/// clearance under a law, a run breaks down, or the range of growth is too short.
+pub fn exponent(mechanism: &Mechanism, duration: f64, direction: f64) -> Option<f64> {
+    growth(mechanism, &pair(mechanism, duration, direction)?)
+}
+
 /// The first time in s at which a distance exceeds `size` m, if it does.
 fn first_beyond(distances: &Distances, size: f64) -> Option<f64> {
     distances.iter().find(|(_, d)| *d > size).map(|(t, _)| *t)

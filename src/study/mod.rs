@@ -1,11 +1,12 @@
-//! What users come for: a run with all its files, what can be said of a scenario without one, and
-//! many runs at once.
+//! What users come for: a run with all its files, what can be said of a scenario without one, many runs
+//! at once, and the paper's study.
 
 pub mod chaos;
 mod check;
 pub mod compare;
 mod film;
 mod folder;
+pub mod paper;
 mod pictures;
 mod recent;
 mod run;

@@ -13,6 +13,7 @@ mod verdict;
 
 pub use first_hit::{FirstHit, FirstHits};
 pub use plan::Options;
+pub(in crate::study) use probe::quantile;
 pub use quantities::{QUANTITIES, Quantity};
 pub use result::{ChaosResult, Comparison, NativeResult, RowResult, TrendResult};
 pub use statistics::{Behaviour, Mean, Trend};
