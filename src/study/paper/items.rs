@@ -2,7 +2,7 @@
 
 use crate::study::compare::Quantity;
 
-/// One measured quantity; the number is its place in [`QUANTITIES`].
+/// One measured quantity; the number is its place in the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Item {
     /// Largest |(a_x, a_y)| of the platform over all steps.
@@ -25,7 +25,7 @@ pub enum Item {
     Impacts,
     /// Root mean square distance from the ideal position.
     PathError,
-    /// Jump of (a_x, a_y), see [`JUMP`].
+    /// Jump of (a_x, a_y): its change within 1 ms, as a share of what noise changes.
     AccelerationJump,
     /// Jump of φ''.
     AngularJump,
