@@ -43,6 +43,7 @@ pub struct Lens {
     leaning_forces: Vec<[f64; 3]>,
     lengths: Vec<[f64; 3]>,
     rates: Vec<[f64; 3]>,
+    smooth_rates: Vec<[f64; 3]>,
     poses: Vec<Vector3<f64>>,
     smooth: Vec<[Vector3<f64>; 3]>,
 }
@@ -75,6 +76,10 @@ impl Lens {
             smooth_forces: triples([&smooth_f[0], &smooth_f[1], &smooth_f[2]]),
             leaning_forces: triples([&leaning[0], &leaning[1], &leaning[2]]),
             lengths: triples(q),
+            smooth_rates: {
+                let rates = q.map(|column| derivative(&filter.apply(column), h));
+                triples([&rates[0], &rates[1], &rates[2]])
+            },
             rates: {
                 let rates = q.map(|column| derivative(column, h));
                 triples([&rates[0], &rates[1], &rates[2]])
@@ -86,6 +91,23 @@ impl Lens {
         })
     }
 
+    /// The nine residuals without a value.
+    pub fn nothing(&self) -> Vec<Signal> {
+        let bands = [SERVO_BAND, CLOSURE_BAND, DYNAMICS_BAND].into_iter();
+        bands.flat_map(|band| (0..3).map(move |_| Signal { values: Vec::new(), band })).collect()
+    }
+
+    /// Measured pose (m, m, rad) and its rate, smoothed, at a row.
+    pub fn motion(&self, row: usize) -> [Vector3<f64>; 2] {
+        let [pose, rate, _] = self.smooth[row];
+        [pose, rate]
+    }
+
+    /// Measured speed of a prismatic joint in m/s at a row.
+    pub fn speed(&self, row: usize, leg: usize) -> f64 {
+        self.smooth_rates[row][leg]
+    }
+
     /// The rows that residuals can be had of: all but the ends.
     pub fn rows(&self) -> Range<usize> {
         let available = self.poses.len() - 2 * self.trim;
@@ -94,10 +116,7 @@ impl Lens {
 
     /// The nine residuals: servo, closure, dynamics, of each leg in turn.
     pub fn residuals(&self, mechanism: &Mechanism, rows: Range<usize>) -> Vec<Signal> {
-        let mut signals: Vec<Signal> = [SERVO_BAND, CLOSURE_BAND, DYNAMICS_BAND]
-            .into_iter()
-            .flat_map(|band| (0..3).map(move |_| Signal { values: Vec::new(), band }))
-            .collect();
+        let mut signals = self.nothing();
         let mut machine = Machine::new(mechanism);
         let mut commands = [Command::default(); 3];
         for i in rows {
@@ -120,8 +139,7 @@ impl Lens {
                 let length = machine.length(leg, self.poses[i], look.leans[leg]);
                 let read = joint.read(length, 0.0)[0];
                 let force = self.smooth_forces[i][leg];
-                let ahead =
-                    joint.transmission.map_or(0.0, |link| link.ahead(command.length - read, force));
+                let ahead = joint.transmission.map_or(0.0, |link| link.pressed(force));
                 signals[3 + leg].values.push(q - read - ahead);
                 signals[6 + leg].values.push(self.smooth_forces[i][leg] - look.forces[leg]);
             }

@@ -2,11 +2,14 @@
 
 pub mod candidates;
 pub mod commands;
+pub mod errors;
 pub mod fit;
 pub mod lens;
 pub mod model;
+pub mod outcome;
 pub mod replica;
 pub mod search;
 pub mod spectrum;
+pub mod unnamed;
 
 pub use commands::LoggedCommands;

@@ -23,8 +23,10 @@ pub const LEAD: f64 = 0.25;
 pub struct Run {
     /// The log.
     pub log: Log,
-    lens: Lens,
-    commands: Arc<LoggedCommands>,
+    /// What models say of it.
+    pub lens: Lens,
+    /// Its commands.
+    pub commands: Arc<LoggedCommands>,
     pose: Vector3<f64>,
 }
 
@@ -77,6 +79,8 @@ pub struct Case {
     pub control: StepControl,
     /// Simulations of each run that a floor and a bias are taken from.
     pub replicas: usize,
+    /// Whether joints rattle: replicas then differ by more than sensors see.
+    pub chaotic: bool,
 }
 
 /// What simulations of a model say of its own residuals: their mean, which is the lens's fault, and
@@ -195,6 +199,29 @@ impl Case {
         Ok((run.lens.residuals(&machine, segment.rows.clone()), lengths))
     }
 
+    /// A signal of each leg's dynamics on segments (leg, then value at each row), as the residual of
+    /// the dynamics would show it, in units of noise.
+    pub fn white_forces(
+        &self,
+        baseline: &Baseline,
+        on: &[Segment],
+        values: &dyn Fn(usize, usize, usize) -> f64,
+    ) -> DVector<f64> {
+        let mut all = Vec::new();
+        for part in baseline.parts.iter().filter(|part| on.contains(&part.segment)) {
+            let run = part.segment.run;
+            let mut signals = self.runs[run].lens.nothing();
+            for (c, signal) in signals.iter_mut().enumerate() {
+                let rows = part.segment.rows.clone();
+                signal.values =
+                    rows.map(|row| if c < 6 { 0.0 } else { values(run, c - 6, row) }).collect();
+            }
+            let coefficients = transform(&signals, self.runs[run].log.interval);
+            all.extend(part.noise.whiten(&coefficients).iter());
+        }
+        DVector::from_vec(all)
+    }
+
     /// Residuals of the data under a model in units of noise, of all segments in a row.
     pub fn white(
         &self,
@@ -219,12 +246,10 @@ impl Case {
 }
 
 impl Baseline {
-    /// The same bias in units of another baseline's noise.
-    pub fn with_noise_of(mut self, other: &Baseline) -> Self {
-        for (part, other) in self.parts.iter_mut().zip(&other.parts) {
-            part.noise.clone_from(&other.noise);
-        }
-        self
+    /// Logarithm of the determinant of the noise on segments.
+    pub fn log_determinant(&self, on: &[Segment]) -> f64 {
+        let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
+        parts.map(|part| part.noise.log_determinant()).sum()
     }
 
     /// Channel (servo, closure, dynamics of each leg) and frequency in Hz of each number of

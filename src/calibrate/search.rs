@@ -63,6 +63,9 @@ pub struct Settled {
     pub baseline: Baseline,
     /// Σ of squares on the held-out segments.
     pub held: f64,
+    /// −2 log likelihood there, but for a constant: Σ of squares plus the logarithm of the noise's
+    /// determinant. A model that rattles more is not better for explaining less.
+    pub misfit: f64,
 }
 
 /// What a search found.
@@ -70,6 +73,8 @@ pub struct Settled {
 pub struct Found {
     /// The model in the end.
     pub model: Settled,
+    /// The model as declared.
+    pub declared: Settled,
     /// Round by round.
     pub rounds: Vec<Round>,
     /// Simulations it took.
@@ -94,13 +99,14 @@ impl Question<'_> {
 }
 
 /// Fits the values of a model, simulating it anew each time: the lens's own fault depends on them.
-/// `noise` is that of another baseline, so that rivals are measured alike.
+///
+/// # Errors
+/// A machine that cannot be simulated.
 pub fn settle(
     case: &Case,
     question: &Question,
     effects: &[Setting],
     times: usize,
-    noise: Option<&Baseline>,
 ) -> Result<Settled, SearchError> {
     let segments = question.segments();
     let mut effects = effects.to_vec();
@@ -108,10 +114,7 @@ pub fn settle(
     for _ in 0..times.max(1) {
         let machines = case.machines(&effects)?;
         let logs = case.simulate(&machines)?;
-        let mut baseline = case.baseline(&machines, &logs, &segments);
-        if let Some(noise) = noise {
-            baseline = baseline.with_noise_of(noise);
-        }
+        let baseline = case.baseline(&machines, &logs, &segments);
         let target = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
         let iterations = if effects.is_empty() { 0 } else { 6 };
         let Some(mut fit) = fit::fit(&target, &effects, iterations) else { break };
@@ -119,7 +122,8 @@ pub fn settle(
         let held = Target { on: question.hold, ..target };
         let held = held.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
         effects.clone_from(&fit.effects);
-        settled = Some(Settled { fit, baseline, held });
+        let misfit = held + baseline.log_determinant(question.hold);
+        settled = Some(Settled { fit, baseline, held, misfit });
         if effects.is_empty() {
             break;
         }
@@ -140,7 +144,8 @@ pub fn search(
 ) -> Result<Found, SearchError> {
     tell("simulating the model as declared");
     let mut simulations = case.runs.len() * case.replicas;
-    let mut model = settle(case, question, &[], 1, None)?;
+    let mut model = settle(case, question, &[], 1)?;
+    let declared = model.clone();
     let mut rounds = Vec::new();
     while model.fit.effects.len() < EFFECTS {
         tell(&format!("trying every effect beside {}", names(&model.fit.effects)));
@@ -155,28 +160,22 @@ pub fn search(
             .take(RIVALS)
             .collect();
         let mut winner: Option<(usize, Settled)> = None;
-        let mut noise: Option<Baseline> = None;
         for &i in &rivals {
             let (scored, effects) = &ranking[i];
             tell(&format!("simulating with {}", name(&scored.effect)));
             simulations += 2 * case.runs.len() * case.replicas;
-            let Ok(settled) = settle(case, question, effects, 2, noise.as_ref()) else { continue };
-            noise.get_or_insert_with(|| settled.baseline.clone());
+            let Ok(settled) = settle(case, question, effects, 2) else { continue };
             let values = scored.effect.values().count() as f64;
-            let before = model_in(case, question, &model, noise.as_ref());
             let (scored, _) = &mut ranking[i];
-            scored.gain = before - settled.held - GAIN_PER_VALUE * values;
-            scored.share = share(before, settled.held, case, question, &settled.baseline);
+            let drop = model.misfit - settled.misfit;
+            scored.gain = drop - GAIN_PER_VALUE * values;
+            scored.share = share(model.held, model.held - drop, case, question, &settled.baseline);
             scored.simulated = true;
             if let Some(own) = settled.fit.effects.last() {
                 scored.effect = own.clone();
             }
-            let better = |best: &Settled, count: f64| {
-                settled.held + GAIN_PER_VALUE * values < best.held + GAIN_PER_VALUE * count
-            };
-            let count =
-                winner.as_ref().map_or(0.0, |(w, _)| ranking[*w].0.effect.values().count() as f64);
-            if winner.as_ref().is_none_or(|(_, best)| better(best, count)) {
+            let best = winner.as_ref().map_or(f64::NEG_INFINITY, |(w, _)| ranking[*w].0.gain);
+            if ranking[i].0.gain > best {
                 winner = Some((i, settled));
             }
         }
@@ -192,17 +191,9 @@ pub fn search(
         let Some((_, settled)) = winner else { break };
         tell(&format!("settling {}", names(&settled.fit.effects)));
         simulations += 2 * case.runs.len() * case.replicas;
-        model = settle(case, question, &settled.fit.effects, 2, None)?;
+        model = settle(case, question, &settled.fit.effects, 2)?;
     }
-    Ok(Found { model, rounds, simulations })
-}
-
-/// Σ of squares of a model on the held-out segments in units of another baseline's noise.
-fn model_in(case: &Case, question: &Question, model: &Settled, noise: Option<&Baseline>) -> f64 {
-    let Some(noise) = noise else { return model.held };
-    let baseline = model.baseline.clone().with_noise_of(noise);
-    let target = Target { case, baseline: &baseline, on: question.hold, fixed: &[], blind: None };
-    target.look(&model.fit.effects).map_or(model.held, |fit| fit.chi2)
+    Ok(Found { model, declared, rounds, simulations })
 }
 
 /// Share of what is above noise that is gone.

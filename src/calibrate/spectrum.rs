@@ -115,6 +115,13 @@ impl Noise {
         DVector::from_vec(white)
     }
 
+    /// Logarithm of the determinant of the whole covariance: what a model pays for being noisy, where
+    /// likelihoods are compared.
+    pub fn log_determinant(&self) -> f64 {
+        let logs = self.factors.iter().map(|f| f.l_dirty().diagonal().map(f64::ln).sum());
+        2.0 * logs.sum::<f64>()
+    }
+
     /// Channel and frequency bin of each number that [`whiten`](Self::whiten) returns.
     pub fn places(&self) -> Vec<(usize, usize)> {
         let bins = self.active.iter().enumerate();

@@ -28,9 +28,11 @@ mod setting;
 mod stribeck_friction;
 mod tether;
 mod unbalance;
+mod unnamed;
 
 pub use kind::{Joints, Kind, Parameter, Range, Scan};
 pub use setting::{Setting, Wrong};
+pub use unnamed::{DependsOn, Map, Motion};
 
 /// Every effect there is, in the order in which they are listed.
 pub const ALL: &[&Kind] = &[
@@ -57,6 +59,7 @@ pub const ALL: &[&Kind] = &[
     &drag::KIND,
     &base_vibration::KIND,
     &unbalance::KIND,
+    &unnamed::KIND,
 ];
 
 /// The effect called `name`.

@@ -1,8 +1,9 @@
 //! An effect with its numbers.
 
-use super::{Joints, Kind, Parameter, named};
+use super::{Joints, Kind, Map, Parameter, named};
 use crate::mechanism::Mechanism;
 use serde::ser::{Serialize, SerializeMap, Serializer};
+use std::sync::Arc;
 
 /// What is wrong with a [`Setting`]: the key, what it is, what would be right.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,6 +24,8 @@ pub struct Setting {
     /// The joint it is given; none where it acts on the whole machine or on all joints.
     pub joint: Option<String>,
     values: Vec<(&'static str, f64)>,
+    /// What an effect without a name does.
+    pub(super) map: Option<Arc<Map>>,
 }
 
 impl PartialEq for Setting {
@@ -30,13 +33,25 @@ impl PartialEq for Setting {
         self.kind.name == other.kind.name
             && self.joint == other.joint
             && self.values == other.values
+            && self.map == other.map
     }
 }
 
 impl Setting {
     /// The effect `kind` of a joint, if it is given one, with these values of its parameters.
     pub fn new(kind: &'static Kind, joint: Option<&str>, values: &[(&'static str, f64)]) -> Self {
-        Self { kind, joint: joint.map(str::to_owned), values: values.to_vec() }
+        Self { kind, joint: joint.map(str::to_owned), values: values.to_vec(), map: None }
+    }
+
+    /// A fitted map of forces that have no name.
+    pub fn unnamed(map: Map) -> Self {
+        let kind = &super::unnamed::KIND;
+        Self { kind, joint: None, values: Vec::new(), map: Some(Arc::new(map)) }
+    }
+
+    /// The map of an effect without a name.
+    pub fn map(&self) -> Option<&Map> {
+        self.map.as_deref()
     }
 
     /// Reads the keys of an `[[effect]]`, all but `kind`.
@@ -54,7 +69,11 @@ impl Setting {
                 format!("known: {} (`freeplay effects` explains them)", names.join(", ")),
             ));
         };
-        let mut setting = Self { kind, joint: None, values: Vec::new() };
+        let mut setting = Self { kind, joint: None, values: Vec::new(), map: None };
+        if kind.name == super::unnamed::KIND.name {
+            setting.map = Some(Arc::new(Map::from_table(table)?));
+            return Ok(setting);
+        }
         for (key, value) in table {
             if key == "joint" && kind.joints != Joints::None {
                 let Some(joint) = value.as_str() else {
@@ -166,6 +185,12 @@ impl Serialize for Setting {
         }
         for (name, value) in &self.values {
             map.serialize_entry(name, value)?;
+        }
+        if let Some(unnamed) = &self.map {
+            map.serialize_entry("depends_on", &unnamed.depends_on)?;
+            map.serialize_entry("middle", &unnamed.middle)?;
+            map.serialize_entry("reach", &unnamed.reach)?;
+            map.serialize_entry("coefficients", &unnamed.coefficients)?;
         }
         map.end()
     }

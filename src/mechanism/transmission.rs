@@ -45,8 +45,14 @@ impl Transmission {
 
     /// How far in m the drive's end of the link is ahead of the rod while q_cmd − q is `error` (m) and
     /// the drive pushes with `force` N.
-    pub fn ahead(&self, error: f64, force: f64) -> f64 {
+    pub(super) fn ahead(&self, error: f64, force: f64) -> f64 {
         self.gap(error) + self.compliance * force
+    }
+
+    /// How far in m the drive's end is ahead of a rod that is known to be pushed with `force` N: it lies
+    /// at one flank or the other. Where the force is a tenth of a newton or less, noise decides.
+    pub fn pressed(&self, force: f64) -> f64 {
+        0.5 * self.play * (force / 0.1).tanh() + self.compliance * force
     }
 
     /// The part of `error` that lies between the flanks.

@@ -1,0 +1,239 @@
+//! The whole way: from a rig and its logs to a verdict, a calibrated model and its errors.
+
+use super::errors::{self, ChannelError};
+use super::fit::{self, Target};
+use super::model::{Case, Run, Segment};
+use super::search::{Found, Question, Round, SearchError, Settled, name, search};
+use super::unnamed::{Described, describe, settle_described};
+use crate::effects::Setting;
+use crate::measure::log::Log;
+use serde::Serialize;
+
+/// What a calibration comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Named effects bring the residual down to noise.
+    Explained,
+    /// The declared model does so by itself.
+    NothingMissing,
+    /// Something remains that no effect with a name explains.
+    Unexplained,
+}
+
+/// A fitted value.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// Name of the parameter.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: f64,
+}
+
+impl Estimate {
+    /// The interval that holds the true value 95 times in 100.
+    pub fn ci95(&self) -> [f64; 2] {
+        [self.value - 1.96 * self.std, self.value + 1.96 * self.std]
+    }
+}
+
+/// How much of a residual stands above noise, on data not used for fits.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Left {
+    /// Which residual: servo, closure, dynamics.
+    pub residual: &'static str,
+    /// Mean square in units of noise: 1 for noise.
+    pub mean_square: f64,
+    /// Its largest coefficient in units of noise.
+    pub largest: f64,
+    /// Up to where noise reaches.
+    pub limit: f64,
+}
+
+/// A calibration.
+#[derive(Debug)]
+pub struct Outcome {
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// The effects that were found, each with its estimates.
+    pub effects: Vec<(Setting, Vec<Estimate>)>,
+    /// What was described where nothing could be named.
+    pub described: Option<Described>,
+    /// What is left of the residuals under the declared and under the calibrated model.
+    pub before: Vec<Left>,
+    /// The same under the named effects alone.
+    pub after: Vec<Left>,
+    /// Round by round.
+    pub rounds: Vec<Round>,
+    /// Errors, run by run and channel by channel.
+    pub errors: Vec<ChannelError>,
+    /// What the calibrated model predicts, run by run.
+    pub predictions: Vec<Log>,
+    /// What the declared model predicts, run by run.
+    pub declared: Vec<Log>,
+    /// Simulations it took.
+    pub simulations: usize,
+}
+
+/// Mean squares and largest coefficients, in units of noise, up to which a residual is noise; with
+/// gravity, where nothing is chaotic, and without. Replicas of models that lack nothing stay well
+/// below.
+const LIMITS: [([f64; 2], f64); 3] = [([1.5, 2.0], 7.0), ([1.25, 1.8], 6.5), ([1.2, 1.45], 6.0)];
+const NAMES: [&str; 3] = ["servo", "closure", "dynamics"];
+
+/// Calibrates: fits on the first run, judges on the others; with one run alone, fits on its first half
+/// and judges on the second.
+///
+/// # Errors
+/// A rig that cannot be simulated.
+pub fn calibrate(
+    case: &Case,
+    without: &[&str],
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<Outcome, SearchError> {
+    let whole = |run: usize| Segment { run, rows: case.runs[run].rows() };
+    let (on, hold) = match case.runs.len() {
+        1 => {
+            let rows = case.runs[0].rows();
+            let middle = rows.start + rows.len() / 2;
+            let [first, second] = [rows.start..middle, middle..rows.end];
+            (vec![Segment { run: 0, rows: first }], vec![Segment { run: 0, rows: second }])
+        }
+        count => (vec![whole(0)], (1..count).map(whole).collect()),
+    };
+    let question = Question { on: &on, hold: &hold, without };
+    let Found { model, declared, rounds, mut simulations } = search(case, &question, tell)?;
+    let before = left(case, &question, &declared);
+    let after = left(case, &question, &model);
+    let explained = after.iter().all(|l| l.mean_square < l.limit) && largest_is_noise(&after);
+    let (verdict, described, last) = if !explained {
+        tell("describing what has no name");
+        let described = describe(case, &question, &declared)?.filter(|d| d.share > 0.05);
+        let settled = match &described {
+            Some(described) => settle_described(case, &question, &declared, described)?,
+            None => declared.clone(),
+        };
+        (Verdict::Unexplained, described, settled)
+    } else if model.fit.effects.is_empty() {
+        (Verdict::NothingMissing, None, model)
+    } else {
+        (Verdict::Explained, None, model)
+    };
+    let estimates = estimates(&last);
+    tell("predicting the runs");
+    let [declared, predicted] = [&[][..], &last.fit.effects]
+        .map(|effects| Ok::<_, SearchError>(case.simulate(&case.machines(effects)?)?));
+    let (declared, predicted) = (declared?, predicted?);
+    simulations += 2 * case.runs.len() * case.replicas;
+    let role = |run: usize| if run == 0 { "calibration" } else { "validation" };
+    let errors = case.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| {
+        errors::of_run(case, &run.log, role(i), &declared[i], &predicted[i])
+    });
+    Ok(Outcome {
+        verdict,
+        effects: last.fit.effects.iter().cloned().zip(estimates).collect(),
+        described,
+        before,
+        after,
+        rounds,
+        errors: errors.collect(),
+        predictions: predicted.iter().map(|logs| errors::ensemble(logs)).collect(),
+        declared: declared.iter().map(|logs| errors::ensemble(logs)).collect(),
+        simulations,
+    })
+}
+
+/// What is left of a model's residuals on the held-out segments.
+fn left(case: &Case, question: &Question, model: &Settled) -> Vec<Left> {
+    let baseline = &model.baseline;
+    let target = Target { case, baseline, on: question.hold, fixed: &[], blind: None };
+    let Some(held) = target.look(&model.fit.effects) else { return Vec::new() };
+    let places = baseline.places(case, question.hold);
+    (0..3)
+        .map(|group| {
+            let own = held.white.iter().zip(&places).filter(|(_, (c, _))| c / 3 == group);
+            let (mut sum, mut count, mut largest) = (0.0, 0.0, 0.0f64);
+            for (value, _) in own {
+                sum += value * value;
+                count += 1.0;
+                largest = largest.max(value.abs());
+            }
+            let limits = LIMITS[group].0;
+            let limit = if case.chaotic { limits[1] } else { limits[0] };
+            Left { residual: NAMES[group], mean_square: sum / f64::max(count, 1.0), largest, limit }
+        })
+        .collect()
+}
+
+fn largest_is_noise(left: &[Left]) -> bool {
+    left.iter().zip(LIMITS).all(|(left, (_, largest))| left.largest < largest)
+}
+
+/// Estimates of each effect's values: `(JᵀJ)⁻¹` in units of noise, wider where the fit's own residual
+/// is larger than noise.
+fn estimates(model: &Settled) -> Vec<Vec<Estimate>> {
+    let count = fit::values(&model.fit.effects).len();
+    let mean_square = model.fit.chi2 / (model.fit.white.len().saturating_sub(count).max(1)) as f64;
+    let covariance = model.fit.jacobian.as_ref().and_then(|jacobian| {
+        let scale = jacobian.column_iter().map(|c| c.norm().max(1e-300)).collect::<Vec<_>>();
+        let mut normal = jacobian.transpose() * jacobian;
+        for r in 0..scale.len() {
+            for c in 0..scale.len() {
+                normal[(r, c)] /= scale[r] * scale[c];
+            }
+        }
+        let inverse = normal.pseudo_inverse(1e-12).ok()?;
+        Some(
+            (0..scale.len())
+                .map(|i| inverse[(i, i)].max(0.0).sqrt() / scale[i])
+                .collect::<Vec<_>>(),
+        )
+    });
+    let mut index = 0;
+    let mut next = || {
+        index += 1;
+        let std = covariance.as_ref().and_then(|c| c.get(index - 1).copied());
+        std.unwrap_or(f64::NAN) * mean_square.max(1.0).sqrt()
+    };
+    model
+        .fit
+        .effects
+        .iter()
+        .map(|effect| {
+            effect.values().map(|(name, value)| Estimate { name, value, std: next() }).collect()
+        })
+        .collect()
+}
+
+/// One sentence on what an effect rests on.
+pub fn evidence(outcome: &Outcome, effect: &Setting) -> String {
+    if let (Some(_), Some(described)) = (effect.map(), &outcome.described) {
+        let depends = described.others.first().map_or("", |(class, _)| class.words());
+        return format!(
+            "a force that varies with {depends} removes {:.0} % of what stands above noise on data \
+             not used for its fit; no effect with a name does",
+            100.0 * described.share
+        );
+    }
+    let same = |other: &Setting| other.kind.name == effect.kind.name && other.joint == effect.joint;
+    let round = outcome.rounds.iter().find(|r| r.added.as_ref().is_some_and(same));
+    let Some(round) = round else { return String::new() };
+    let own = round.ranking.iter().find(|scored| scored.simulated && same(&scored.effect));
+    let rival =
+        round.ranking.iter().find(|s| s.simulated && s.effect.kind.name != effect.kind.name);
+    let share = own.map_or(0.0, |scored| scored.share);
+    let mut text = format!(
+        "removes {:.1} % of what stood above noise on data not used for its fit",
+        100.0 * share
+    );
+    if let (Some(own), Some(rival)) = (own, rival) {
+        text += &format!(
+            "; the next best, {}, leaves {:.0} more in units of squared noise",
+            name(&rival.effect),
+            own.gain - rival.gain
+        );
+    }
+    text
+}
