@@ -9,6 +9,7 @@ pub mod model;
 pub mod outcome;
 pub mod replica;
 pub mod search;
+pub mod self_test;
 pub mod spectrum;
 pub mod unnamed;
 

@@ -3,7 +3,7 @@
 use super::errors::{self, ChannelError};
 use super::fit::{self, Target};
 use super::model::{Case, Run, Segment};
-use super::search::{Found, Question, Round, SearchError, Settled, name, search};
+use super::search::{Found, Question, Round, SearchError, Settled, name, search, settle};
 use super::unnamed::{Described, describe, settle_described};
 use crate::effects::Setting;
 use crate::measure::log::Log;
@@ -110,10 +110,11 @@ pub fn calibrate(
     let explained = after.iter().all(|l| l.mean_square < l.limit) && largest_is_noise(&after);
     let (verdict, described, last) = if !explained {
         tell("describing what has no name");
-        let described = describe(case, &question, &declared)?.filter(|d| d.share > 0.05);
+        let certain = certain(case, &question, &declared, &rounds)?;
+        let described = describe(case, &question, &certain)?.filter(|d| d.share > 0.05);
         let settled = match &described {
-            Some(described) => settle_described(case, &question, &declared, described)?,
-            None => declared.clone(),
+            Some(described) => settle_described(case, &question, &certain, described)?,
+            None => certain,
         };
         (Verdict::Unexplained, described, settled)
     } else if model.fit.effects.is_empty() {
@@ -143,6 +144,26 @@ pub fn calibrate(
         declared: declared.iter().map(|logs| errors::ensemble(logs)).collect(),
         simulations,
     })
+}
+
+/// Share of what stands above noise that an effect has to remove to be believed where something else
+/// remains: what passes for an effect without being it rarely removes as much.
+const CERTAIN: f64 = 0.9;
+
+/// The model with those effects alone that are certain although something else remains.
+fn certain(
+    case: &Case,
+    question: &Question,
+    declared: &Settled,
+    rounds: &[Round],
+) -> Result<Settled, SearchError> {
+    let believed = rounds.iter().map_while(|round| {
+        let added = round.added.as_ref()?;
+        let own = round.ranking.iter().find(|scored| scored.simulated)?;
+        (own.share > CERTAIN).then(|| added.clone())
+    });
+    let effects: Vec<Setting> = believed.collect();
+    if effects.is_empty() { Ok(declared.clone()) } else { settle(case, question, &effects, 4) }
 }
 
 /// What is left of a model's residuals on the held-out segments.
@@ -176,7 +197,7 @@ fn largest_is_noise(left: &[Left]) -> bool {
 fn estimates(model: &Settled) -> Vec<Vec<Estimate>> {
     let count = fit::values(&model.fit.effects).len();
     let mean_square = model.fit.chi2 / (model.fit.white.len().saturating_sub(count).max(1)) as f64;
-    let covariance = model.fit.jacobian.as_ref().and_then(|jacobian| {
+    let covariance = model.fit.jacobian.as_ref().filter(|_| count > 0).and_then(|jacobian| {
         let scale = jacobian.column_iter().map(|c| c.norm().max(1e-300)).collect::<Vec<_>>();
         let mut normal = jacobian.transpose() * jacobian;
         for r in 0..scale.len() {
