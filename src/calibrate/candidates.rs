@@ -159,14 +159,16 @@ fn waves(target: &Target, candidate: &Setting, [from, to, step]: [f64; 3]) -> Ve
             candidate.joint.as_ref().is_none_or(|joint| *joint == format!("P{}", leg + 1))
         })
         .collect();
-    let flat: Vec<Vec<f64>> =
-        legs.iter().map(|&leg| without_trend(lengths[leg], &signals[first + leg].values)).collect();
+    let flat: Vec<Vec<f64>> = legs
+        .iter()
+        .map(|&leg| without_trend(&lengths[leg], &signals[first + leg].values))
+        .collect();
     let count = ((to - from) / step) as usize;
     let power = (0..=count).map(|i| {
         let number = from + i as f64 * step;
         let (mut sine, mut cosine) = (0.0, 0.0);
         for (values, &leg) in flat.iter().zip(&legs) {
-            for (value, q) in values.iter().zip(lengths[leg]) {
+            for (value, q) in values.iter().zip(&lengths[leg]) {
                 let (s, c) = (TAU * number * q).sin_cos();
                 sine += value * s;
                 cosine += value * c;

@@ -29,6 +29,10 @@ const LEAN_CORNER: f64 = 40.0;
 const DYNAMICS_BAND: f64 = 90.0;
 const SERVO_BAND: f64 = 100.0;
 const CLOSURE_BAND: f64 = 150.0;
+/// Rate in Hz at which residuals are computed, at least, and the corner in Hz of the low-pass before it:
+/// beyond every band, and half the work of a log at 1 kHz.
+const RATE: f64 = 500.0;
+const PREFILTER: f64 = 200.0;
 /// Left out at both ends in s, where filters see beyond the log.
 const TRIM: f64 = 0.06;
 
@@ -36,6 +40,8 @@ const TRIM: f64 = 0.06;
 #[derive(Clone, Debug)]
 pub struct Lens {
     interval: f64,
+    /// One row in so many is looked at.
+    stride: usize,
     /// Rows left out at each end.
     trim: usize,
     forces: Vec<[f64; 3]>,
@@ -56,12 +62,19 @@ impl Lens {
     /// Prepares a log that has lengths, forces and pose.
     pub fn new(log: &Log) -> Option<Self> {
         let h = log.interval;
+        let stride = (1.0 / (RATE * h)).floor().max(1.0) as usize;
         let filter = ZeroPhase::butterworth(4, CORNER, h);
         let columns = |channel: fn(usize) -> Channel| -> Option<[&[f64]; 3]> {
             Some([log.get(channel(0))?, log.get(channel(1))?, log.get(channel(2))?])
         };
         let (q, f, pose) =
             (columns(Channel::Length)?, columns(Channel::Force)?, columns(Channel::Pose)?);
+        let thin = |columns: [&[f64]; 3]| {
+            let filter = (stride > 1).then(|| ZeroPhase::butterworth(4, PREFILTER, h));
+            columns.map(|c| filter.as_ref().map_or_else(|| c.to_vec(), |filter| filter.apply(c)))
+        };
+        let (q, f, pose) = (thin(q), thin(f), thin(pose));
+        let [q, f, pose] = [&q, &f, &pose].map(|columns| columns.each_ref().map(Vec::as_slice));
         let smooth_f = f.map(|column| filter.apply(column));
         let slow = ZeroPhase::butterworth(4, LEAN_CORNER, h);
         let leaning = f.map(|column| slow.apply(column));
@@ -71,6 +84,7 @@ impl Lens {
         let at = |columns: &[Vec<f64>; 3], i: usize| Vector3::from_fn(|k, _| columns[k][i]);
         Some(Self {
             interval: h,
+            stride,
             trim: (TRIM / h).round() as usize,
             forces: triples(f),
             smooth_forces: triples([&smooth_f[0], &smooth_f[1], &smooth_f[2]]),
@@ -89,6 +103,11 @@ impl Lens {
                 .map(|i| [at(&smooth, i), at(&rate, i), at(&acceleration, i)])
                 .collect(),
         })
+    }
+
+    /// One row in so many is looked at.
+    pub fn stride(&self) -> usize {
+        self.stride
     }
 
     /// The nine residuals without a value.
@@ -110,8 +129,8 @@ impl Lens {
 
     /// The rows that residuals can be had of: all but the ends.
     pub fn rows(&self) -> Range<usize> {
-        let available = self.poses.len() - 2 * self.trim;
-        self.trim..self.trim + fast_length(available)
+        let available = (self.poses.len() - 2 * self.trim) / self.stride;
+        self.trim..self.trim + fast_length(available) * self.stride
     }
 
     /// The nine residuals: servo, closure, dynamics, of each leg in turn.
@@ -119,7 +138,7 @@ impl Lens {
         let mut signals = self.nothing();
         let mut machine = Machine::new(mechanism);
         let mut commands = [Command::default(); 3];
-        for i in rows {
+        for i in rows.step_by(self.stride) {
             let t = i as f64 * self.interval;
             mechanism.commands.at(t, &mut commands);
             let [pose, rate, acceleration] = self.smooth[i];

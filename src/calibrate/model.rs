@@ -104,7 +104,7 @@ const DRAWS: usize = 16;
 impl Case {
     /// Coefficients of the residuals of a log under a mechanism.
     fn coefficients(&self, lens: &Lens, mechanism: &Mechanism, segment: &Segment) -> Vec<Vec<f64>> {
-        let interval = self.runs[segment.run].log.interval;
+        let interval = self.runs[segment.run].log.interval * lens.stride() as f64;
         transform(&lens.residuals(mechanism, segment.rows.clone()), interval)
     }
 
@@ -189,12 +189,12 @@ impl Case {
         &self,
         effects: &[Setting],
         segment: &Segment,
-    ) -> Result<(Vec<Signal>, [&[f64]; 3]), Problem> {
+    ) -> Result<(Vec<Signal>, [Vec<f64>; 3]), Problem> {
         let run = &self.runs[segment.run];
         let machine = run.machine(&self.rig, effects)?;
         let lengths = [0, 1, 2].map(|i| {
             let whole = run.log.get(Channel::Length(i)).unwrap_or_default();
-            &whole[segment.rows.clone()]
+            whole[segment.rows.clone()].iter().step_by(run.lens.stride()).copied().collect()
         });
         Ok((run.lens.residuals(&machine, segment.rows.clone()), lengths))
     }
@@ -212,11 +212,12 @@ impl Case {
             let run = part.segment.run;
             let mut signals = self.runs[run].lens.nothing();
             for (c, signal) in signals.iter_mut().enumerate() {
-                let rows = part.segment.rows.clone();
+                let rows = part.segment.rows.clone().step_by(self.runs[run].lens.stride());
                 signal.values =
                     rows.map(|row| if c < 6 { 0.0 } else { values(run, c - 6, row) }).collect();
             }
-            let coefficients = transform(&signals, self.runs[run].log.interval);
+            let interval = self.runs[run].log.interval * self.runs[run].lens.stride() as f64;
+            let coefficients = transform(&signals, interval);
             all.extend(part.noise.whiten(&coefficients).iter());
         }
         DVector::from_vec(all)

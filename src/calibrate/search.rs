@@ -167,8 +167,7 @@ fn simplified(case: &Case, question: &Question, model: Settled) -> Settled {
             let mut effects = best.fit.effects.clone();
             effects[i] = simpler;
             let baseline = best.baseline.clone();
-            let on =
-                Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
+            let on = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
             let Some(mut fit) = fit::fit(&on, &effects, 8) else { continue };
             let Some(held) = (Target { on: question.hold, ..on }).look(&fit.effects) else {
                 continue;
