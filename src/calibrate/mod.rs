@@ -1,13 +1,22 @@
 //! From a recorded run to the effect that the model lacks.
 
 pub mod candidates;
+mod charts;
 pub mod commands;
 pub mod errors;
 pub mod fit;
 pub mod lens;
 pub mod model;
 pub mod outcome;
+mod page;
+pub mod plausibility;
+pub mod predict;
+mod predict_page;
+pub mod rattle;
+pub mod recording;
 pub mod replica;
+pub mod report;
+pub mod result;
 pub mod search;
 pub mod self_test;
 pub mod spectrum;

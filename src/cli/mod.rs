@@ -4,6 +4,7 @@
 //! Exit codes: 0 done, 2 wrong input (what, where, what would be right), 1 anything else. Results go
 //! to standard output, everything else to standard error.
 
+mod calibrate;
 mod check;
 mod check_text;
 mod compare;
@@ -14,6 +15,7 @@ mod merge;
 mod options;
 mod output;
 mod paper;
+mod predict;
 mod progress;
 mod run;
 mod sweep;
@@ -42,6 +44,7 @@ Examples:
   freeplay paper                                the paper's figures and claims, each checked
   freeplay check my-machine.toml                what can be said without simulating
   freeplay sweep --vary joints.clearance=1e-8..1e-3:log:100     many clearances, one table
+  freeplay calibrate --rig rig.toml --data run.csv   what a declared model lacks, by measured data
   freeplay effects payload                      what a scenario can add to a machine
 
 Exit codes: 0 done, 2 wrong input, 1 anything else.";
@@ -51,6 +54,8 @@ enum Command {
     Run(run::Arguments),
     Compare(compare::Arguments),
     Paper(paper::Arguments),
+    Calibrate(calibrate::Arguments),
+    Predict(predict::Arguments),
     Check(check::Arguments),
     Sweep(sweep::Arguments),
     Merge(merge::Arguments),
@@ -64,6 +69,8 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::main(&arguments),
         Command::Compare(arguments) => compare::main(&arguments),
         Command::Paper(arguments) => paper::main(&arguments),
+        Command::Calibrate(arguments) => calibrate::main(&arguments),
+        Command::Predict(arguments) => predict::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
         Command::Sweep(arguments) => sweep::main(&arguments),
         Command::Merge(arguments) => merge::main(&arguments),

@@ -14,16 +14,23 @@ pub(super) struct ScenarioOptions {
     overrides: Overrides,
 }
 
-/// What is changed in a scenario.
+/// Values that are changed in a scenario.
 #[derive(Debug, Args)]
-pub(super) struct Overrides {
+pub(super) struct Sets {
     /// Set one value of the scenario; may be given many times
     ///
     /// PATH is section.key, VALUE is TOML (a bare word is a string), SI units:
     /// `joints.clearance=1e-4` (m), `drive.mode=servo`, `environment.gravity=[0,-9.81]` (m/s²),
     /// `motion.period=0.5` (s), `contact.law=native`, `simulation.output_interval=1e-4` (s).
     #[arg(long = "set", value_name = "PATH=VALUE")]
-    sets: Vec<String>,
+    pub sets: Vec<String>,
+}
+
+/// What is changed in a scenario.
+#[derive(Debug, Args)]
+pub(super) struct Overrides {
+    #[command(flatten)]
+    sets: Sets,
     /// Simulated time in seconds; short for --set simulation.duration=S
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration: Option<f64>,
@@ -50,7 +57,7 @@ impl Overrides {
     /// All of them, in their order.
     pub fn sets(&self) -> Vec<String> {
         let duration = self.duration.map(|s| format!("simulation.duration={s:?}"));
-        self.sets.iter().cloned().chain(duration).collect()
+        self.sets.sets.iter().cloned().chain(duration).collect()
     }
 }
 

@@ -3,6 +3,7 @@
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::sync::Once;
+use std::time::Duration;
 
 /// The resolution of the bar of a run.
 const TICKS: f64 = 1000.0;
@@ -46,6 +47,31 @@ impl Progress {
     }
 
     /// Removes the bar.
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// A line that says what is being done, where nobody knows how much there will be.
+#[derive(Debug)]
+pub(super) struct Spinner {
+    bar: ProgressBar,
+}
+
+impl Spinner {
+    /// A line without a word yet.
+    pub fn new(quiet: bool) -> Self {
+        let bar = bar(0, "{spinner} {elapsed} {wide_msg}", quiet);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self { bar }
+    }
+
+    /// What is being done now.
+    pub fn tell(&self, what: &str) {
+        self.bar.set_message(what.to_owned());
+    }
+
+    /// Removes the line.
     pub fn clear(&self) {
         self.bar.finish_and_clear();
     }

@@ -1,6 +1,8 @@
 //! Recorded runs: a CSV file, one row a sample, at a constant rate.
 
+use super::spelling::nearest;
 use std::fmt;
+use std::fmt::Write as _;
 use std::path::Path;
 
 /// What a column of a log holds. Joints count from 0.
@@ -115,7 +117,10 @@ impl Log {
             if name == "t" && time_column.is_none() {
                 time_column = Some(i);
             } else if channel.is_none() {
-                return Err(wrong(Some(1), format!("unknown column `{name}`"), &expected));
+                let known: Vec<&str> = names.iter().map(String::as_str).chain(["t"]).collect();
+                let help = nearest(name, &known)
+                    .map_or(expected.clone(), |near| format!("did you mean `{near}`? {expected}"));
+                return Err(wrong(Some(1), format!("unknown column `{name}`"), &help));
             } else if columns.contains(&channel) {
                 return Err(wrong(Some(1), format!("column `{name}` twice"), "keep one of them"));
             }
@@ -177,6 +182,30 @@ impl Log {
     /// Length of the log in s.
     pub fn duration(&self) -> f64 {
         self.samples.saturating_sub(1) as f64 * self.interval
+    }
+
+    /// The log as CSV, as [`Log::read`] takes it: commands as they are, lengths to a nanometre, forces
+    /// to a micronewton, angles to a nanoradian.
+    pub fn to_csv(&self) -> String {
+        let mut text = String::from("t");
+        for channel in self.channels() {
+            // Writing to a string cannot fail, here and below.
+            let _ = write!(text, ",{channel}");
+        }
+        text.push('\n');
+        for row in 0..self.samples {
+            let _ = write!(text, "{:.6}", self.start + row as f64 * self.interval);
+            for (channel, values) in &self.channels {
+                let value = values[row];
+                let _ = match channel {
+                    Channel::Command(_) => write!(text, ",{value}"),
+                    Channel::Force(_) => write!(text, ",{value:.6}"),
+                    Channel::Length(_) | Channel::Pose(_) => write!(text, ",{value:.9}"),
+                };
+            }
+            text.push('\n');
+        }
+        text
     }
 
     /// Samples `range` as a log of their own; its time starts where they do.

@@ -4,4 +4,5 @@ pub mod envelope;
 pub mod filter;
 pub mod frames;
 pub mod log;
+pub mod spelling;
 pub mod spline;

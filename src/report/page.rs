@@ -27,7 +27,7 @@ pub enum Part<'a> {
     Facts(&'a [Fact]),
     /// Any other table.
     Table(Table),
-    /// Pictures, each with its heading and caption. At most one such part a page: they are numbered.
+    /// Pictures, each with its heading and caption, numbered through the page.
     Pictures(&'a [Picture]),
     /// Paragraphs.
     Text {
@@ -71,7 +71,7 @@ pub fn document(title: &str, lead: &str, parts: &[Part]) -> String {
     let title = escaped(title);
     let lead = escaped(lead);
     let contents = contents(parts);
-    let sections: String = parts.iter().map(section).collect();
+    let sections: String = numbered(parts).map(|(first, part)| section(first, part)).collect();
     format!(
         "<!DOCTYPE html>\n\
          <html lang=\"en\">\n\
@@ -90,11 +90,22 @@ pub fn document(title: &str, lead: &str, parts: &[Part]) -> String {
     )
 }
 
-fn section(part: &Part) -> String {
+/// Parts, each with the number that its first picture has.
+fn numbered<'a>(parts: &'a [Part<'a>]) -> impl Iterator<Item = (usize, &'a Part<'a>)> {
+    parts.iter().scan(1, |next, part| {
+        let first = *next;
+        if let Part::Pictures(pictures) = part {
+            *next += pictures.len();
+        }
+        Some((first, part))
+    })
+}
+
+fn section(first: usize, part: &Part) -> String {
     match part {
         Part::Facts(facts) => facts_section(facts),
         Part::Table(table) => table_section(table),
-        Part::Pictures(pictures) => (1..).zip(*pictures).map(|(n, p)| figure(n, p)).collect(),
+        Part::Pictures(pictures) => (first..).zip(*pictures).map(|(n, p)| figure(n, p)).collect(),
         Part::Text { id, title, paragraphs } => text_section(id, title, paragraphs),
         Part::Link { file, text } => {
             format!("<p><a href=\"{}\">{}</a></p>\n", escaped(file), escaped(text))
@@ -108,13 +119,13 @@ fn contents(parts: &[Part]) -> String {
     let mut entry = |id: &str, text: &str| {
         entries += &format!("<li><a href=\"#{id}\">{text}</a></li>\n");
     };
-    for part in parts {
+    for (first, part) in numbered(parts) {
         match part {
             Part::Facts([]) | Part::Provenance([]) | Part::Link { .. } => {}
             Part::Facts(_) => entry("facts", "Results"),
             Part::Table(table) => entry(table.id, &escaped(&table.title)),
             Part::Pictures(pictures) => {
-                for (n, picture) in (1..).zip(*pictures) {
+                for (n, picture) in (first..).zip(*pictures) {
                     entry(&format!("figure-{n}"), &escaped(&picture.title));
                 }
             }

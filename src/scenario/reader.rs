@@ -6,6 +6,7 @@ use toml::{Table, Value};
 
 use super::document::{Origins, join};
 use super::problem::Problem;
+use crate::measure::spelling::nearest;
 
 /// Reads sections one by one and keeps all their problems.
 pub(super) struct Reader<'a> {
@@ -111,14 +112,8 @@ fn explain(path: &str, message: &str) -> (String, String) {
 
 /// The nearest of the known names, or all of them when none is near.
 fn suggest(stranger: &str, known: &[&str]) -> String {
-    // 0.8 accepts a wrong, missing or swapped letter or two and refuses unrelated words.
-    let nearest = known
-        .iter()
-        .map(|name| (strsim::jaro_winkler(stranger, name), name))
-        .filter(|(similarity, _)| *similarity > 0.8)
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    match nearest {
-        Some((_, name)) => format!("did you mean `{name}`?"),
+    match nearest(stranger, known) {
+        Some(name) => format!("did you mean `{name}`?"),
         None => format!("known here: {}", known.join(", ")),
     }
 }

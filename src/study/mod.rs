@@ -18,3 +18,4 @@ pub use check::{
 };
 pub use folder::{Folder, FolderError, default_name};
 pub use run::{Outcome, RunError, SUMMARY_FILE, run};
+pub(crate) use run::{PAGE_FILE, refused};

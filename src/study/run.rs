@@ -20,7 +20,7 @@ pub const SUMMARY_FILE: &str = "summary.json";
 
 const TIME_SERIES_FILE: &str = "timeseries.csv";
 pub(super) const SCENARIO_FILE: &str = "scenario.toml";
-pub(super) const PAGE_FILE: &str = "index.html";
+pub(crate) const PAGE_FILE: &str = "index.html";
 pub(super) const PLAYER_FILE: &str = "player.html";
 const ANIMATION_FILE: &str = "animation.svg";
 
@@ -55,7 +55,7 @@ pub enum RunError {
 }
 
 /// What becomes of an error of the file system about `file`.
-pub(super) fn refused(file: &str) -> impl FnOnce(io::Error) -> RunError {
+pub(crate) fn refused(file: &str) -> impl FnOnce(io::Error) -> RunError {
     let file = file.to_owned();
     |source| RunError::File { file, source }
 }

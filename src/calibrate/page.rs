@@ -1,0 +1,320 @@
+//! The page of a calibration: the verdict first, then how it came about.
+
+use super::charts::{Charts, OVER};
+use super::errors::ChannelError;
+use super::model::Case;
+use super::outcome::{Outcome, Verdict};
+use super::report::{Report, in_words};
+use crate::effects::Setting;
+use crate::report::{Fact, Part, Table, document, number};
+
+/// Candidates of a round that the page lists; the others are in `report.json`.
+const LISTED: usize = 8;
+
+/// The page as HTML.
+pub fn page(case: &Case, outcome: &Outcome, report: &Report, charts: &Charts) -> String {
+    let facts = facts(outcome, report);
+    let equations = equations(report);
+    let provenance = provenance(case, report);
+    let mut parts = vec![Part::Facts(&facts)];
+    if !outcome.effects.is_empty() {
+        parts.push(Part::Table(values(outcome, report)));
+        parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });
+    }
+    parts.push(Part::Table(errors_table(&report.errors, &ERRORS_NOTE.replace("{trim}", "60 ms"))));
+    parts.push(Part::Pictures(&charts.runs));
+    parts.push(Part::Table(dependence(charts)));
+    parts.push(Part::Pictures(&charts.over));
+    parts.push(Part::Table(candidates(outcome)));
+    parts.push(Part::Table(residuals(report)));
+    parts.push(Part::Provenance(&provenance));
+    let title = format!("Calibration of {}: {}", case.rig.name, verdict(outcome.verdict));
+    document(&title, &report.summary, &parts)
+}
+
+/// The verdict in a word or two.
+pub fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Explained => "explained",
+        Verdict::NothingMissing => "nothing missing",
+        Verdict::Unexplained => "unexplained",
+    }
+}
+
+/// The largest error after calibration in units of its floor, on data not used for fits where there
+/// are any, and whose it is.
+pub fn worst(errors: &[ChannelError]) -> Option<&ChannelError> {
+    let held = errors.iter().filter(|error| error.role == "validation");
+    let pool: Vec<&ChannelError> = held.collect();
+    let pool = if pool.is_empty() { errors.iter().collect() } else { pool };
+    pool.into_iter().max_by(|a, b| (a.after / a.floor).total_cmp(&(b.after / b.floor)))
+}
+
+fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {
+    let fact = |label: &str, value: String, note: String| Fact { label: label.into(), value, note };
+    let note = match outcome.verdict {
+        Verdict::Explained => {
+            "named effects bring every residual down to noise on data not used for fits"
+        }
+        Verdict::NothingMissing => "the declared model's residuals are noise",
+        Verdict::Unexplained => {
+            "residuals stand above noise, and no effect with a name explains them"
+        }
+    };
+    let mut facts = vec![fact("Verdict", verdict(outcome.verdict).to_owned(), note.to_owned())];
+    for (effect, estimates) in &outcome.effects {
+        let values: Vec<String> = estimates
+            .iter()
+            .map(|e| format!("{} = {} ± {}", e.name, number(e.value), number(e.std)))
+            .collect();
+        facts.push(fact("Found", in_words(effect), values.join(", ")));
+    }
+    if let Some(error) = worst(&report.errors) {
+        facts.push(fact(
+            "Worst channel",
+            format!("{} times its floor", number(error.after / error.floor)),
+            format!(
+                "{} of {}: {} {unit} under the declared model, {} {unit} calibrated, {} {unit} is left \
+                 to any model",
+                error.channel,
+                error.run,
+                number(error.before),
+                number(error.after),
+                number(error.floor),
+                unit = error.unit
+            ),
+        ));
+    }
+    let rattle = &report.rattle;
+    facts.push(fact(
+        "Rattle",
+        if rattle.chaotic { "beyond the sensors' noise" } else { "below the sensors' noise" }
+            .to_owned(),
+        format!(
+            "two runs of the declared model that start a hair apart differ in {} by {} times its \
+             sensor's noise; predictions are means over {} run(s)",
+            rattle.channel,
+            number(rattle.difference),
+            rattle.replicas
+        ),
+    ));
+    facts
+}
+
+fn values(outcome: &Outcome, report: &Report) -> Table {
+    let mut rows = Vec::new();
+    for ((effect, _), found) in outcome.effects.iter().zip(&report.effects) {
+        for (name, fitted) in &found.params {
+            let about = effect.kind.parameter(name).map_or("", |p| p.about);
+            let [low, high] = fitted.ci95.map(number);
+            rows.push(vec![
+                in_words(effect),
+                (*name).to_owned(),
+                number(fitted.value),
+                number(fitted.std),
+                format!("{low} to {high}"),
+                about.to_owned(),
+            ]);
+        }
+        if let Some(map) = effect.map() {
+            rows.push(vec![
+                in_words(effect),
+                "coefficients".to_owned(),
+                format!("{} for each actuator", map.coefficients.first().map_or(0, Vec::len)),
+                "–".to_owned(),
+                "–".to_owned(),
+                format!("force on each rod over {}; in calibrated.toml", map.depends_on.words()),
+            ]);
+        }
+    }
+    Table {
+        id: "effects",
+        title: "What the model was given".into(),
+        header: ["effect", "parameter", "value", "± standard deviation", "95 % interval", "meaning"]
+            .map(str::to_owned)
+            .into(),
+        rows,
+        note: "SI units, as each name says. calibrated.toml holds the rig with these effects: `freeplay \
+               run calibrated.toml` simulates it, `freeplay predict calibrated.toml --data RUN.csv` holds \
+               it against another recording."
+            .into(),
+    }
+}
+
+fn equations(report: &Report) -> Vec<String> {
+    let sentence = |effect: &super::report::EffectReport| {
+        let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
+        let evidence = if effect.evidence.is_empty() {
+            String::new()
+        } else {
+            format!(" It {}.", effect.evidence)
+        };
+        format!("{}{joint}: {}.{evidence}", effect.kind, effect.equation)
+    };
+    report.effects.iter().map(sentence).collect()
+}
+
+const ERRORS_NOTE: &str = "Root mean square of measured less predicted, both through a zero-phase low-pass of fourth order at 25 Hz, \
+     first and last {trim} left out. The floor is what sensor noise and the rattle's own unpredictability \
+     leave to any model: 1 in the last column is as good as it gets.";
+
+/// Errors by run and channel.
+pub fn errors_table(errors: &[ChannelError], note: &str) -> Table {
+    let rows = errors.iter().map(|e| {
+        vec![
+            format!("{} ({})", e.run, e.role),
+            e.channel.clone(),
+            format!("{} {}", number(e.before), e.unit),
+            format!("{} {}", number(e.after), e.unit),
+            format!("{} {}", number(e.floor), e.unit),
+            number(e.after / e.floor),
+        ]
+    });
+    Table {
+        id: "errors",
+        title: "Errors".into(),
+        header: ["run", "channel", "before", "after", "floor", "after/floor"]
+            .map(str::to_owned)
+            .into(),
+        rows: rows.collect(),
+        note: note.to_owned(),
+    }
+}
+
+fn dependence(charts: &Charts) -> Table {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let rows = charts.shares.iter().enumerate().map(|(leg, shares)| {
+        let cells = shares
+            .iter()
+            .map(|[before, after]| format!("{} → {}", percent(*before), percent(*after)));
+        std::iter::once(format!("actuator {}", leg + 1)).chain(cells).collect()
+    });
+    let over = OVER.iter().map(|(what, _)| format!("over {what}"));
+    Table {
+        id: "depends-on",
+        title: "What the residual depends on".into(),
+        header: std::iter::once("force not accounted for".to_owned()).chain(over).collect(),
+        rows: rows.collect(),
+        note: "Share of the variance of the actuator force that inverse dynamics does not account for, \
+               that lies between eight bins of each quantity (correlation ratio): declared → calibrated \
+               model. A few percent come by chance; what exceeds them names the family to look in."
+            .into(),
+    }
+}
+
+fn candidates(outcome: &Outcome) -> Table {
+    let mut rows = Vec::new();
+    let same = |a: &Setting, b: &Setting| a.kind.name == b.kind.name && a.joint == b.joint;
+    for (i, round) in outcome.rounds.iter().enumerate() {
+        let mut seen: Vec<&Setting> = Vec::new();
+        for scored in &round.ranking {
+            if seen.len() == LISTED || seen.iter().any(|other| same(other, &scored.effect)) {
+                continue;
+            }
+            seen.push(&scored.effect);
+            let added = round.added.as_ref().is_some_and(|added| same(added, &scored.effect));
+            let kept = outcome.effects.iter().any(|(effect, _)| same(effect, &scored.effect));
+            rows.push(vec![
+                (i + 1).to_string(),
+                in_words(&scored.effect),
+                format!("{:.1} %", 100.0 * scored.share),
+                number(scored.gain),
+                if scored.simulated { "yes" } else { "no" }.to_owned(),
+                match (added, kept) {
+                    (true, true) => "kept",
+                    (true, false) => "taken, not kept in the end",
+                    _ => "",
+                }
+                .to_owned(),
+            ]);
+        }
+        if round.added.is_none() {
+            rows.push(vec![
+                (i + 1).to_string(),
+                "none of them".to_owned(),
+                String::new(),
+                String::new(),
+                String::new(),
+                "the search ends".to_owned(),
+            ]);
+        }
+    }
+    if let Some(described) = &outcome.described {
+        for (depends_on, share) in &described.others {
+            rows.push(vec![
+                "–".to_owned(),
+                format!("a table over {}", depends_on.words()),
+                format!("{:.1} %", 100.0 * share.max(0.0)),
+                "–".to_owned(),
+                "no".to_owned(),
+                if described.effect.map().is_some_and(|map| map.depends_on == *depends_on) {
+                    "kept"
+                } else {
+                    ""
+                }
+                .to_owned(),
+            ]);
+        }
+    }
+    Table {
+        id: "candidates",
+        title: "Candidates, round by round".into(),
+        header: ["round", "candidate", "removes of what is above noise", "gain", "simulated", ""]
+            .map(str::to_owned)
+            .into(),
+        rows,
+        note: "Scores on data not used for a candidate's fit. In each round every effect is tried at every \
+               joint beside what was taken before; those that promise most are simulated. Gain is the drop \
+               of the sum of squares in units of noise, less what a candidate's values bring by chance. \
+               The best few of each round; all are in report.json."
+            .into(),
+    }
+}
+
+fn residuals(report: &Report) -> Table {
+    let rows = report.residuals.iter().map(|r| {
+        vec![
+            r.residual.to_owned(),
+            format!("{} → {}", number(r.mean_square_before), number(r.mean_square_after)),
+            number(r.noise_up_to),
+            format!("{} → {}", number(r.largest_before), number(r.largest_after)),
+        ]
+    });
+    Table {
+        id: "residuals",
+        title: "Residuals in units of noise".into(),
+        header: ["residual", "mean square", "noise up to", "largest"].map(str::to_owned).into(),
+        rows: rows.collect(),
+        note: "On data not used for fits, under the declared model → with the named effects; 1 is noise. \
+               Servo: does the drive obey its own law? Closure: do measured pose and lengths fit the \
+               geometry? Dynamics: are the measured forces those that the measured motion takes?"
+            .into(),
+    }
+}
+
+fn provenance(case: &Case, report: &Report) -> Vec<(String, String)> {
+    let runs: Vec<&str> = case.runs.iter().map(|run| run.log.name.as_str()).collect();
+    let replicas = report.seeds.replicas.len();
+    let entries = [
+        (
+            "Program",
+            format!(
+                "{} {}, on rapier2d-f64 {}",
+                report.program, report.version, report.rapier_version
+            ),
+        ),
+        ("Rig", report.scenario_name.clone()),
+        ("SHA-256 of the rig", report.scenario_hash.clone()),
+        ("Runs", runs.join(", ")),
+        (
+            "Excluded effects",
+            if report.without.is_empty() { "none".to_owned() } else { report.without.join(", ") },
+        ),
+        ("Seeds", format!("rig {}, replicas 0 to {}", report.seeds.scenario, replicas - 1)),
+        ("Error allowed for a step", format!("{} m/s", number(report.tolerance_m_s))),
+        ("Simulations of a run", report.simulations.to_string()),
+        ("Figures", "report.json beside this page".to_owned()),
+        ("Time of computing", format!("{} s", number(report.wall_s))),
+    ];
+    entries.map(|(label, value)| (label.to_owned(), value)).into()
+}

@@ -1,0 +1,51 @@
+//! The page of a prediction.
+
+use super::page::errors_table;
+use super::predict::Prediction;
+use crate::report::{Part, Picture, document, number};
+
+/// The page as HTML.
+pub fn page(prediction: &Prediction, pictures: &[Picture]) -> String {
+    let effects = if prediction.effects.is_empty() {
+        "as declared, without effects".to_owned()
+    } else {
+        format!("with {}", prediction.effects.join(", "))
+    };
+    let note = "Root mean square of measured less predicted, both through a zero-phase low-pass of fourth \
+                order at 25 Hz, first and last 60 ms left out. After: the model; before: the model without \
+                its effects; floor: what sensor noise and rattle leave to any model. A dash where there is \
+                no such model, or no sensors are declared.";
+    let provenance = provenance(prediction);
+    let mut parts = Vec::new();
+    if !prediction.errors.is_empty() {
+        parts.push(Part::Table(errors_table(&prediction.errors, note)));
+    }
+    parts.push(Part::Pictures(pictures));
+    parts.push(Part::Provenance(&provenance));
+    let lead = format!(
+        "{}, {effects}, driven by the commands of {}. {}",
+        prediction.scenario_name,
+        prediction.run,
+        if prediction.rattle.chaotic {
+            format!(
+                "It rattles by more than its sensors see: the prediction is a mean over {} runs.",
+                prediction.rattle.replicas
+            )
+        } else {
+            "It does not rattle by more than its sensors see.".to_owned()
+        }
+    );
+    document(&format!("Prediction of {}", prediction.run), &lead, &parts)
+}
+
+fn provenance(p: &Prediction) -> Vec<(String, String)> {
+    let entries = [
+        ("Program", format!("{} {}, on rapier2d-f64 {}", p.program, p.version, p.rapier_version)),
+        ("Model", p.scenario_name.clone()),
+        ("SHA-256 of the model", p.scenario_hash.clone()),
+        ("Run", p.run.clone()),
+        ("Figures", "errors.json, predicted.csv beside this page".to_owned()),
+        ("Time of computing", format!("{} s", number(p.wall_s))),
+    ];
+    entries.map(|(label, value)| (label.to_owned(), value)).into()
+}

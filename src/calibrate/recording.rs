@@ -1,0 +1,85 @@
+//! Recorded runs as files, each with the name that users gave it.
+
+use crate::measure::log::{Channel, Log, LogError};
+use std::path::{Path, PathBuf};
+
+/// A log and where it came from.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// The file as the user called it.
+    pub path: String,
+    /// What it holds; its name is that of the file, or the whole path where names are not unique.
+    pub log: Log,
+}
+
+/// Reads a log.
+///
+/// # Errors
+/// What [`Log::read`] finds.
+pub fn read_one(path: &Path) -> Result<Recording, LogError> {
+    let log = Log::read(path, &Channel::all(3))?;
+    Ok(Recording { path: path.display().to_string(), log })
+}
+
+/// Reads logs. Everything wrong with all of them is found before any is refused.
+///
+/// # Errors
+/// What [`read_one`] finds, file by file.
+pub fn read(paths: &[&Path]) -> Result<Vec<Recording>, Vec<LogError>> {
+    let (mut recordings, mut errors) = (Vec::new(), Vec::new());
+    for path in paths {
+        match read_one(path) {
+            Ok(recording) => recordings.push(recording),
+            Err(error) => errors.push(error),
+        }
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let names: Vec<String> = recordings.iter().map(|r| r.log.name.clone()).collect();
+    for recording in &mut recordings {
+        if names.iter().filter(|name| **name == recording.log.name).count() > 1 {
+            recording.log.name.clone_from(&recording.path);
+        }
+    }
+    Ok(recordings)
+}
+
+/// The name of a log without folders' separators and without `.csv`: what files about it are called
+/// after.
+pub fn stem(log: &Log) -> String {
+    let path = PathBuf::from(&log.name);
+    let bare = match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("csv") => path.with_extension(""),
+        _ => path,
+    };
+    let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
+    bare.to_string_lossy().chars().map(plain).collect()
+}
+
+/// Joins three columns of a kind, if a log has all of them.
+pub fn triple(log: &Log, channel: fn(usize) -> Channel) -> Option<[&[f64]; 3]> {
+    Some([log.get(channel(0))?, log.get(channel(1))?, log.get(channel(2))?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logs_of_one_name_are_told_apart() {
+        let dir = tempfile::tempdir().expect("folder");
+        let text = "t,q1_cmd\n0,0.3\n0.001,0.3\n0.002,0.3\n";
+        let paths = ["a/run.csv", "b/run.csv", "b/other.csv"].map(|name| dir.path().join(name));
+        for path in &paths {
+            std::fs::create_dir_all(path.parent().expect("folder")).expect("made");
+            std::fs::write(path, text).expect("written");
+        }
+        let paths: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
+        let read = read(&paths).expect("good logs");
+        assert_eq!(read[2].log.name, "other.csv");
+        assert_eq!(stem(&read[2].log), "other");
+        assert_ne!(stem(&read[0].log), stem(&read[1].log));
+        assert!(stem(&read[0].log).ends_with("-a-run"), "{}", stem(&read[0].log));
+    }
+}

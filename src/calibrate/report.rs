@@ -1,0 +1,331 @@
+//! `report.json`: what a calibration came to.
+
+use super::errors::ChannelError;
+use super::model::Case;
+use super::outcome::{Left, Outcome, Verdict, evidence};
+use super::rattle::Rattle;
+use crate::effects::{DependsOn, Setting};
+use crate::engine::{RAPIER_VERSION, StepControl};
+use crate::scenario::Scenario;
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
+
+/// The report. Keys are promised to scripts; see the README.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The program that wrote this: how a result is told from other files.
+    pub program: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// Version of the physics engine underneath.
+    pub rapier_version: &'static str,
+    /// Name of the rig.
+    pub scenario_name: String,
+    /// SHA-256 of the rig as declared, overrides included.
+    pub scenario_hash: String,
+    /// What the calibration comes to.
+    pub verdict: Verdict,
+    /// The same in a sentence or two.
+    pub summary: String,
+    /// What the model was given.
+    pub effects: Vec<EffectReport>,
+    /// Errors by run and channel.
+    pub errors: Vec<ChannelError>,
+    /// Candidates, round by round, the best first in each.
+    pub ranking: Vec<Ranked>,
+    /// Residuals on data not used for fits, under the declared and under the calibrated model.
+    pub residuals: Vec<ResidualReport>,
+    /// Whether the declared machine rattles by more than its sensors see, and what follows.
+    pub rattle: RattleReport,
+    /// Kinds of effects that were excluded by `--without`.
+    pub without: Vec<String>,
+    /// Velocity error allowed for one step of a simulation in m/s.
+    pub tolerance_m_s: f64,
+    /// Seeds.
+    pub seeds: Seeds,
+    /// Simulations of a whole run that it took.
+    pub simulations: usize,
+    /// Time of computing in s.
+    pub wall_s: f64,
+    /// What stands beside this file.
+    pub files: Vec<String>,
+}
+
+/// An effect that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct EffectReport {
+    /// Its name.
+    pub kind: &'static str,
+    /// The joint it acts at, if it acts at one.
+    pub joint: Option<String>,
+    /// What it is a function of, if it has no name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depends_on: Option<DependsOn>,
+    /// Its fitted values.
+    #[serde(serialize_with = "by_name")]
+    pub params: Vec<(&'static str, Fitted)>,
+    /// What it rests on.
+    pub evidence: String,
+    /// Its equation.
+    pub equation: &'static str,
+}
+
+/// A fitted value, in the unit that its name ends with.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Fitted {
+    /// The value.
+    pub value: f64,
+    /// Its standard deviation; none where the data do not tell.
+    pub std: f64,
+    /// The interval that holds the true value 95 times in 100.
+    pub ci95: [f64; 2],
+}
+
+fn by_name<S: Serializer>(params: &[(&str, Fitted)], serializer: S) -> Result<S::Ok, S::Error> {
+    let entry = |(name, fitted): &(&str, Fitted)| {
+        let value = json!({"value": fitted.value, "std": fitted.std, "ci95": fitted.ci95});
+        ((*name).to_owned(), value)
+    };
+    params.iter().map(entry).collect::<Map<String, Value>>().serialize(serializer)
+}
+
+/// A candidate in a round.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ranked {
+    /// Its name.
+    pub kind: &'static str,
+    /// The joint.
+    pub joint: Option<String>,
+    /// Share of the residual's weighted variance above the floor that it removes on data not used for
+    /// its fit, 0…1; of what the rounds before left.
+    pub validation_score: f64,
+    /// Whether the calibrated model has it from this round.
+    pub kept: bool,
+    /// Round, from 1.
+    pub round: usize,
+    /// Whether the machine was simulated with it, rather than looked at through inverse dynamics alone.
+    pub simulated: bool,
+    /// Drop of Σ of squares in units of noise on data not used for its fit, less what its number of
+    /// values may bring by chance.
+    pub gain: f64,
+}
+
+/// What stands above noise in one of the residuals, on data not used for fits.
+#[derive(Clone, Debug, Serialize)]
+pub struct ResidualReport {
+    /// Which: servo, closure, dynamics.
+    pub residual: &'static str,
+    /// Mean square in units of noise under the declared model: 1 for noise.
+    pub mean_square_before: f64,
+    /// Under the named effects.
+    pub mean_square_after: f64,
+    /// Up to where noise reaches.
+    pub noise_up_to: f64,
+    /// Largest coefficient in units of noise under the declared model.
+    pub largest_before: f64,
+    /// Under the named effects.
+    pub largest_after: f64,
+}
+
+/// Whether the machine rattles.
+#[derive(Clone, Debug, Serialize)]
+pub struct RattleReport {
+    /// Whether two replicas of the declared model differ by more than sensors see.
+    pub chaotic: bool,
+    /// Root mean square of their difference in units of the sensor's noise, in the worst channel.
+    pub difference: f64,
+    /// That channel.
+    pub channel: String,
+    /// Replicas that means and floors were taken from.
+    pub replicas: usize,
+}
+
+/// Seeds of random numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Seeds {
+    /// The rig's own.
+    pub scenario: u64,
+    /// Those of the replicas' starts.
+    pub replicas: Vec<u64>,
+}
+
+/// What a report is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Sources<'a> {
+    /// The rig and its runs.
+    pub case: &'a Case,
+    /// What became of them.
+    pub outcome: &'a Outcome,
+    /// What two replicas said.
+    pub rattle: &'a Rattle,
+    /// Kinds that were excluded.
+    pub without: &'a [&'a str],
+}
+
+impl Report {
+    /// The report, but for the time it took and the files beside it.
+    pub fn new(from: Sources) -> Self {
+        let Sources { case, outcome, rattle, without } = from;
+        let rig = &case.rig;
+        Self {
+            program: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            rapier_version: RAPIER_VERSION,
+            scenario_name: rig.name.clone(),
+            scenario_hash: rig.hash(),
+            verdict: outcome.verdict,
+            summary: summary(outcome),
+            effects: outcome
+                .effects
+                .iter()
+                .map(|(effect, _)| effect_report(outcome, effect))
+                .collect(),
+            errors: outcome.errors.clone(),
+            ranking: ranking(outcome),
+            residuals: residuals(&outcome.before, &outcome.after),
+            rattle: RattleReport {
+                chaotic: rattle.chaotic,
+                difference: rattle.difference,
+                channel: rattle.channel.to_string(),
+                replicas: case.replicas,
+            },
+            without: without.iter().map(|kind| (*kind).to_owned()).collect(),
+            tolerance_m_s: match case.control {
+                StepControl::Tolerance(tolerance) => tolerance,
+                StepControl::Fixed(_) => f64::NAN,
+            },
+            seeds: Seeds { scenario: rig.seed, replicas: (0..case.replicas as u64).collect() },
+            simulations: outcome.simulations + rattle.logs.len(),
+            wall_s: 0.0,
+            files: Vec::new(),
+        }
+    }
+}
+
+/// The rig with what was found: a scenario like any other.
+pub fn calibrated(rig: &Scenario, outcome: &Outcome) -> Scenario {
+    let mut scenario = rig.clone();
+    scenario.effects = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
+    scenario
+}
+
+fn same(a: &Setting, b: &Setting) -> bool {
+    a.kind.name == b.kind.name && a.joint == b.joint
+}
+
+fn effect_report(outcome: &Outcome, effect: &Setting) -> EffectReport {
+    let estimates = outcome.effects.iter().find(|(e, _)| e == effect).map(|(_, e)| e.as_slice());
+    let params = estimates.unwrap_or_default().iter().map(|estimate| {
+        let fitted = Fitted { value: estimate.value, std: estimate.std, ci95: estimate.ci95() };
+        (estimate.name, fitted)
+    });
+    EffectReport {
+        kind: effect.kind.name,
+        joint: effect.joint.clone(),
+        depends_on: effect.map().map(|map| map.depends_on),
+        params: params.collect(),
+        evidence: evidence(outcome, effect),
+        equation: effect.kind.equation,
+    }
+}
+
+/// Every candidate of every round once: of several variants at one joint the best.
+fn ranking(outcome: &Outcome) -> Vec<Ranked> {
+    let mut all = Vec::new();
+    for (i, round) in outcome.rounds.iter().enumerate() {
+        let mut seen: Vec<&Setting> = Vec::new();
+        for scored in &round.ranking {
+            if seen.iter().any(|other| same(other, &scored.effect)) {
+                continue;
+            }
+            seen.push(&scored.effect);
+            let in_model = outcome.effects.iter().any(|(effect, _)| same(effect, &scored.effect));
+            let added = round.added.as_ref().is_some_and(|added| same(added, &scored.effect));
+            all.push(Ranked {
+                kind: scored.effect.kind.name,
+                joint: scored.effect.joint.clone(),
+                validation_score: scored.share,
+                kept: in_model && added,
+                round: i + 1,
+                simulated: scored.simulated,
+                gain: scored.gain,
+            });
+        }
+    }
+    if let Some(described) = &outcome.described {
+        all.push(Ranked {
+            kind: described.effect.kind.name,
+            joint: None,
+            validation_score: described.share,
+            kept: true,
+            round: outcome.rounds.len() + 1,
+            simulated: true,
+            gain: f64::NAN,
+        });
+    }
+    all
+}
+
+fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
+    let join = |(before, after): (&Left, &Left)| ResidualReport {
+        residual: before.residual,
+        mean_square_before: before.mean_square,
+        mean_square_after: after.mean_square,
+        noise_up_to: after.limit,
+        largest_before: before.largest,
+        largest_after: after.largest,
+    };
+    before.iter().zip(after).map(join).collect()
+}
+
+/// The verdict in plain words.
+fn summary(outcome: &Outcome) -> String {
+    let named: Vec<String> = outcome
+        .effects
+        .iter()
+        .filter(|(effect, _)| effect.map().is_none())
+        .map(|(effect, _)| in_words(effect))
+        .collect();
+    let list = named.join(" and ");
+    match outcome.verdict {
+        Verdict::NothingMissing => {
+            "The declared model explains the recordings to within noise: nothing is missing."
+                .to_owned()
+        }
+        Verdict::Explained => format!(
+            "The declared model lacks {list}. With {} the recordings are explained to within noise.",
+            if named.len() == 1 { "it" } else { "them" }
+        ),
+        Verdict::Unexplained => {
+            let certain = if named.is_empty() {
+                String::new()
+            } else {
+                format!(" Certain is {list}; more is missing.")
+            };
+            let described = match &outcome.described {
+                Some(described) => format!(
+                    " What remains depends on {}: a fitted table of forces stands in for it. It \
+                     predicts, it explains nothing.",
+                    described
+                        .effect
+                        .map()
+                        .map_or("something unknown", |map| map.depends_on.words())
+                ),
+                None => {
+                    " Nor does what remains depend on position, velocity or acceleration in a way \
+                         that a table could hold."
+                        .to_owned()
+                }
+            };
+            format!(
+                "The declared model lacks something that no effect with a name here explains.\
+                 {certain}{described}"
+            )
+        }
+    }
+}
+
+/// An effect in words: `joint-wear at A2`.
+pub fn in_words(effect: &Setting) -> String {
+    super::search::name(effect)
+}

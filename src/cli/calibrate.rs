@@ -1,0 +1,157 @@
+//! `freeplay calibrate`: close the loop with measured data.
+
+use super::failure::Failure;
+use super::options::{FolderOptions, PrintOptions, Sets};
+use super::output;
+use super::progress::Spinner;
+use crate::calibrate::recording;
+use crate::calibrate::result::{CalibrateError, Calibrated, REPORT_FILE, into_folder, prepare};
+use crate::effects::{ALL, named};
+use crate::measure::spelling::nearest;
+use crate::report::number;
+use crate::scenario::Scenario;
+use crate::study::{Folder, default_name};
+use clap::Args;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Find out what a declared model lacks, from recorded runs of the machine
+///
+/// A rig file is a scenario with [sensors]. The declared model is simulated along the recorded commands;
+/// what remains between measurement and model is searched for the trace of every effect at every joint
+/// (`freeplay effects` lists them), values are fitted on --data and judged on --validate (without it,
+/// on the second half of --data). The verdict: nothing-missing, explained (by which effects, with values
+/// and 95 % intervals), or unexplained (something without a name is missing: what depends on what stands
+/// in its place).
+///
+/// The results go into a new folder: index.html (look at this first), report.json, calibrated.toml (the
+/// rig with what was found: a scenario like any other), predicted-RUN.csv for each log, and pictures.
+/// It takes a minute or two for runs of three seconds.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// What its maker declares: a scenario file (TOML) with [sensors]
+    #[arg(long, value_name = "RIG.toml")]
+    rig: PathBuf,
+    /// Recorded run to calibrate on (CSV; t in s, q1_cmd… q1… in m, F1… in N, x y in m, phi in rad)
+    #[arg(long, value_name = "RUN.csv")]
+    data: PathBuf,
+    /// Another recorded run, to validate on; may be given many times
+    #[arg(long, value_name = "RUN.csv")]
+    validate: Vec<PathBuf>,
+    /// Do not look for this kind of effect; may be given many times
+    #[arg(long, value_name = "KIND")]
+    without: Vec<String>,
+    #[command(flatten)]
+    sets: Sets,
+    #[command(flatten)]
+    folder: FolderOptions,
+    #[command(flatten)]
+    print: PrintOptions,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  freeplay calibrate --rig rig.toml --data run-a.csv --validate run-b.csv
+  freeplay calibrate --rig rig.toml --data run-a.csv --without payload      is there another explanation?
+  freeplay calibrate --rig rig.toml --data run-a.csv --set environment.gravity=[0,-9.81]
+  freeplay calibrate --rig rig.toml --data run-a.csv --json --quiet | jq .verdict";
+
+pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    let without = without(&arguments.without)?;
+    let rig = Scenario::load(Some(&arguments.rig), &arguments.sets.sets)?;
+    let paths: Vec<&Path> =
+        std::iter::once(&arguments.data).chain(&arguments.validate).map(PathBuf::as_path).collect();
+    let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
+    let name = default_name("calibrate", &rig.name);
+    let prepared = prepare(rig, recordings)?;
+    let out = arguments.folder.out.clone().unwrap_or(name);
+    let folder = Folder::prepare(&out, REPORT_FILE, arguments.folder.force)?;
+
+    let spinner = Spinner::new(arguments.print.quiet);
+    let calibrated = into_folder(prepared, &without, folder, &|what| spinner.tell(what));
+    spinner.clear();
+    let calibrated = calibrated?;
+    if arguments.print.json {
+        output::print(&calibrated.json)?;
+    } else if !arguments.print.quiet {
+        output::print(&text(&calibrated))?;
+    }
+    Ok(())
+}
+
+impl From<CalibrateError> for Failure {
+    fn from(error: CalibrateError) -> Self {
+        match error {
+            CalibrateError::Input(messages) => Failure::Input(messages),
+            CalibrateError::Halted(halt) => Failure::Other(halt.to_string()),
+            CalibrateError::Files(error) => error.into(),
+        }
+    }
+}
+
+/// Kinds of effects by name.
+fn without(names: &[String]) -> Result<Vec<&'static str>, Failure> {
+    let known: Vec<&str> = ALL.iter().map(|kind| kind.name).collect();
+    let kind = |name: &String| {
+        named(name).map(|kind| kind.name).ok_or_else(|| {
+            let help = nearest(name, &known).map_or_else(
+                || format!("known: {} (`freeplay effects` explains them)", known.join(", ")),
+                |near| format!("did you mean `{near}`?"),
+            );
+            format!("--without: `{name}` is not an effect; {help}")
+        })
+    };
+    let (good, bad): (Vec<_>, Vec<_>) = names.iter().map(kind).partition(Result::is_ok);
+    if bad.is_empty() {
+        return Ok(good.into_iter().flatten().collect());
+    }
+    Err(Failure::Input(bad.into_iter().filter_map(Result::err).collect()))
+}
+
+/// The result for people.
+fn text(calibrated: &Calibrated) -> String {
+    let report = &calibrated.report;
+    let mut text = format!("{}: {}\n", report.scenario_name, report.summary);
+    // Writing to a string cannot fail, here and below.
+    for effect in &report.effects {
+        let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
+        let _ = writeln!(text, "\n  {}{joint}", effect.kind);
+        for (name, fitted) in &effect.params {
+            let [low, high] = fitted.ci95.map(number);
+            let value = number(fitted.value);
+            let _ = writeln!(text, "    {name:<20} {value:>10}  (95 %: {low} to {high})");
+        }
+        if !effect.evidence.is_empty() {
+            let _ = writeln!(text, "    {}", effect.evidence);
+        }
+    }
+    let _ = writeln!(
+        text,
+        "\n  {:<20}{:<13}{:<9}{:>12}{:>12}{:>12}",
+        "run", "role", "channel", "before", "after", "floor"
+    );
+    for e in &report.errors {
+        let cell = |value: f64| format!("{} {}", number(value), e.unit);
+        let _ = writeln!(
+            text,
+            "  {:<20}{:<13}{:<9}{:>12}{:>12}{:>12}",
+            e.run,
+            e.role,
+            e.channel,
+            cell(e.before),
+            cell(e.after),
+            cell(e.floor)
+        );
+    }
+    let page = calibrated.folder.join("index.html");
+    let _ = writeln!(
+        text,
+        "\n{} simulations in {} s. Written to {}; open {}",
+        report.simulations,
+        number(report.wall_s),
+        calibrated.folder.display(),
+        page.display()
+    );
+    text
+}

@@ -1,0 +1,98 @@
+//! `freeplay predict`: hold a model against a recording.
+
+use super::failure::Failure;
+use super::options::{FolderOptions, PrintOptions, Sets};
+use super::output;
+use super::progress::Spinner;
+use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder};
+use crate::calibrate::recording;
+use crate::calibrate::result::CalibrateError;
+use crate::report::number;
+use crate::scenario::Scenario;
+use crate::study::{Folder, default_name};
+use clap::Args;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Drive a model by a recorded log's commands and report how far it is off
+///
+/// The model, declared or calibrated, is simulated along the commands of the log (q1_cmd q2_cmd q3_cmd);
+/// errors are reported for whatever else was measured. Where joints rattle by more than sensors see,
+/// the prediction is a mean over several simulations.
+///
+/// The results go into a new folder: index.html, predicted.csv (the log's rows and columns; what was not
+/// measured is added) and errors.json.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// Scenario file (TOML), such as a rig or its calibrated.toml
+    #[arg(value_name = "MODEL.toml")]
+    model: PathBuf,
+    /// Recorded run (CSV; t in s, q1_cmd… in m, and any of q1… in m, F1… in N, x y in m, phi in rad)
+    #[arg(long, value_name = "RUN.csv")]
+    data: PathBuf,
+    #[command(flatten)]
+    sets: Sets,
+    #[command(flatten)]
+    folder: FolderOptions,
+    #[command(flatten)]
+    print: PrintOptions,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  freeplay predict rig.toml --data run-b.csv                  the declared model
+  freeplay predict calibrated.toml --data run-c.csv           the calibrated one, on another run
+  freeplay predict rig.toml --data run-b.csv --set joints.clearance=2e-4
+  freeplay predict rig.toml --data run-b.csv --json --quiet | jq '.errors[] | [.channel, .after]'";
+
+pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    let model = Scenario::load(Some(&arguments.model), &arguments.sets.sets)?;
+    let read = recording::read_one(&arguments.data);
+    let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
+    check(&model, &recording)?;
+    let out = arguments.folder.out.clone();
+    let out = out.unwrap_or_else(|| default_name("predict", &model.name));
+    let folder = Folder::prepare(&out, ERRORS_FILE, arguments.folder.force)?;
+
+    let spinner = Spinner::new(arguments.print.quiet);
+    let predicted = into_folder(&model, &recording, folder, &|what| spinner.tell(what));
+    spinner.clear();
+    let predicted = predicted?;
+    if arguments.print.json {
+        output::print(&predicted.json)?;
+    } else if !arguments.print.quiet {
+        output::print(&text(&predicted))?;
+    }
+    Ok(())
+}
+
+/// The result for people.
+fn text(predicted: &Predicted) -> String {
+    let p = &predicted.prediction;
+    let effects = if p.effects.is_empty() { "none".to_owned() } else { p.effects.join(", ") };
+    let mut text = format!("{} along {}; effects: {effects}\n\n", p.scenario_name, p.run);
+    // Writing to a string cannot fail, here and below.
+    let _ = writeln!(
+        text,
+        "  {:<9}{:>16}{:>12}{:>12}",
+        "channel", "without effects", "predicted", "floor"
+    );
+    for e in &p.errors {
+        let cell = |value: f64| match value.is_finite() {
+            true => format!("{} {}", number(value), e.unit),
+            false => "–".to_owned(),
+        };
+        let _ = writeln!(
+            text,
+            "  {:<9}{:>16}{:>12}{:>12}",
+            e.channel,
+            cell(e.before),
+            cell(e.after),
+            cell(e.floor)
+        );
+    }
+    let page = predicted.folder.join("index.html");
+    let _ = writeln!(text, "\nWritten to {}; open {}", predicted.folder.display(), page.display());
+    text
+}
