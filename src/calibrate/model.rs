@@ -2,15 +2,15 @@
 
 use super::commands::LoggedCommands;
 use super::lens::Lens;
-use super::replica;
+use super::replica::{self, START_SPREAD};
 use super::spectrum::{Noise, Signal, transform};
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use crate::scenario::{Problem, Scenario, Sensors};
-use crate::simulate::{close, driven};
-use nalgebra::{DVector, Vector3};
+use crate::simulate::{close, driven, release};
+use nalgebra::{DVector, UnitComplex, Vector3};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -57,6 +57,36 @@ impl Run {
     }
 }
 
+/// The machine of a rig with these effects as recordings begin: at rest, journals centred, in the pose
+/// that the machine as declared takes under the first commands, near `pose` (m, m, rad). Whatever is
+/// not as declared then pulls at it.
+///
+/// # Errors
+/// An effect that the machine cannot take, commands that no pose meets.
+pub fn released(
+    rig: &Scenario,
+    pose: Vector3<f64>,
+    commands: &Arc<LoggedCommands>,
+    effects: &[Setting],
+) -> Result<Mechanism, Problem> {
+    let mut scenario = rig.clone();
+    scenario.effects.clear();
+    let mut declared = driven(&scenario, pose, Arc::clone(commands) as _, -LEAD)?;
+    close(rig, &mut declared)?;
+    let states: Vec<_> = declared.bodies.iter().map(|body| body.start).collect();
+    let start = declared.output_state(&states);
+    let pose = start.position.push(pose.z + angle_between(pose.z, start.rotation.angle()));
+    scenario.effects = effects.to_vec();
+    let mut machine = driven(&scenario, pose, Arc::clone(commands) as _, -LEAD)?;
+    release(rig, &mut machine)?;
+    Ok(machine)
+}
+
+/// From one angle to another in rad, the short way.
+fn angle_between(from: f64, to: f64) -> f64 {
+    UnitComplex::new(from).rotation_to(&UnitComplex::new(to)).angle()
+}
+
 /// A stretch of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Segment {
@@ -98,6 +128,11 @@ struct Part {
     noise: Noise,
 }
 
+/// Push in m/s that swings a platform by some 30 µm at 40 Hz in joints of 0.1 mm, as its release does;
+/// and how many such replicas are simulated at least.
+const SWING: f64 = 5e-3;
+const SWINGING_REPLICAS: usize = 3;
+
 /// Draws of sensor noise from which a covariance is taken.
 const DRAWS: usize = 16;
 
@@ -108,33 +143,33 @@ impl Case {
         transform(&lens.residuals(mechanism, segment.rows.clone()), interval)
     }
 
-    /// Noiseless logs of a model: `[run][replica]`.
+    /// Noiseless logs of a model: `[run][replica]`. Replicas that are `swinging` start with a push that
+    /// makes loaded joints swing, each in its own way: how a recorded machine was released is not known
+    /// well enough to predict its swing after seconds, and the noise has to say so.
     ///
     /// # Errors
     /// A run that broke down.
-    pub fn simulate(&self, machines: &[Mechanism]) -> Result<Vec<Vec<Log>>, Halt> {
+    pub fn simulate(&self, machines: &[Mechanism], swinging: bool) -> Result<Vec<Vec<Log>>, Halt> {
+        let swinging = swinging && !self.chaotic;
+        let push = if swinging { SWING } else { START_SPREAD };
+        let count = if swinging { self.replicas.max(SWINGING_REPLICAS) } else { self.replicas };
         let jobs: Vec<(usize, u64)> = (0..self.runs.len())
-            .flat_map(|run| (0..self.replicas as u64).map(move |replica| (run, replica)))
+            .flat_map(|run| (0..count as u64).map(move |replica| (run, replica)))
             .collect();
         let logs: Result<Vec<Log>, Halt> = jobs
             .into_par_iter()
             .map(|(run, replica)| {
                 let log = &self.runs[run].log;
-                replica::simulate(&machines[run], &self.sensors, self.control, log, replica)
+                replica::simulate(&machines[run], &self.sensors, self.control, log, replica, push)
             })
             .collect();
         let mut logs = logs?.into_iter();
-        Ok(self.runs.iter().map(|_| logs.by_ref().take(self.replicas).collect()).collect())
+        Ok(self.runs.iter().map(|_| logs.by_ref().take(count).collect()).collect())
     }
 
     /// The machine of each run, with these effects, ready to be simulated.
     pub fn machines(&self, effects: &[Setting]) -> Result<Vec<Mechanism>, Problem> {
-        let build = |run: &Run| {
-            let mut machine = run.machine(&self.rig, effects)?;
-            close(&self.rig, &mut machine)?;
-            Ok(machine)
-        };
-        self.runs.iter().map(build).collect()
+        self.runs.iter().map(|run| released(&self.rig, run.pose, &run.commands, effects)).collect()
     }
 
     /// The baseline of a model from its noiseless logs.

@@ -125,7 +125,7 @@ pub fn calibrate(
     let estimates = estimates(&last);
     tell("predicting the runs");
     let [declared, predicted] = [&[][..], &last.fit.effects]
-        .map(|effects| Ok::<_, SearchError>(case.simulate(&case.machines(effects)?)?));
+        .map(|effects| Ok::<_, SearchError>(case.simulate(&case.machines(effects)?, false)?));
     let (declared, predicted) = (declared?, predicted?);
     simulations += 2 * case.runs.len() * case.replicas;
     let role = |run: usize| if run == 0 { "calibration" } else { "validation" };

@@ -3,7 +3,7 @@
 use super::LoggedCommands;
 use super::charts;
 use super::errors::{self, ChannelError};
-use super::model::{Case, LEAD};
+use super::model::{Case, released};
 use super::plausibility;
 use super::predict_page;
 use super::rattle;
@@ -16,7 +16,6 @@ use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use crate::report::Style;
 use crate::scenario::{Law, Problem, Scenario};
-use crate::simulate::{close, driven};
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -108,7 +107,8 @@ pub fn into_folder(
     tell("predicting the run");
     let simulate = |machine: &Mechanism| {
         let replicas = (0..rattle.replicas as u64).into_par_iter();
-        let logs = replicas.map(|r| replica::simulate(machine, &sensors, control, &log, r));
+        let logs = replicas
+            .map(|r| replica::simulate(machine, &sensors, control, &log, r, replica::START_SPREAD));
         logs.collect::<Result<Vec<Log>, Halt>>()
     };
     let after = simulate(&machine)?;
@@ -204,7 +204,5 @@ fn machine(model: &Scenario, log: &Log) -> Result<Mechanism, Problem> {
     })?;
     let first = |k| log.get(Channel::Pose(k)).map_or(0.0, |values| values[0]);
     let pose = Vector3::new(first(0), first(1), first(2));
-    let mut machine = driven(model, pose, Arc::new(commands), -LEAD)?;
-    close(model, &mut machine)?;
-    Ok(machine)
+    released(model, pose, &Arc::new(commands), &model.effects)
 }

@@ -122,7 +122,7 @@ pub fn settle(
     let mut settled = None;
     for time in 1..=times.max(1) {
         let machines = case.machines(&effects)?;
-        let logs = case.simulate(&machines)?;
+        let logs = case.simulate(&machines, true)?;
         let baseline = case.baseline(&machines, &logs, &segments);
         let target = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
         let iterations = if effects.is_empty() { 0 } else { 6 };

@@ -31,17 +31,27 @@ use std::path::{Path, PathBuf};
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// What its maker declares: a scenario file (TOML) with [sensors]
-    #[arg(long, value_name = "RIG.toml")]
-    rig: PathBuf,
+    #[arg(long, value_name = "RIG.toml", required_unless_present = "self_test")]
+    rig: Option<PathBuf>,
     /// Recorded run to calibrate on (CSV; t in s, q1_cmd… q1… in m, F1… in N, x y in m, phi in rad)
-    #[arg(long, value_name = "RUN.csv")]
-    data: PathBuf,
+    #[arg(long, value_name = "RUN.csv", required_unless_present = "self_test")]
+    data: Option<PathBuf>,
     /// Another recorded run, to validate on; may be given many times
     #[arg(long, value_name = "RUN.csv")]
     validate: Vec<PathBuf>,
     /// Do not look for this kind of effect; may be given many times
     #[arg(long, value_name = "KIND")]
     without: Vec<String>,
+    /// Instead of all this: hide known effects of random size in synthetic recordings, calibrate each,
+    /// and print which effect was taken for which (hours; --hidden for a part)
+    #[arg(long, conflicts_with_all = ["rig", "data", "validate", "without"])]
+    self_test: bool,
+    /// Hide this kind of effect only, or `nothing`; may be given many times
+    #[arg(long, value_name = "KIND", requires = "self_test")]
+    hidden: Vec<String>,
+    /// Another set of random sizes, joints, motions and noise
+    #[arg(long, value_name = "N", requires = "self_test", default_value_t = 1)]
+    seed: u64,
     #[command(flatten)]
     sets: Sets,
     #[command(flatten)]
@@ -58,10 +68,14 @@ Examples:
   freeplay calibrate --rig rig.toml --data run-a.csv --json --quiet | jq .verdict";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    let (Some(rig), Some(data)) = (&arguments.rig, &arguments.data) else {
+        let PrintOptions { json, quiet } = arguments.print;
+        return super::self_test::main(&arguments.hidden, arguments.seed, json, quiet);
+    };
     let without = without(&arguments.without)?;
-    let rig = Scenario::load(Some(&arguments.rig), &arguments.sets.sets)?;
+    let rig = Scenario::load(Some(rig), &arguments.sets.sets)?;
     let paths: Vec<&Path> =
-        std::iter::once(&arguments.data).chain(&arguments.validate).map(PathBuf::as_path).collect();
+        std::iter::once(data).chain(&arguments.validate).map(PathBuf::as_path).collect();
     let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
     let name = default_name("calibrate", &rig.name);
     let prepared = prepare(rig, recordings)?;

@@ -18,6 +18,7 @@ mod paper;
 mod predict;
 mod progress;
 mod run;
+mod self_test;
 mod sweep;
 
 use clap::{Parser, Subcommand};

@@ -85,16 +85,27 @@ fn add_effects(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Pro
     Ok(())
 }
 
+/// Releases a machine from where its output is: journals centred, nothing moving, whatever the drives
+/// are told.
+///
+/// # Errors
+/// Joints that cannot be closed.
+pub fn release(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Problem> {
+    mechanism.close_at_rest().map_err(|gap| open(scenario, gap))
+}
+
 /// Centres the journals and gives the drives their commanded lengths.
 ///
 /// # Errors
 /// Joints that cannot be closed.
 pub fn close(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Problem> {
-    mechanism.close(0.0).map_err(|gap| {
-        let message = format!("leave the joints open by {gap:.1e} m at the start");
-        let help = "smaller offsets and scale errors, or another motion";
-        scenario.problem("effect", message, help)
-    })
+    mechanism.close(0.0).map_err(|gap| open(scenario, gap))
+}
+
+fn open(scenario: &Scenario, gap: f64) -> Problem {
+    let message = format!("leave the joints open by {gap:.1e} m at the start");
+    let help = "smaller offsets and scale errors, or another motion";
+    scenario.problem("effect", message, help)
 }
 
 /// The drive that a scenario asks for.
