@@ -9,8 +9,8 @@ use crate::engine::{Halt, StepControl};
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use crate::scenario::{Problem, Scenario, Sensors};
-use crate::simulate::{close, driven, release};
-use nalgebra::{DVector, UnitComplex, Vector3};
+use crate::simulate::{close, driven};
+use nalgebra::{DVector, Vector3};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -57,9 +57,8 @@ impl Run {
     }
 }
 
-/// The machine of a rig with these effects as recordings begin: at rest, journals centred, in the pose
-/// that the machine as declared takes under the first commands, near `pose` (m, m, rad). Whatever is
-/// not as declared then pulls at it.
+/// The machine of a rig with these effects as recordings begin: at rest, journals centred, lengths as
+/// first commanded, near `pose` (m, m, rad).
 ///
 /// # Errors
 /// An effect that the machine cannot take, commands that no pose meets.
@@ -70,21 +69,10 @@ pub fn released(
     effects: &[Setting],
 ) -> Result<Mechanism, Problem> {
     let mut scenario = rig.clone();
-    scenario.effects.clear();
-    let mut declared = driven(&scenario, pose, Arc::clone(commands) as _, -LEAD)?;
-    close(rig, &mut declared)?;
-    let states: Vec<_> = declared.bodies.iter().map(|body| body.start).collect();
-    let start = declared.output_state(&states);
-    let pose = start.position.push(pose.z + angle_between(pose.z, start.rotation.angle()));
     scenario.effects = effects.to_vec();
     let mut machine = driven(&scenario, pose, Arc::clone(commands) as _, -LEAD)?;
-    release(rig, &mut machine)?;
+    close(rig, &mut machine)?;
     Ok(machine)
-}
-
-/// From one angle to another in rad, the short way.
-fn angle_between(from: f64, to: f64) -> f64 {
-    UnitComplex::new(from).rotation_to(&UnitComplex::new(to)).angle()
 }
 
 /// A stretch of a run.

@@ -2,7 +2,7 @@
 
 use super::rows::{Row, prismatic_rows, revolute_rows};
 use super::{BodyState, Command, Mechanism};
-use nalgebra::{DMatrix, DVector, UnitComplex, Vector3};
+use nalgebra::{DMatrix, DVector, UnitComplex};
 
 /// Gaps in m and rad below which a joint is closed: rounding on a machine of a metre.
 const CLOSED: f64 = 1e-13;
@@ -18,8 +18,28 @@ impl Mechanism {
     pub fn close(&mut self, t: f64) -> Result<(), f64> {
         let mut commands = vec![Command::default(); self.prismatics.len()];
         self.true_commands(t, &mut commands);
-        let (states, remains) = self.closed(Some(&commands))?;
-        let (rows, gaps) = self.closure(&states, Some(&commands));
+        let mut states: Vec<BodyState> = self.bodies.iter().map(|b| b.start).collect();
+        let mut remains = f64::INFINITY;
+        for _ in 0..50 {
+            let (rows, gaps) = self.closure(&states, &commands);
+            if gaps.is_empty() {
+                return Ok(());
+            }
+            remains = gaps.amax();
+            if remains < CLOSED {
+                break;
+            }
+            let Some(shift) = smallest(&rows, states.len(), -gaps) else { break };
+            for (i, state) in states.iter_mut().enumerate() {
+                state.position += shift.fixed_rows::<2>(3 * i);
+                state.rotation *= UnitComplex::new(shift[3 * i + 2]);
+            }
+        }
+        // A millionth of what matters: joints may be closed but for rounding.
+        if remains.is_nan() || remains > 1e-12 {
+            return Err(remains);
+        }
+        let (rows, gaps) = self.closure(&states, &commands);
         let mut rates = DVector::zeros(gaps.len());
         for (rate, row) in rates.iter_mut().zip(&rows) {
             for (body, jacobian) in row.bodies.iter().zip(&row.jacobians) {
@@ -30,68 +50,27 @@ impl Mechanism {
         for (command, rate) in commands.iter().zip(rates.as_mut_slice().chunks_mut(3)) {
             rate[2] += command.rate;
         }
-        let change = smallest(&rows, states.len(), rates, None).ok_or(remains)?;
+        let change = smallest(&rows, states.len(), rates).ok_or(remains)?;
         for (i, (body, state)) in self.bodies.iter_mut().zip(states).enumerate() {
             body.start = BodyState { twist: state.twist + change.fixed_rows::<3>(3 * i), ..state };
         }
         Ok(())
     }
 
-    /// Centres every journal around the output body, which stays where it is; the prismatic joints take
-    /// what lengths it needs, and nothing moves: a machine released from a pose.
-    ///
-    /// # Errors
-    /// If the joints cannot be closed from here: what remains, in m.
-    pub fn close_at_rest(&mut self) -> Result<(), f64> {
-        let (states, _) = self.closed(None)?;
-        for (body, state) in self.bodies.iter_mut().zip(states) {
-            body.start = BodyState { twist: Vector3::zeros(), ..state };
-        }
-        Ok(())
-    }
-
-    /// States in which the joints are closed, and what remains in m: with prismatic joints as long as
-    /// commanded, or of any length around an output body that stays.
-    fn closed(&self, commands: Option<&[Command]>) -> Result<(Vec<BodyState>, f64), f64> {
-        let held = commands.is_none().then_some(self.output);
-        let mut states: Vec<BodyState> = self.bodies.iter().map(|b| b.start).collect();
-        let mut remains = 0.0;
-        for _ in 0..50 {
-            let (rows, gaps) = self.closure(&states, commands);
-            remains = if gaps.is_empty() { 0.0 } else { gaps.amax() };
-            if remains < CLOSED {
-                break;
-            }
-            let Some(shift) = smallest(&rows, states.len(), -gaps, held) else { break };
-            for (i, state) in states.iter_mut().enumerate() {
-                state.position += shift.fixed_rows::<2>(3 * i);
-                state.rotation *= UnitComplex::new(shift[3 * i + 2]);
-            }
-        }
-        // A millionth of what matters: joints may be closed but for rounding.
-        if remains.is_nan() || remains > 1e-12 { Err(remains) } else { Ok((states, remains)) }
-    }
-
     /// Rows of all joints, prismatic ones first, and by how much each is open (m, rad).
-    /// Without commands, lengths are left free.
-    fn closure(
-        &self,
-        states: &[BodyState],
-        commands: Option<&[Command]>,
-    ) -> (Vec<Row>, DVector<f64>) {
+    fn closure(&self, states: &[BodyState], commands: &[Command]) -> (Vec<Row>, DVector<f64>) {
         let (mut rows, mut gaps) = (Vec::new(), Vec::new());
-        for (i, joint) in self.prismatics.iter().enumerate() {
+        for (joint, command) in self.prismatics.iter().zip(commands) {
             let bodies = [joint.cylinder.body, joint.rod.body];
             let telescope = joint.telescope(states);
             let [from, to] = [&joint.cylinder, &joint.rod].map(|a| a.frame(states).centre);
             let [a, b] = [&joint.cylinder, &joint.rod].map(|a| a.rotation(states));
-            let [side, angle, length] = prismatic_rows(&telescope, bodies);
-            rows.extend([side, angle]);
-            gaps.extend([(to - from).dot(&telescope.n), a.rotation_to(&b).angle()]);
-            if let Some(commands) = commands {
-                rows.push(length);
-                gaps.push((to - from).dot(&telescope.u) - commands[i].length);
-            }
+            rows.extend(prismatic_rows(&telescope, bodies));
+            gaps.extend([
+                (to - from).dot(&telescope.n),
+                a.rotation_to(&b).angle(),
+                (to - from).dot(&telescope.u) - command.length,
+            ]);
         }
         for joint in &self.revolutes {
             rows.extend(revolute_rows(joint, states));
@@ -102,20 +81,12 @@ impl Mechanism {
     }
 }
 
-/// The smallest motion of `bodies` bodies, but for one that is held, that changes the rows by `change`.
-fn smallest(
-    rows: &[Row],
-    bodies: usize,
-    change: DVector<f64>,
-    held: Option<usize>,
-) -> Option<DVector<f64>> {
-    if rows.is_empty() {
-        return Some(DVector::zeros(3 * bodies));
-    }
+/// The smallest motion of `bodies` bodies that changes the rows by `change`.
+fn smallest(rows: &[Row], bodies: usize, change: DVector<f64>) -> Option<DVector<f64>> {
     let mut matrix = DMatrix::zeros(rows.len(), 3 * bodies);
     for (i, row) in rows.iter().enumerate() {
         for (body, jacobian) in row.bodies.iter().zip(&row.jacobians) {
-            if let Some(body) = body.filter(|body| Some(*body) != held) {
+            if let Some(body) = *body {
                 let mut place = matrix.fixed_view_mut::<1, 3>(i, 3 * body);
                 place += jacobian.transpose();
             }

@@ -85,15 +85,6 @@ fn add_effects(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Pro
     Ok(())
 }
 
-/// Releases a machine from where its output is: journals centred, nothing moving, whatever the drives
-/// are told.
-///
-/// # Errors
-/// Joints that cannot be closed.
-pub fn release(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Problem> {
-    mechanism.close_at_rest().map_err(|gap| open(scenario, gap))
-}
-
 /// Centres the journals and gives the drives their commanded lengths.
 ///
 /// # Errors

@@ -14,7 +14,7 @@ mod summary;
 mod three_rpr;
 mod timeseries;
 
-pub use assemble::{Machine, assemble, close, driven, radial_clearance, release};
+pub use assemble::{Machine, assemble, close, driven, radial_clearance};
 pub use checks::{Finding, Severity, findings};
 pub use ideal::{Ideal, IdealInstant};
 pub use native::FIT_SPEED;
