@@ -13,6 +13,9 @@ use crate::study::RunError;
 /// Corner in Hz of the low-pass that everything is drawn through: that of the errors.
 const CORNER: f64 = 25.0;
 
+/// Left out at both ends in s, where the low-pass sees beyond the log.
+const TRIM: f64 = 0.06;
+
 /// Points of a curve and of a cloud of dots: about one per pixel, and as many as can be told apart.
 const POINTS: usize = 800;
 const DOTS: usize = 500;
@@ -142,9 +145,11 @@ fn panel(title: String, y_label: &str, curves: impl Iterator<Item = Curve>) -> P
 /// A signal of a log, low-passed and thinned.
 fn curve(name: &str, log: &Log, values: Option<&[f64]>, style: Style) -> Option<Curve> {
     let filtered = ZeroPhase::butterworth(4, CORNER, log.interval).apply(values?);
-    let stride = (filtered.len() / POINTS).max(1);
+    let trim = (TRIM / log.interval).round() as usize;
+    let inner = trim..filtered.len().saturating_sub(trim);
+    let stride = (inner.len() / POINTS).max(1);
     let at = |i: usize| log.start + i as f64 * log.interval;
-    let points = filtered.iter().enumerate().step_by(stride).map(|(i, v)| (at(i), *v));
+    let points = inner.step_by(stride).map(|i| (at(i), filtered[i]));
     Some(Curve { name: name.to_owned(), points: points.collect(), style })
 }
 

@@ -1,4 +1,6 @@
-//! From a recorded run to the effect that the model lacks.
+//! From a recorded run to the effect that the model lacks: [`outcome::calibrate`] is the method.
+//! Around it: [`recording`] and [`plausibility`] take files and refuse what cannot be right, [`rattle`]
+//! decides how often to simulate, [`result`] and [`predict`] write folders of results.
 
 pub mod candidates;
 mod charts;
@@ -23,3 +25,4 @@ pub mod spectrum;
 pub mod unnamed;
 
 pub use commands::LoggedCommands;
+pub use page::quantity;

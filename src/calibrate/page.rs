@@ -6,7 +6,7 @@ use super::model::Case;
 use super::outcome::{Outcome, Verdict};
 use super::report::{Report, in_words};
 use crate::effects::Setting;
-use crate::report::{Fact, Part, Table, document, number};
+use crate::report::{Fact, Part, Table, document, length, number};
 
 /// Candidates of a round that the page lists; the others are in `report.json`.
 const LISTED: usize = 8;
@@ -21,7 +21,7 @@ pub fn page(case: &Case, outcome: &Outcome, report: &Report, charts: &Charts) ->
         parts.push(Part::Table(values(outcome, report)));
         parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });
     }
-    parts.push(Part::Table(errors_table(&report.errors, &ERRORS_NOTE.replace("{trim}", "60 ms"))));
+    parts.push(Part::Table(errors_table(&report.errors, ERRORS_NOTE)));
     parts.push(Part::Pictures(&charts.runs));
     parts.push(Part::Table(dependence(charts)));
     parts.push(Part::Pictures(&charts.over));
@@ -74,14 +74,12 @@ fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {
             "Worst channel",
             format!("{} times its floor", number(error.after / error.floor)),
             format!(
-                "{} of {}: {} {unit} under the declared model, {} {unit} calibrated, {} {unit} is left \
-                 to any model",
+                "{} of {}: {} under the declared model, {} calibrated, {} is left to any model",
                 error.channel,
                 error.run,
-                number(error.before),
-                number(error.after),
-                number(error.floor),
-                unit = error.unit
+                quantity(error.before, error.unit),
+                quantity(error.after, error.unit),
+                quantity(error.floor, error.unit)
             ),
         ));
     }
@@ -155,7 +153,7 @@ fn equations(report: &Report) -> Vec<String> {
 }
 
 const ERRORS_NOTE: &str = "Root mean square of measured less predicted, both through a zero-phase low-pass of fourth order at 25 Hz, \
-     first and last {trim} left out. The floor is what sensor noise and the rattle's own unpredictability \
+     first and last 60 ms left out. The floor is what sensor noise and the rattle's own unpredictability \
      leave to any model: 1 in the last column is as good as it gets.";
 
 /// Errors by run and channel.
@@ -164,9 +162,9 @@ pub fn errors_table(errors: &[ChannelError], note: &str) -> Table {
         vec![
             format!("{} ({})", e.run, e.role),
             e.channel.clone(),
-            format!("{} {}", number(e.before), e.unit),
-            format!("{} {}", number(e.after), e.unit),
-            format!("{} {}", number(e.floor), e.unit),
+            quantity(e.before, e.unit),
+            quantity(e.after, e.unit),
+            quantity(e.floor, e.unit),
             number(e.after / e.floor),
         ]
     });
@@ -178,6 +176,16 @@ pub fn errors_table(errors: &[ChannelError], note: &str) -> Table {
             .into(),
         rows: rows.collect(),
         note: note.to_owned(),
+    }
+}
+
+/// A value in m, rad or N for people, in the multiple of its unit that suits it.
+pub fn quantity(value: f64, unit: &str) -> String {
+    match unit {
+        _ if !value.is_finite() => number(value),
+        "m" => length(value),
+        "rad" => format!("{} mrad", number(1e3 * value)),
+        unit => format!("{} {unit}", number(value)),
     }
 }
 
@@ -197,7 +205,7 @@ fn dependence(charts: &Charts) -> Table {
         rows: rows.collect(),
         note: "Share of the variance of the actuator force that inverse dynamics does not account for, \
                that lies between eight bins of each quantity (correlation ratio): declared → calibrated \
-               model. A few percent come by chance; what exceeds them names the family to look in."
+               model. Up to a tenth comes by chance; what exceeds it names the family to look in."
             .into(),
     }
 }

@@ -61,6 +61,9 @@ const MOVES: f64 = 1e-4;
 const SMALL: f64 = 1.0 / 100.0;
 const LARGE: f64 = 200.0;
 
+/// So many times the force that the servo's law gives is no force in N: gains may be wrong, but not so.
+const BEYOND_LAW: f64 = 30.0;
+
 /// Corner of that low-pass in Hz: most of a rattle and of a sensor's noise lies above.
 const CORNER: f64 = 25.0;
 
@@ -408,7 +411,7 @@ pub fn forces(path: &str, log: &Log, declared: &Log, drive: &Drive) -> Vec<LogEr
         let unit = if measured < SMALL * expected {
             Some(("kN", 1e3))
         } else if measured > LARGE * expected
-            && by_law.is_none_or(|by_law| measured > by_law / SMALL.sqrt())
+            && by_law.is_none_or(|by_law| measured > BEYOND_LAW * by_law)
         {
             Some(("mN", 1e-3))
         } else {

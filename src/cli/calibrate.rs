@@ -4,8 +4,8 @@ use super::failure::Failure;
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::output;
 use super::progress::Spinner;
-use crate::calibrate::recording;
 use crate::calibrate::result::{CalibrateError, Calibrated, REPORT_FILE, into_folder, prepare};
+use crate::calibrate::{quantity, recording};
 use crate::effects::{ALL, named};
 use crate::measure::spelling::nearest;
 use crate::report::number;
@@ -146,7 +146,7 @@ fn text(calibrated: &Calibrated) -> String {
         "run", "role", "channel", "before", "after", "floor"
     );
     for e in &report.errors {
-        let cell = |value: f64| format!("{} {}", number(value), e.unit);
+        let cell = |value: f64| quantity(value, e.unit);
         let _ = writeln!(
             text,
             "  {:<20}{:<13}{:<9}{:>12}{:>12}{:>12}",

@@ -5,9 +5,8 @@ use super::options::{FolderOptions, PrintOptions, Sets};
 use super::output;
 use super::progress::Spinner;
 use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder};
-use crate::calibrate::recording;
 use crate::calibrate::result::CalibrateError;
-use crate::report::number;
+use crate::calibrate::{quantity, recording};
 use crate::scenario::Scenario;
 use crate::study::{Folder, default_name};
 use clap::Args;
@@ -79,10 +78,7 @@ fn text(predicted: &Predicted) -> String {
         "channel", "without effects", "predicted", "floor"
     );
     for e in &p.errors {
-        let cell = |value: f64| match value.is_finite() {
-            true => format!("{} {}", number(value), e.unit),
-            false => "–".to_owned(),
-        };
+        let cell = |value: f64| quantity(value, e.unit);
         let _ = writeln!(
             text,
             "  {:<9}{:>16}{:>12}{:>12}",
