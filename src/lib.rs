@@ -18,6 +18,7 @@
 //! | [`simulate`] | scenario → mechanism → samples and summary |
 //! | [`report`] | pictures and the page, from plain data |
 //! | [`study`] | what users come for: a run and its files, sweeps |
+//! | [`calibrate`] | what a declared model lacks, by recorded runs of the machine |
 //! | [`cli`] | one file per command |
 //!
 //! SI units everywhere.

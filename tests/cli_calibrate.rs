@@ -409,5 +409,12 @@ fn predictions_refuse_what_cannot_be_right() {
         println!("{name}");
         place.refused(&format!("predict {rig_file} --data bad.csv"), fragments);
     }
+    let mut commands = good.clone();
+    commands.drop(&["q1", "q2", "q3", "F1", "F2", "F3", "x", "y", "phi"]);
+    place.write("bad.csv", &commands.text());
+    place.refused(
+        &format!("predict {rig_file} --data bad.csv --set mechanism.base_side=2"),
+        &["no pose of the machine has the lengths of the first row", "base_side 2 m"],
+    );
     place.refused("predict none.toml --data bad.csv", &["none.toml: cannot be read"]);
 }

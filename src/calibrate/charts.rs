@@ -166,7 +166,7 @@ fn dependence(
     let mut commands = [Command::default(); 3];
     // Of each actuator, what of `OVER`, row.
     let mut over = [const { [const { Vec::new() }; 4] }; 3];
-    for row in rows {
+    for row in rows.step_by(run.lens.stride()) {
         let t = row as f64 * run.log.interval;
         run.commands.at(t, &mut commands);
         for (columns, command) in over.iter_mut().zip(&commands) {
@@ -219,8 +219,10 @@ fn dependence(
 
 /// The dynamics residual of each actuator on the calibration run in N, low-passed.
 fn residual(case: &Case, effects: &[Setting]) -> [Vec<f64>; 3] {
-    let segment = Segment { run: 0, rows: case.runs[0].rows() };
-    let filter = ZeroPhase::butterworth(4, CORNER, case.runs[0].log.interval);
+    let run = &case.runs[0];
+    let segment = Segment { run: 0, rows: run.rows() };
+    let interval = run.log.interval * run.lens.stride() as f64;
+    let filter = ZeroPhase::butterworth(4, CORNER, interval);
     // A model that could be simulated can be looked at.
     case.plain(effects, &segment).map_or_else(
         |_| [const { Vec::new() }; 3],

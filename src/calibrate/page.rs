@@ -4,7 +4,8 @@ use super::charts::{Charts, OVER};
 use super::errors::ChannelError;
 use super::model::Case;
 use super::outcome::{Outcome, Verdict};
-use super::report::{Report, in_words};
+use super::report::Report;
+use super::search::name as in_words;
 use crate::effects::Setting;
 use crate::report::{Fact, Part, Table, document, length, number};
 

@@ -82,4 +82,22 @@ mod tests {
         assert_ne!(stem(&read[0].log), stem(&read[1].log));
         assert!(stem(&read[0].log).ends_with("-a-run"), "{}", stem(&read[0].log));
     }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let ramp = |scale: f64| (0..50).map(|i| scale * (0.1 + f64::from(i))).collect();
+        let channels = Channel::all(3).into_iter().zip(1..);
+        let channels = channels.map(|(c, k)| (c, ramp(1e-3 * f64::from(k)))).collect();
+        let log = Log::new("run.csv", 0.25, 1e-3, channels);
+        let dir = tempfile::tempdir().expect("folder");
+        let path = dir.path().join("run.csv");
+        std::fs::write(&path, log.to_csv()).expect("written");
+        let again = read_one(&path).expect("a good log").log;
+        assert_eq!((again.start, again.samples, &again.name), (0.25, 50, &log.name));
+        assert!((again.interval - 1e-3).abs() < 1e-12);
+        for channel in log.channels() {
+            let [a, b] = [&log, &again].map(|log| log.get(channel).expect("column"));
+            assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6), "{channel}");
+        }
+    }
 }

@@ -4,6 +4,7 @@ use super::errors::ChannelError;
 use super::model::Case;
 use super::outcome::{Left, Outcome, Verdict, evidence};
 use super::rattle::Rattle;
+use super::search::name;
 use crate::effects::{DependsOn, Setting};
 use crate::engine::{RAPIER_VERSION, StepControl};
 use crate::scenario::Scenario;
@@ -284,7 +285,7 @@ fn summary(outcome: &Outcome) -> String {
         .effects
         .iter()
         .filter(|(effect, _)| effect.map().is_none())
-        .map(|(effect, _)| in_words(effect))
+        .map(|(effect, _)| name(effect))
         .collect();
     let list = named.join(" and ");
     match outcome.verdict {
@@ -323,9 +324,4 @@ fn summary(outcome: &Outcome) -> String {
             )
         }
     }
-}
-
-/// An effect in words: `joint-wear at A2`.
-pub fn in_words(effect: &Setting) -> String {
-    super::search::name(effect)
 }

@@ -137,9 +137,8 @@ pub fn into_folder(
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Calibrated, CalibrateError> {
     let started = Clock::now();
-    let Prepared { mut case, paths } = prepared;
     tell("simulating replicas of the declared model: does it rattle?");
-    let rattle = look(&mut case, &paths)?;
+    let (case, rattle) = case(prepared)?;
     let outcome = calibrate(&case, without, tell)?;
     tell("drawing and writing");
     let case = &case;
@@ -174,13 +173,17 @@ pub fn into_folder(
 
 /// Finds out whether the declared machine rattles on any of its runs, makes the case simulate
 /// accordingly, and holds the measured forces against the declared ones.
-fn look(case: &mut Case, paths: &[String]) -> Result<Rattle, CalibrateError> {
+///
+/// # Errors
+/// Forces in a wrong unit, a rig that cannot be simulated.
+pub fn case(prepared: Prepared) -> Result<(Case, Rattle), CalibrateError> {
+    let Prepared { mut case, paths } = prepared;
     let machines = case.machines(&[])?;
     let mut found = Vec::new();
     let mut worst: Option<Rattle> = None;
     for ((run, machine), path) in case.runs.iter().zip(&machines).zip(paths) {
         let rattle = rattle::look(machine, &case.sensors, case.control, &run.log)?;
-        found.extend(plausibility::forces(path, &run.log, &rattle.logs[0], &case.rig.drive));
+        found.extend(plausibility::forces(&path, &run.log, &rattle.logs[0], &case.rig.drive));
         if worst.as_ref().is_none_or(|worst| rattle.difference > worst.difference) {
             worst = Some(rattle);
         }
@@ -188,7 +191,7 @@ fn look(case: &mut Case, paths: &[String]) -> Result<Rattle, CalibrateError> {
     refuse(found)?;
     let worst = worst.ok_or_else(|| CalibrateError::Input(vec!["no run was given".to_owned()]))?;
     (case.chaotic, case.replicas) = (worst.chaotic, worst.replicas);
-    Ok(worst)
+    Ok((case, worst))
 }
 
 /// A result as JSON.

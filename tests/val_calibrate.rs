@@ -1,0 +1,180 @@
+//! What must hold of any good calibration, on the recordings in `assets/rigs`: an independent simulator's,
+//! whose hidden effects are written nowhere in this repository.
+//!
+//! Slow: a calibration takes a minute or two.
+
+use freeplay::calibrate::outcome::{Outcome, Verdict, calibrate};
+use freeplay::calibrate::rattle::Rattle;
+use freeplay::calibrate::report::{Report, Sources, calibrated};
+use freeplay::calibrate::result::{Prepared, case, prepare};
+use freeplay::calibrate::{model::Case, recording};
+use freeplay::scenario::Scenario;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+struct Done {
+    case: Case,
+    rattle: Rattle,
+    outcome: Outcome,
+}
+
+fn folder(rig: usize) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("assets/rigs/rig-{rig}"))
+}
+
+/// Each rig is calibrated once, whichever tests ask for it.
+fn done(rig: usize) -> &'static Done {
+    static DONE: [OnceLock<Done>; 6] = [const { OnceLock::new() }; 6];
+    DONE[rig - 1].get_or_init(|| {
+        let [toml, a, b] =
+            ["rig.toml", "run-a.csv", "run-b.csv"].map(|name| folder(rig).join(name));
+        let scenario = Scenario::load(Some(&toml), &[]).unwrap();
+        let recordings = recording::read(&[&a, &b]).unwrap();
+        let prepared: Prepared = prepare(scenario, recordings).unwrap();
+        let (case, rattle) = case(prepared).unwrap();
+        let outcome = calibrate(&case, &[], &|_| {}).unwrap();
+        Done { case, rattle, outcome }
+    })
+}
+
+/// Errors after calibration, in units of what is left to any model.
+fn check(rig: usize) {
+    let Done { case, outcome, .. } = done(rig);
+    for error in &outcome.errors {
+        let (before, after, floor) = (error.before, error.after, error.floor);
+        println!(
+            "rig {rig}: {:?} {} {} {}: {before:.3e} -> {after:.3e}, floor {floor:.3e}, {:.2} of it",
+            outcome.verdict,
+            error.run,
+            error.role,
+            error.channel,
+            after / floor
+        );
+    }
+    let mut broken = Vec::new();
+    for error in &outcome.errors {
+        let ratio = error.after / error.floor;
+        let limit = match outcome.verdict {
+            Verdict::Explained | Verdict::NothingMissing => 1.3,
+            Verdict::Unexplained => 2.0,
+        };
+        if error.role == "validation" && ratio > limit {
+            broken.push(format!("{} is {ratio:.2} times its floor, limit {limit}", error.channel));
+        }
+        // What one noisy recording of the floor's size may add by chance.
+        if error.after > 1.05 * error.before + 0.1 * error.floor {
+            broken.push(format!(
+                "{} of {} went from {:.3e} to {:.3e}",
+                error.channel, error.run, error.before, error.after
+            ));
+        }
+    }
+    assert!(broken.is_empty(), "rig {rig}, {:?}: {}", outcome.verdict, broken.join("; "));
+    assert_eq!(outcome.errors.len(), 2 * 9, "every measured channel of both runs");
+    for (log, run) in outcome.predictions.iter().zip(&case.runs) {
+        assert_eq!(log.samples, run.log.samples);
+        assert!(log.channels().eq(run.log.channels()), "the log's columns");
+    }
+    schema(rig);
+    let found = outcome.effects.iter().filter(|(effect, _)| effect.map().is_none()).count();
+    match outcome.verdict {
+        Verdict::NothingMissing => assert!(outcome.effects.is_empty()),
+        Verdict::Explained => assert!(found > 0 && found == outcome.effects.len()),
+        Verdict::Unexplained => {}
+    }
+    // What is written is a scenario, and says the same.
+    let toml = calibrated(&case.rig, outcome).to_toml();
+    let again = Scenario::from_text(&toml, "calibrated.toml", &[]).unwrap();
+    assert_eq!(again.effects.len(), outcome.effects.len());
+    assert_eq!(again.to_toml(), toml);
+}
+
+/// Keys that are promised to scripts.
+fn schema(rig: usize) {
+    let Done { case, rattle, outcome } = done(rig);
+    let report = Report::new(Sources { case, outcome, rattle, without: &[] });
+    let json = serde_json::to_value(&report).unwrap();
+    let words = ["explained", "nothing-missing", "unexplained"];
+    assert!(words.contains(&json["verdict"].as_str().unwrap()));
+    for effect in json["effects"].as_array().unwrap() {
+        assert!(effect["kind"].is_string() && effect["evidence"].is_string(), "{effect}");
+        assert!(effect["joint"].is_null() || effect["joint"].is_string(), "{effect}");
+        for (name, fitted) in effect["params"].as_object().unwrap() {
+            let value = fitted["value"].as_f64().unwrap();
+            let ends = [&fitted["ci95"][0], &fitted["ci95"][1]].map(|v| v.as_f64().unwrap());
+            assert!(ends[0] <= value && value <= ends[1], "{name}: {fitted}");
+            assert!(fitted["std"].as_f64().unwrap() > 0.0, "{name}: {fitted}");
+        }
+        assert!(effect["kind"] != "unnamed" || effect["depends_on"].is_string(), "{effect}");
+    }
+    for error in json["errors"].as_array().unwrap() {
+        for key in ["run", "role", "channel", "unit"] {
+            assert!(error[key].is_string(), "{key}: {error}");
+        }
+        for key in ["before", "after", "floor"] {
+            assert!(error[key].as_f64().unwrap() > 0.0, "{key}: {error}");
+        }
+    }
+    let ranking = json["ranking"].as_array().unwrap();
+    for candidate in ranking {
+        let score = candidate["validation_score"].as_f64().unwrap();
+        assert!(candidate["kind"].is_string() && (0.0..=1.0).contains(&score), "{candidate}");
+        assert!(candidate["kept"].is_boolean(), "{candidate}");
+    }
+    for effect in json["effects"].as_array().unwrap() {
+        let kept = |c: &&Value| {
+            c["kept"] == true && c["kind"] == effect["kind"] && c["joint"] == effect["joint"]
+        };
+        assert_eq!(ranking.iter().filter(kept).count(), 1, "{effect} in the ranking");
+    }
+}
+
+#[test]
+fn rig_1() {
+    check(1);
+}
+
+#[test]
+fn rig_2() {
+    check(2);
+}
+
+#[test]
+fn rig_3() {
+    check(3);
+}
+
+#[test]
+fn rig_4() {
+    check(4);
+}
+
+#[test]
+fn rig_5() {
+    check(5);
+}
+
+#[test]
+fn rig_6() {
+    check(6);
+}
+
+/// A method that always finds something finds nothing.
+#[test]
+fn one_rig_lacks_nothing() {
+    let verdicts: Vec<Verdict> = (1..=6).map(|rig| done(rig).outcome.verdict).collect();
+    assert!(verdicts.contains(&Verdict::NothingMissing), "{verdicts:?}");
+}
+
+/// Whether a machine rattles is found out: only where gravity keeps its joints loaded do two runs that
+/// start alike stay alike.
+#[test]
+fn machines_without_gravity_rattle() {
+    for rig in 1..=6 {
+        let Done { case, rattle, .. } = done(rig);
+        let weightless = case.rig.environment.gravity == [0.0, 0.0];
+        assert_eq!(rattle.chaotic, weightless, "rig {rig}: {}", rattle.difference);
+        assert_eq!(case.replicas, rattle.replicas);
+    }
+}
