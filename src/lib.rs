@@ -28,6 +28,7 @@ pub mod cli;
 pub mod contact;
 pub mod effects;
 pub mod engine;
+pub mod identify;
 pub mod measure;
 pub mod mechanism;
 pub mod report;

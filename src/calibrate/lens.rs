@@ -152,7 +152,7 @@ impl Lens {
                             - stiffness * (command.length - q)
                             - damping * (command.rate - self.rates[i][leg])
                     }
-                    Drive::Prescribed => 0.0,
+                    Drive::Prescribed | Drive::Sampled(_) => 0.0,
                 };
                 signals[leg].values.push(servo);
                 let length = machine.length(leg, self.poses[i], look.leans[leg]);

@@ -101,7 +101,7 @@ pub fn with_noise(clean: &Log, sensors: &Sensors, seed: u64) -> Log {
     let channels = clean.channels().map(|channel| {
         let values = clean.get(channel).unwrap_or_default();
         let noisy = values.iter().map(|value| match channel {
-            Channel::Command(_) => *value,
+            Channel::Command(_) | Channel::Added(_) => *value,
             Channel::Length(_) if sensors.length_resolution > 0.0 => {
                 (value / sensors.length_resolution).round() * sensors.length_resolution
             }

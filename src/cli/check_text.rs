@@ -31,12 +31,11 @@ impl Text {
 
 fn machine(text: &mut Text, m: &CheckedMachine) {
     text.line("\nMachine");
-    let sides = format!(
-        "base triangle {}, platform triangle {}",
-        length(m.base_side_m),
-        length(m.platform_side_m)
-    );
-    text.entry("sides", &sides);
+    if let (Some(base), Some(platform)) = (m.base_side_m, m.platform_side_m) {
+        let sides =
+            format!("base triangle {}, platform triangle {}", length(base), length(platform));
+        text.entry("sides", &sides);
+    }
     for body in &m.bodies {
         let value =
             format!("{:>6} kg   {} kg m²", number(body.mass_kg), number(body.inertia_kg_m2));
@@ -44,7 +43,16 @@ fn machine(text: &mut Text, m: &CheckedMachine) {
     }
 }
 
+/// The travel of the legs of a machine that has some.
 fn motion(text: &mut Text, m: &CheckedMachine) {
+    let (Some(fastest), Some(distance), Some(t), Some(circumradius)) = (
+        m.fastest_leg_m_s,
+        m.singularity_distance_m,
+        m.singularity_time_s,
+        m.platform_circumradius_m,
+    ) else {
+        return;
+    };
     text.line("\nMotion");
     for (i, leg) in (1..).zip(&m.legs) {
         let [low, high] = leg.used_m;
@@ -52,15 +60,12 @@ fn motion(text: &mut Text, m: &CheckedMachine) {
         let value = format!("{low:.4} to {high:.4} m   stroke {shortest} to {longest} m");
         text.entry(&format!("leg {i}"), &value);
     }
-    text.entry("fastest leg", &format!("{} m/s", number(m.fastest_leg_m_s)));
-    let t = number(m.singularity_time_s);
+    text.entry("fastest leg", &format!("{} m/s", number(fastest)));
+    let t = number(t);
     let value = if m.ideal.is_some() {
-        let share = 100.0 * m.singularity_distance_m / m.platform_circumradius_m;
-        format!(
-            "{} at t = {t} s ({} % of the platform's circumradius)",
-            length(m.singularity_distance_m),
-            number(share)
-        )
+        let share = 100.0 * distance / circumradius;
+        let far = length(distance);
+        format!("{far} at t = {t} s ({} % of the platform's circumradius)", number(share))
     } else {
         format!("nothing: reached at t = {t} s")
     };
@@ -107,6 +112,7 @@ fn drives(text: &mut Text, m: &CheckedMachine) {
         (DriveMode::Servo, Some(stiffness), Some(damping)) => {
             format!("servo, {} N/m and {} N s/m", number(stiffness), number(damping))
         }
+        (DriveMode::Sampled, ..) => "sampled controller".to_owned(),
         _ => "prescribed: lengths follow the command exactly".to_owned(),
     };
     text.entry("kind", &kind);

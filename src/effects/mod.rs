@@ -5,6 +5,7 @@
 
 mod actuator_friction;
 mod actuator_scale;
+mod air_drag;
 mod anchor_offset;
 mod base_vibration;
 mod command_delay;
@@ -12,6 +13,7 @@ mod contact_damping;
 mod drag;
 mod drive_backlash;
 mod drive_compliance;
+mod film_friction;
 mod gravity;
 mod joint_wear;
 mod journal_friction;
@@ -20,6 +22,7 @@ mod leg_density;
 mod lubricant_film;
 mod out_of_round;
 mod payload;
+mod pivot_friction;
 mod screw_ripple;
 mod sensor_offset;
 mod servo_gain;
@@ -60,6 +63,9 @@ pub const ALL: &[&Kind] = &[
     &base_vibration::KIND,
     &unbalance::KIND,
     &unnamed::KIND,
+    &film_friction::KIND,
+    &pivot_friction::KIND,
+    &air_drag::KIND,
 ];
 
 /// The effect called `name`.

@@ -207,6 +207,16 @@ impl Stepper for Adaptive {
         &self.peaks
     }
 
+    // The jerk stays that of before: a force that jumps says nothing of how it goes on.
+    fn sample(&mut self, mechanism: &Mechanism, t: f64) {
+        self.dynamics.sample(mechanism, t, &self.states);
+        self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
+        self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
+        if self.coupled {
+            self.dynamics.replace_wrenches(&mut self.now);
+        }
+    }
+
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         let hp = self.previous_step;
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {
@@ -265,7 +275,7 @@ impl Stepper for Adaptive {
             let joint = &mechanism.prismatics[i];
             let length = match joint.drive {
                 Drive::Prescribed => path.commands[i].length,
-                Drive::Servo { .. } => path.lengths[i],
+                Drive::Servo { .. } | Drive::Sampled(_) => path.lengths[i],
             };
             let turn = joint.cylinder.body.map_or(0.0, |body| turns[body]);
             Some(Target::new(joint, length, now.lengths[i], turn))

@@ -134,6 +134,21 @@ impl Stepper for Fixed {
         &self.peaks
     }
 
+    // The kick of a full step is centred here: half of it belongs to the forces of before.
+    fn sample(&mut self, mechanism: &Mechanism, t: f64) {
+        let before = self.now.wrenches.clone();
+        self.dynamics.sample(mechanism, t, &self.states);
+        self.evaluate(mechanism, t);
+        if self.coupled {
+            self.dynamics.replace_wrenches(&mut self.now);
+        }
+        if self.previous_step > 0.0 {
+            for (now, before) in self.now.wrenches.iter_mut().zip(before) {
+                *now = (*now + before) / 2.0;
+            }
+        }
+    }
+
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         let (dt, reached) = equal_step(self.step, t, until);
         // The first step is a half kick: v_½ = v_0 + (h/2) a_0.

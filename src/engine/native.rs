@@ -85,6 +85,11 @@ impl Stepper for Native {
         &[]
     }
 
+    fn sample(&mut self, mechanism: &Mechanism, t: f64) {
+        self.dynamics.sample(mechanism, t, &self.states);
+        self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
+    }
+
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         let (dt, reached) = equal_step(self.step, t, until);
         mechanism.true_commands(reached, &mut self.targets);

@@ -125,6 +125,8 @@ pub(super) trait Stepper {
     /// Largest normal force (N) of each joint inside the step that ended at that instant, where the
     /// way of stepping looks there.
     fn peaks_inside(&self) -> &[f64];
+    /// Lets the sampled controllers compute what they hold from the instant last synchronised on.
+    fn sample(&mut self, mechanism: &Mechanism, t: f64);
     /// Makes one step from `t` of at most `until − t` s; returns the time reached, exactly `until`
     /// if it got there.
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
@@ -183,6 +185,7 @@ fn drive(
     let mut work = Work { smallest_step: f64::INFINITY, ..Work::default() };
     let mut watch = Watch::new(mechanism);
     let mut t = 0.0;
+    let mut clock = Clock { interval: mechanism.sampling(), samples: 0 };
     for row in 0..=schedule.intervals() {
         let until = schedule.time(row);
         loop {
@@ -197,7 +200,10 @@ fn drive(
             if t >= until {
                 break;
             }
-            let reached = stepper.advance(mechanism, t, until);
+            if clock.due(t) {
+                stepper.sample(mechanism, t);
+            }
+            let reached = stepper.advance(mechanism, t, clock.end(until));
             let dt = reached - t;
             watch.elapse(dt);
             t = reached;
@@ -215,6 +221,35 @@ fn drive(
         watch.new_row();
     }
     Ok(work)
+}
+
+/// When controllers take samples.
+#[derive(Debug)]
+struct Clock {
+    interval: Option<f64>,
+    /// Samples taken.
+    samples: u64,
+}
+
+impl Clock {
+    /// Whether a sample is taken at `t`, and counts it.
+    fn due(&mut self, t: f64) -> bool {
+        // Rows and samples that mean the same time differ by rounding.
+        let due = self.interval.is_some_and(|dt| t >= self.samples as f64 * dt - 1e-9 * dt);
+        self.samples += u64::from(due);
+        due
+    }
+
+    /// The end of steps that may go as far as `until`: there, or at the next sample.
+    fn end(&self, until: f64) -> f64 {
+        match self.interval {
+            Some(dt) if (self.samples as f64 - 1e-9) * dt < until => {
+                let next = self.samples as f64 * dt;
+                if (next - until).abs() < 1e-9 * dt { until } else { next }
+            }
+            _ => until,
+        }
+    }
 }
 
 /// Keeps account of what happens between rows.

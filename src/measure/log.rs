@@ -1,6 +1,7 @@
 //! Recorded runs: a CSV file, one row a sample, at a constant rate.
 
 use super::spelling::nearest;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -14,6 +15,8 @@ pub enum Channel {
     Length(usize),
     /// Force of its drive, N: `F1`.
     Force(usize),
+    /// What was added to the output of its controller, V: `added1`.
+    Added(usize),
     /// Pose of the output, x and y in m, φ in rad: `x`, `y`, `phi`.
     Pose(usize),
 }
@@ -24,6 +27,7 @@ impl Channel {
         match self {
             Channel::Command(_) | Channel::Length(_) | Channel::Pose(0 | 1) => "m",
             Channel::Force(_) => "N",
+            Channel::Added(_) => "V",
             Channel::Pose(_) => "rad",
         }
     }
@@ -47,8 +51,31 @@ impl fmt::Display for Channel {
             Channel::Command(i) => write!(f, "q{}_cmd", i + 1),
             Channel::Length(i) => write!(f, "q{}", i + 1),
             Channel::Force(i) => write!(f, "F{}", i + 1),
+            Channel::Added(i) => write!(f, "added{}", i + 1),
             Channel::Pose(i) => f.write_str(["x", "y", "phi"][*i]),
         }
+    }
+}
+
+/// Where a quantity stands in somebody's file, and how it gets the unit of its channel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Source {
+    /// Head of the column.
+    pub column: String,
+    /// What its numbers are multiplied by: 1 where they are in SI units.
+    #[serde(default = "one")]
+    pub scale: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Source {
+    /// A column whose numbers are multiplied by `scale`.
+    pub fn new(column: &str, scale: f64) -> Self {
+        Self { column: column.to_owned(), scale }
     }
 }
 
@@ -94,79 +121,69 @@ impl Log {
     /// A file that cannot be read, unknown or double columns, values that are no numbers, time that
     /// does not advance by a constant step.
     pub fn read(path: &Path, known: &[Channel]) -> Result<Log, LogError> {
-        let file = path.display().to_string();
-        let wrong = |line: Option<u64>, message: String, help: &str| LogError {
-            place: line.map_or_else(|| file.clone(), |line| format!("{file}:{line}")),
-            message,
-            help: help.to_owned(),
-        };
         let names: Vec<String> = known.iter().map(Channel::to_string).collect();
         let expected = format!("expected a header with t and any of {}", names.join(", "));
-        let mut reader =
-            csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|error| {
-                wrong(None, format!("cannot be read: {error}"), "is this the right file?")
-            })?;
-        let header = reader
-            .headers()
-            .map_err(|error| wrong(Some(1), format!("cannot be read: {error}"), &expected))?
-            .clone();
-        let mut columns: Vec<Option<Channel>> = Vec::new();
-        let mut time_column = None;
-        for (i, name) in header.iter().enumerate() {
-            let channel = names.iter().position(|known| known == name).map(|k| known[k]);
-            if name == "t" && time_column.is_none() {
-                time_column = Some(i);
-            } else if channel.is_none() {
-                let known: Vec<&str> = names.iter().map(String::as_str).chain(["t"]).collect();
-                let help = nearest(name, &known)
-                    .map_or(expected.clone(), |near| format!("did you mean `{near}`? {expected}"));
-                return Err(wrong(Some(1), format!("unknown column `{name}`"), &help));
-            } else if columns.contains(&channel) {
-                return Err(wrong(Some(1), format!("column `{name}` twice"), "keep one of them"));
+        load(path, &expected, |header| {
+            let (mut time, mut chosen) = (None, Vec::new());
+            for (i, name) in header.iter().enumerate() {
+                let channel = names.iter().position(|known| known == name).map(|k| known[k]);
+                let taken = chosen.iter().any(|(_, c, _)| Some(*c) == channel);
+                match channel {
+                    None if name == "t" && time.is_none() => time = Some((i, 1.0)),
+                    None => {
+                        let known: Vec<&str> =
+                            names.iter().map(String::as_str).chain(["t"]).collect();
+                        let help = nearest(name, &known).map_or(expected.clone(), |near| {
+                            format!("did you mean `{near}`? {expected}")
+                        });
+                        return Err((format!("unknown column `{name}`"), help));
+                    }
+                    Some(_) if taken => {
+                        let help = "keep one of them".to_owned();
+                        return Err((format!("column `{name}` twice"), help));
+                    }
+                    Some(channel) => chosen.push((i, channel, 1.0)),
+                }
             }
-            columns.push(channel);
-        }
-        let Some(time_column) = time_column else {
-            return Err(wrong(Some(1), "no column `t`".to_owned(), &expected));
-        };
-        let mut rows: Vec<Vec<f64>> = vec![Vec::new(); header.len()];
-        let mut record = csv::StringRecord::new();
-        loop {
-            let more = reader.read_record(&mut record).map_err(|error| {
-                let line = error.position().map(csv::Position::line);
-                wrong(
-                    line,
-                    format!("cannot be read: {error}"),
-                    "as many values as the header has names",
-                )
-            })?;
-            if !more {
-                break;
+            let time = time.ok_or_else(|| ("no column `t`".to_owned(), expected.clone()))?;
+            Ok((time, chosen))
+        })
+    }
+
+    /// Reads the columns of a CSV file that `time` and `sources` name; whatever else is in it is left
+    /// alone.
+    ///
+    /// # Errors
+    /// As [`Log::read`]; columns that are named and not there.
+    pub fn read_columns(
+        path: &Path,
+        time: &Source,
+        sources: &[(Channel, Source)],
+    ) -> Result<Log, LogError> {
+        load(path, "expected a header with the names of the columns", |header| {
+            let find = |quantity: &str, source: &Source| {
+                let name = &source.column;
+                let mut places = header.iter().enumerate().filter(|(_, head)| head == name);
+                match (places.next(), places.next()) {
+                    (Some((i, _)), None) => Ok(i),
+                    (Some(_), Some(_)) => {
+                        let help = "keep one of them".to_owned();
+                        Err((format!("column `{name}` twice"), help))
+                    }
+                    (None, _) => {
+                        let heads: Vec<&str> = header.iter().collect();
+                        let message =
+                            format!("no column `{name}`, which columns.{quantity} asks for");
+                        Err((message, format!("the file has {}", heads.join(", "))))
+                    }
+                }
+            };
+            let mut chosen = Vec::new();
+            for (channel, source) in sources {
+                chosen.push((find(&channel.to_string(), source)?, *channel, source.scale));
             }
-            let line = record.position().map(csv::Position::line);
-            for ((field, name), column) in record.iter().zip(&header).zip(&mut rows) {
-                let value = field.parse::<f64>().ok().filter(|value| value.is_finite());
-                let Some(value) = value else {
-                    let what = if field.is_empty() { "nothing" } else { field };
-                    let message = format!("column `{name}` holds {what}");
-                    return Err(wrong(line, message, "expected a finite number in every row"));
-                };
-                column.push(value);
-            }
-        }
-        let times = std::mem::take(&mut rows[time_column]);
-        let interval = constant_step(&times).map_err(|(row, message)| {
-            // The header is line 1.
-            wrong(
-                Some(row as u64 + 2),
-                message,
-                "expected samples at a constant rate, time growing",
-            )
-        })?;
-        let channels = columns.into_iter().zip(rows).filter_map(|(c, values)| Some((c?, values)));
-        let name =
-            path.file_name().map_or(file.clone(), |name| name.to_string_lossy().into_owned());
-        Ok(Log::new(&name, times[0], interval, channels.collect()))
+            Ok(((find("t", time)?, time.scale), chosen))
+        })
     }
 
     /// Samples of a channel, if the log has it.
@@ -215,6 +232,68 @@ impl Log {
         let start = self.start + range.start as f64 * self.interval;
         Log::new(&self.name, start, self.interval, self.channels.iter().map(cut).collect())
     }
+}
+
+/// A column by its place and what it is multiplied by: that of time, and those of channels.
+type Chosen = ((usize, f64), Vec<(usize, Channel, f64)>);
+
+/// Reads the columns that `choose` picks by the header; its errors say what is wrong with that and what
+/// would be right.
+fn load(
+    path: &Path,
+    expected: &str,
+    choose: impl FnOnce(&csv::StringRecord) -> Result<Chosen, (String, String)>,
+) -> Result<Log, LogError> {
+    let file = path.display().to_string();
+    let wrong = |line: Option<u64>, message: String, help: &str| LogError {
+        place: line.map_or_else(|| file.clone(), |line| format!("{file}:{line}")),
+        message,
+        help: help.to_owned(),
+    };
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|error| {
+            wrong(None, format!("cannot be read: {error}"), "is this the right file?")
+        })?;
+    let header = reader
+        .headers()
+        .map_err(|error| wrong(Some(1), format!("cannot be read: {error}"), expected))?
+        .clone();
+    let ((time, time_scale), chosen) =
+        choose(&header).map_err(|(message, help)| wrong(Some(1), message, &help))?;
+    let mut times = Vec::new();
+    let mut channels: Vec<(Channel, Vec<f64>)> =
+        chosen.iter().map(|(_, channel, _)| (*channel, Vec::new())).collect();
+    let mut record = csv::StringRecord::new();
+    loop {
+        let more = reader.read_record(&mut record).map_err(|error| {
+            let line = error.position().map(csv::Position::line);
+            let help = "as many values as the header has names";
+            wrong(line, format!("cannot be read: {error}"), help)
+        })?;
+        if !more {
+            break;
+        }
+        let line = record.position().map(csv::Position::line);
+        let number = |place: usize| {
+            let field = record.get(place).unwrap_or_default();
+            field.parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
+                let what = if field.is_empty() { "nothing" } else { field };
+                let message = format!("column `{}` holds {what}", &header[place]);
+                wrong(line, message, "expected a finite number in every row")
+            })
+        };
+        times.push(number(time)? * time_scale);
+        for ((place, _, scale), (_, values)) in chosen.iter().zip(&mut channels) {
+            values.push(number(*place)? * scale);
+        }
+    }
+    let interval = constant_step(&times).map_err(|(row, message)| {
+        // The header is line 1.
+        let help = "expected samples at a constant rate, time growing";
+        wrong(Some(row as u64 + 2), message, help)
+    })?;
+    let name = path.file_name().map_or(file.clone(), |name| name.to_string_lossy().into_owned());
+    Ok(Log::new(&name, times[0], interval, channels))
 }
 
 /// The step of a time column, or the first row that breaks it and how.

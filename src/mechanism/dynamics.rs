@@ -10,7 +10,7 @@
 
 use super::rows::{Row, prismatic_rows, revolute_rows};
 use super::telescope::Telescope;
-use super::{Bearing, BodyState, Command, Drive, Mechanism, Prismatic, Situation};
+use super::{Bearing, BodyState, Command, Drive, Held, Mechanism, Prismatic, Situation};
 use crate::contact::{Contact, circle_in_ring};
 use nalgebra::Vector3;
 
@@ -27,6 +27,8 @@ pub struct Dynamics {
     coupled: bool,
     /// Each prismatic joint at the state last asked for.
     prismatics: Vec<Telescope>,
+    /// What each prismatic joint's sampled controller holds.
+    held: Vec<Held>,
     rows: Vec<Row>,
     /// J M⁻¹ of each row.
     weighted: Vec<[Vector3<f64>; 2]>,
@@ -136,6 +138,7 @@ impl Dynamics {
                 .iter()
                 .map(|joint| Telescope::new(joint, &starts))
                 .collect(),
+            held: vec![Held::default(); mechanism.prismatics.len()],
             rows: Vec::new(),
             weighted: Vec::new(),
             matrix: Vec::new(),
@@ -152,6 +155,21 @@ impl Dynamics {
     /// M⁻¹ of each body as the diagonal (1/kg, 1/kg, 1/(kg·m²)).
     pub fn inverse_masses(&self) -> &[Vector3<f64>] {
         &self.inverse_masses
+    }
+
+    /// Lets the sampled controllers compute what they hold from time `t` (s) on.
+    pub fn sample(&mut self, mechanism: &Mechanism, t: f64, states: &[BodyState]) {
+        let mut commands = vec![Command::default(); mechanism.prismatics.len()];
+        let now = mechanism.epoch + t;
+        mechanism.commands.at(now, &mut commands);
+        for (i, joint) in mechanism.prismatics.iter().enumerate() {
+            if let Drive::Sampled(cascade) = joint.drive {
+                let state = Telescope::new(joint, states);
+                let [length, _] = joint.read(state.length, state.length_rate);
+                let added = mechanism.commands.added(i, now);
+                cascade.sample(&mut self.held[i], t, &commands[i], length, added);
+            }
+        }
     }
 
     /// Fills `out` with commands, wrenches, contacts, lengths and servo forces at time `t` (s) and
@@ -191,6 +209,14 @@ impl Dynamics {
             }
         }
         for (i, joint) in mechanism.prismatics.iter().enumerate() {
+            if let Drive::Sampled(cascade) = joint.drive {
+                self.prismatics[i] = Telescope::new(joint, states);
+                let force = cascade.force(&self.held[i], t);
+                out.drive_forces[i] = force;
+                let [on_cylinder, on_rod] = self.prismatics[i].drive(force);
+                add(&mut out.wrenches, joint.cylinder.body, on_cylinder);
+                add(&mut out.wrenches, joint.rod.body, on_rod);
+            }
             if let Drive::Servo { stiffness, damping } = joint.drive {
                 let state = &mut self.prismatics[i];
                 *state = Telescope::new(joint, states);

@@ -5,10 +5,13 @@
 //! (m/s, m/s, rad/s), accelerations (m/s², m/s², rad/s²), wrenches (N, N, N·m about the centre of
 //! mass).
 
+pub mod drive_stage;
 pub mod motion;
+pub mod pendulum;
 pub mod three_rpr;
 
 mod assembly;
+mod cascade;
 mod dynamics;
 mod load;
 mod reading;
@@ -16,6 +19,7 @@ mod rows;
 mod telescope;
 mod transmission;
 
+pub use cascade::{Cascade, Held};
 pub use dynamics::{Dynamics, Evaluation};
 pub use load::{Load, Situation};
 pub use reading::ReadingError;
@@ -184,6 +188,8 @@ pub enum Drive {
         /// Damping k_d in N·s/m.
         damping: f64,
     },
+    /// A controller that is computed at instants and held in between.
+    Sampled(Cascade),
 }
 
 /// A prismatic joint: a rod that slides along the x axis of its cylinder, both keeping the same
@@ -219,6 +225,12 @@ pub struct Command {
 pub trait Commands: Debug + Send + Sync {
     /// Writes the command of each prismatic joint at time `t` (s).
     fn at(&self, t: f64, commands: &mut [Command]);
+
+    /// What is added at time `t` (s) to the output of the sampled controller of prismatic joint
+    /// `index`, in V.
+    fn added(&self, _index: usize, _t: f64) -> f64 {
+        0.0
+    }
 }
 
 /// A planar mechanism, ready to be simulated.
@@ -300,6 +312,16 @@ impl Mechanism {
                 *command = joint.true_command(*command);
             }
         }
+    }
+
+    /// Time in s between two samples of the controllers; the shortest where they differ, and none
+    /// where nothing is sampled.
+    pub fn sampling(&self) -> Option<f64> {
+        let sampled = self.prismatics.iter().filter_map(|joint| match joint.drive {
+            Drive::Sampled(cascade) => Some(cascade.interval),
+            Drive::Prescribed | Drive::Servo { .. } => None,
+        });
+        sampled.reduce(f64::min)
     }
 
     /// Mass in kg that the two bodies of a revolute joint oppose to a hit, in the direction in which

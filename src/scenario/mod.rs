@@ -179,8 +179,12 @@ impl Scenario {
     /// ν and the radii.
     pub fn to_toml(&self) -> String {
         let mut full = self.clone();
-        let Mechanism::ThreeRpr(machine) = &mut full.mechanism;
-        machine.platform_inertia = Some(machine.platform_inertia());
+        if let Mechanism::ThreeRpr(machine) = &mut full.mechanism {
+            machine.platform_inertia = Some(machine.platform_inertia());
+        }
+        if self.drive.mode == DriveMode::Sampled {
+            full.drive.sampled = Some(self.drive.sampled());
+        }
         full.simulation.settle = Some(full.simulation.settle());
         full.simulation.set_step_control(self.step_control());
         full.effects = self.effects.iter().map(Setting::filled).collect();
@@ -274,8 +278,11 @@ fn read_mechanism(reader: &mut Reader<'_>, mut table: toml::Table) -> Mechanism 
             "write kind = \"3rpr\" under [mechanism]".to_owned(),
         );
     }
-    reader.take_kind("mechanism", &mut table, &Mechanism::KINDS);
-    Mechanism::ThreeRpr(reader.read("mechanism", table))
+    match reader.take_kind("mechanism", &mut table, &Mechanism::KINDS) {
+        Some("drive-stage") => Mechanism::DriveStage(reader.read("mechanism", table)),
+        Some("pendulum") => Mechanism::Pendulum(reader.read("mechanism", table)),
+        _ => Mechanism::ThreeRpr(reader.read("mechanism", table)),
+    }
 }
 
 fn read_effects(reader: &mut Reader<'_>, tables: Vec<toml::Table>) -> Vec<Setting> {

@@ -26,12 +26,21 @@ struct Checks<'a> {
 
 impl Checks<'_> {
     fn mechanism(&mut self) {
-        let Mechanism::ThreeRpr(machine) = &self.scenario.mechanism;
-        self.positive("mechanism.base_side", machine.base_side, "m");
-        self.positive("mechanism.platform_side", machine.platform_side, "m");
-        self.positive("mechanism.platform_mass", machine.platform_mass, "kg");
-        if let Some(inertia) = machine.platform_inertia {
-            self.positive("mechanism.platform_inertia", inertia, "kg m²");
+        match &self.scenario.mechanism {
+            Mechanism::ThreeRpr(machine) => {
+                self.positive("mechanism.base_side", machine.base_side, "m");
+                self.positive("mechanism.platform_side", machine.platform_side, "m");
+                self.positive("mechanism.platform_mass", machine.platform_mass, "kg");
+                if let Some(inertia) = machine.platform_inertia {
+                    self.positive("mechanism.platform_inertia", inertia, "kg m²");
+                }
+            }
+            Mechanism::DriveStage(stage) => self.positive("mechanism.mass", stage.mass, "kg"),
+            Mechanism::Pendulum(arm) => {
+                self.positive("mechanism.mass", arm.mass, "kg");
+                self.positive("mechanism.inertia", arm.inertia, "kg m²");
+                self.positive("mechanism.length", arm.length, "m");
+            }
         }
     }
 
@@ -129,6 +138,14 @@ impl Checks<'_> {
         let drive = &self.scenario.drive;
         self.positive("drive.stiffness", drive.stiffness, "N/m");
         self.positive("drive.damping", drive.damping, "N s/m");
+        if let Some(sampled) = &drive.sampled {
+            self.positive("drive.sampled.position_gain", sampled.position_gain, "1/s");
+            self.positive("drive.sampled.velocity_gain", sampled.velocity_gain, "V s/m");
+            self.positive("drive.sampled.interval", sampled.interval, "s");
+            self.positive("drive.sampled.limit", sampled.limit, "V");
+            self.positive("drive.sampled.force_gain", sampled.force_gain, "N/V");
+            self.not_negative("drive.sampled.lag", sampled.lag, "s");
+        }
     }
 
     fn sensors(&mut self) {

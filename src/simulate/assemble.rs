@@ -2,12 +2,12 @@
 //! that kind's own file.
 
 use super::ideal::Ideal;
-use super::{motion, native, three_rpr};
+use super::{drive_stage, motion, native, pendulum, three_rpr};
 use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
 use crate::effects::Wrong;
 use crate::engine::{Schedule, StepControl};
 use crate::mechanism::motion::{Line, Motion};
-use crate::mechanism::{Bearing, Commands, Drive, Mechanism};
+use crate::mechanism::{Bearing, Cascade, Commands, Drive, Mechanism};
 use crate::scenario::{self, DriveMode, Law, Problem, Scenario};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
@@ -33,10 +33,17 @@ pub struct Machine {
 /// # Errors
 /// A motion table that cannot be read, an effect that the machine cannot take.
 pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
-    let motion = motion::of(scenario)?;
+    let mut motion = motion::of(scenario)?;
     let (mut mechanism, ideal) = match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(machine) => {
             three_rpr::assemble(scenario, machine, Arc::clone(&motion))
+        }
+        scenario::Mechanism::DriveStage(stage) => {
+            drive_stage::assemble(scenario, stage, Arc::clone(&motion))
+        }
+        scenario::Mechanism::Pendulum(arm) => {
+            motion = pendulum::rest(arm);
+            pendulum::assemble(scenario, arm)
         }
     };
     if scenario.contact.law == Law::Native {
@@ -68,6 +75,10 @@ pub fn driven(
         scenario::Mechanism::ThreeRpr(machine) => {
             three_rpr::assemble(scenario, machine, Arc::new(rest)).0
         }
+        scenario::Mechanism::DriveStage(stage) => {
+            drive_stage::assemble(scenario, stage, Arc::new(rest)).0
+        }
+        scenario::Mechanism::Pendulum(arm) => pendulum::assemble(scenario, arm).0,
     };
     mechanism.commands = commands;
     mechanism.epoch = epoch;
@@ -105,6 +116,17 @@ pub(super) fn drive(scenario: &Scenario) -> Drive {
     match drive.mode {
         DriveMode::Prescribed => Drive::Prescribed,
         DriveMode::Servo => Drive::Servo { stiffness: drive.stiffness, damping: drive.damping },
+        DriveMode::Sampled => {
+            let sampled = drive.sampled();
+            Drive::Sampled(Cascade {
+                position_gain: sampled.position_gain,
+                velocity_gain: sampled.velocity_gain,
+                interval: sampled.interval,
+                limit: sampled.limit,
+                force_gain: sampled.force_gain,
+                lag: sampled.lag,
+            })
+        }
     }
 }
 

@@ -58,6 +58,7 @@ pub fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
         scenario::Mechanism::ThreeRpr(kind) => {
             three_rpr::findings(scenario, kind, &*machine.motion, &mut found);
         }
+        scenario::Mechanism::DriveStage(_) | scenario::Mechanism::Pendulum(_) => {}
     }
     found.extend(step(scenario, machine));
     found.extend(rows(scenario));

@@ -7,9 +7,11 @@
 
 mod assemble;
 mod checks;
+mod drive_stage;
 mod ideal;
 mod motion;
 mod native;
+mod pendulum;
 mod summary;
 mod three_rpr;
 mod timeseries;

@@ -51,21 +51,27 @@ pub struct CheckedMachine {
     /// Simulated time in s.
     pub duration_s: f64,
     /// Side of the base triangle in m.
-    pub base_side_m: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_side_m: Option<f64>,
     /// Side of the platform triangle in m.
-    pub platform_side_m: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub platform_side_m: Option<f64>,
     /// Name, mass (kg) and inertia (kg m²) of each body.
     pub bodies: Vec<CheckedBody>,
     /// How far each leg travels.
     pub legs: Vec<CheckedLeg>,
     /// Largest speed of a leg in m/s.
-    pub fastest_leg_m_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fastest_leg_m_s: Option<f64>,
     /// Smallest distance from singularity in m; zero if the motion passes through one.
-    pub singularity_distance_m: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub singularity_distance_m: Option<f64>,
     /// When it comes closest, in s.
-    pub singularity_time_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub singularity_time_s: Option<f64>,
     /// The platform's circumradius in m, which that distance is to be compared with.
-    pub platform_circumradius_m: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub platform_circumradius_m: Option<f64>,
     /// Contact law.
     pub law: Law,
     /// The revolute joints.
@@ -158,9 +164,13 @@ fn found(finding: Finding) -> Found {
 pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
     let findings = findings(scenario, machine);
     let ok = findings.iter().all(|finding| finding.severity != Severity::Error);
-    let scenario::Mechanism::ThreeRpr(kind) = &scenario.mechanism;
-    let reach = leg_use(scenario, kind, &*machine.motion);
-    let ideal = (reach.singularity_distance > NO_DISTANCE).then(|| ideal(machine));
+    let kind = match &scenario.mechanism {
+        scenario::Mechanism::ThreeRpr(kind) => Some(kind),
+        scenario::Mechanism::DriveStage(_) | scenario::Mechanism::Pendulum(_) => None,
+    };
+    let reach = kind.map(|kind| leg_use(scenario, kind, &*machine.motion));
+    let regular = reach.as_ref().is_none_or(|reach| reach.singularity_distance > NO_DISTANCE);
+    let ideal = regular.then(|| ideal(machine));
     let mechanism = &machine.mechanism;
     let bodies = mechanism.bodies.iter().map(|body| CheckedBody {
         name: body.name.clone(),
@@ -186,14 +196,18 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         scenario_name: scenario.name.clone(),
         scenario_hash: scenario.hash(),
         duration_s: scenario.simulation.duration,
-        base_side_m: kind.base_side,
-        platform_side_m: kind.platform_side,
+        base_side_m: kind.map(|kind| kind.base_side),
+        platform_side_m: kind.map(|kind| kind.platform_side),
         bodies: bodies.collect(),
-        legs: reach.lengths.iter().map(|used| CheckedLeg { used_m: *used, stroke_m }).collect(),
-        fastest_leg_m_s: reach.fastest_leg,
-        singularity_distance_m: reach.singularity_distance,
-        singularity_time_s: reach.singularity_time,
-        platform_circumradius_m: kind.platform_side / 3f64.sqrt(),
+        legs: reach
+            .iter()
+            .flat_map(|reach| reach.lengths)
+            .map(|used_m| CheckedLeg { used_m, stroke_m })
+            .collect(),
+        fastest_leg_m_s: reach.as_ref().map(|reach| reach.fastest_leg),
+        singularity_distance_m: reach.as_ref().map(|reach| reach.singularity_distance),
+        singularity_time_s: reach.as_ref().map(|reach| reach.singularity_time),
+        platform_circumradius_m: kind.map(|kind| kind.platform_side / 3f64.sqrt()),
         law: scenario.contact.law,
         joints: joints.collect(),
         impact_speed_m_s: TYPICAL_IMPACT_SPEED,

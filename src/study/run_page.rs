@@ -174,6 +174,7 @@ fn provenance(s: &Summary) -> Vec<(String, String)> {
     let drive = match s.drive {
         DriveMode::Prescribed => "prescribed: lengths follow the command exactly",
         DriveMode::Servo => "servo",
+        DriveMode::Sampled => "sampled controller",
     };
     let entries = [
         ("Program", format!("{} {}, on rapier2d-f64 {}", s.program, s.version, s.rapier_version)),

@@ -146,7 +146,9 @@ fn another_kind_starts_its_section_afresh() {
 
 #[test]
 fn derived_defaults_follow_what_they_derive_from() {
-    let Mechanism::ThreeRpr(machine) = built_in(&["mechanism.platform_mass=0.4"]).mechanism;
+    let Mechanism::ThreeRpr(machine) = built_in(&["mechanism.platform_mass=0.4"]).mechanism else {
+        panic!("the built-in machine is a 3-RPR");
+    };
     assert!((machine.platform_inertia() - 0.4 * 0.01 / 12.0).abs() < 1e-18);
     assert_eq!(built_in(&[]).simulation.settle(), 0.2);
     assert_eq!(built_in(&["simulation.duration=0.1"]).simulation.settle(), 0.05);

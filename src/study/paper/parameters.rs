@@ -59,7 +59,7 @@ fn assumed(name: &'static str, used: String, note: &'static str) -> Parameter {
 
 /// The table of a scenario; `machine` is its machine.
 pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
-    let Mechanism::ThreeRpr(m) = &scenario.mechanism;
+    let Mechanism::ThreeRpr(m) = &scenario.mechanism else { return Vec::new() };
     let (legs, contact, joints) = (&scenario.legs, &scenario.contact, &scenario.joints);
     let mm = |metres: f64| format!("{} mm", number(1e3 * metres));
     let stiffness = machine.contact(scenario, 0, 0.1).map_or(f64::NAN, |(k, _)| k);
@@ -159,6 +159,7 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
             match scenario.drive.mode {
                 DriveMode::Prescribed => "lengths follow the inverse kinematics exactly",
                 DriveMode::Servo => "servos",
+                DriveMode::Sampled => "sampled controllers",
             }
             .to_owned(),
             "what motions in ADAMS do; section 2 takes the inputs from the inverse kinematics",

@@ -1,0 +1,60 @@
+//! Drag of the air on the output body.
+
+use super::kind::{defaults, linear};
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Load, Mechanism, Situation};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+pub(super) const KIND: Kind = Kind {
+    name: "air-drag",
+    summary: "drag that grows with the square of the speed, as of bodies in air",
+    equation: "force -c |v| v at the reference point of the output body, torque -c_t |w| w",
+    source: "Batchelor, An Introduction to Fluid Dynamics (1967), section 5.11",
+    trace: "forces against the output body's velocity, in fast motion only; free swings: large ones die \
+            down faster than by a constant share",
+    joints: Joints::None,
+    parameters: &[
+        Parameter {
+            name: "force_Ns2_m2",
+            unit: "N s^2/m^2",
+            about: "coefficient c",
+            bounds: [0.0, 1e4],
+            step: 1e-2,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "torque_Nms2",
+            unit: "N m s^2",
+            about: "coefficient c_t",
+            bounds: [0.0, 1e3],
+            step: 1e-6,
+            default: Some(0.0),
+        },
+    ],
+    variants: &[],
+    neutral: defaults,
+    starts: linear,
+    scan: None,
+    apply,
+};
+
+#[derive(Debug)]
+struct Drag {
+    force: f64,
+    torque: f64,
+}
+
+impl Load for Drag {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let twist = at.mechanism.output_state(at.states).twist;
+        let (v, omega) = (twist.xy(), twist.z);
+        at.push_output(-self.force * v.norm() * v, -self.torque * omega.abs() * omega, wrenches);
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let [force, torque] = ["force_Ns2_m2", "torque_Nms2"].map(|name| setting.number(name));
+    mechanism.loads.push(Arc::new(Drag { force, torque }));
+    Ok(())
+}

@@ -1,0 +1,97 @@
+//! Friction torque in a pivot.
+
+use super::kind::{defaults, linear};
+use super::{Joints, Kind, Parameter, Setting, Wrong};
+use crate::mechanism::{Attachment, Load, Mechanism, Situation};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+pub(super) const KIND: Kind = Kind {
+    name: "pivot-friction",
+    summary: "a torque against the turning of a revolute joint that does not ask for its load: a preloaded \
+              or sealed bearing",
+    equation: "torque -(T_c tanh(w/w_s) + k w) between the two bodies, w the rate at which the joint turns",
+    source: "Coulomb, with tanh as a smooth sign; viscous friction",
+    trace: "free swings: the amplitude falls by the same angle each time (T_c) or by the same share (k)",
+    joints: Joints::RevoluteOrAll,
+    parameters: &[
+        Parameter {
+            name: "coulomb_Nm",
+            unit: "N m",
+            about: "dry friction torque T_c",
+            bounds: [0.0, 1e3],
+            step: 1e-4,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "viscous_Nms",
+            unit: "N m s",
+            about: "viscous friction k",
+            bounds: [0.0, 1e3],
+            step: 1e-5,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "velocity_rad_s",
+            unit: "rad/s",
+            about: "rate w_s at which dry friction is near its full value: an arm that stops creeps no \
+                    faster",
+            bounds: [1e-6, 10.0],
+            step: 1e-3,
+            default: Some(1e-3),
+        },
+    ],
+    variants: &[],
+    neutral: defaults,
+    starts: linear,
+    scan: None,
+    apply,
+};
+
+/// The friction of one revolute joint.
+#[derive(Debug)]
+struct Friction {
+    joint: usize,
+    coulomb: f64,
+    viscous: f64,
+    velocity: f64,
+}
+
+impl Load for Friction {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let joint = &at.mechanism.revolutes[self.joint];
+        let rate = joint.journal.frame(at.states).spin - joint.ring.frame(at.states).spin;
+        let torque = self.coulomb * (rate / self.velocity).tanh() + self.viscous * rate;
+        for (attachment, sign) in [(&joint.journal, -1.0), (&joint.ring, 1.0)] {
+            if let Some(body) = attachment.body {
+                wrenches[body].z += sign * torque;
+            }
+        }
+    }
+
+    /// A torque `c ω` on the inertia J that the lighter side has about the joint: `h ≤ J/c`.
+    fn longest_step(&self, mechanism: &Mechanism) -> Option<f64> {
+        let joint = &mechanism.revolutes[self.joint];
+        let lightness = |attachment: &Attachment| {
+            attachment.body.map_or(0.0, |i| {
+                let body = &mechanism.bodies[i];
+                1.0 / (body.inertia + body.mass * attachment.point.norm_squared())
+            })
+        };
+        let steepest = self.coulomb / self.velocity + self.viscous;
+        let rate = steepest * (lightness(&joint.ring) + lightness(&joint.journal));
+        (rate > 0.0).then(|| 1.0 / rate)
+    }
+}
+
+fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    for joint in setting.revolutes(mechanism)? {
+        mechanism.loads.push(Arc::new(Friction {
+            joint,
+            coulomb: setting.number("coulomb_Nm"),
+            viscous: setting.number("viscous_Nms"),
+            velocity: setting.number("velocity_rad_s"),
+        }));
+    }
+    Ok(())
+}

@@ -1,0 +1,412 @@
+//! The drive stage of the EMPS recordings: what its declared model lacks, found one effect after another
+//! on one recording and judged on another.
+
+use super::{Missing, Table};
+use crate::effects::{Setting, named};
+use crate::engine::{self, Schedule, StepControl};
+use crate::identify::inverse::{Model, Motion, Term};
+use crate::measure::log::{Channel, Log, Source};
+use crate::mechanism::{Cascade, Command, Commands, Drive, Held, Mechanism, drive_stage};
+use nalgebra::Vector2;
+use std::f64::consts::PI;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The drive of the EMPS: its controller, and 35.15 N on the load for each volt (README of the data).
+pub const DRIVE: Cascade = Cascade {
+    position_gain: 160.18,
+    velocity_gain: 243.45,
+    interval: 1e-3,
+    limit: 10.0,
+    force_gain: 35.150_651_882_485_47,
+    lag: 0.0,
+};
+
+/// Declared: moved mass in kg and viscous friction in N·s/m, as published.
+pub const DECLARED: [f64; 2] = [95.1089, 203.50];
+
+/// Pitch of the ball screw in m (README of the data).
+const PITCH: f64 = 2.5e-3;
+
+/// Speeds v_f in m/s that are tried for friction which builds up.
+const FILM_SPEEDS: [f64; 8] = [2e-3, 4e-3, 6e-3, 8e-3, 1e-2, 1.4e-2, 2e-2, 3e-2];
+
+/// Speed in m/s at which dry friction is near its full value: a 200th of the slowest working speed.
+const SIGN_SPEED: f64 = 1e-4;
+
+/// Fixed step in s of the closed loop: a fifth of its sampling, half of what dry friction stands.
+const STEP: f64 = 2e-4;
+
+/// A recording of the stage.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// Name of its file.
+    pub name: String,
+    /// Its samples.
+    pub log: Log,
+    /// The same for the regression.
+    pub motion: Motion,
+}
+
+impl Recording {
+    /// Reads one of the files; `added` where it has a recorded voltage on top of the controller's.
+    ///
+    /// # Errors
+    /// Files that are not there or not what they should be.
+    pub fn read(path: &Path, added: bool) -> Result<Recording, Missing> {
+        let mut columns = vec![
+            (Channel::Command(0), Source::new("q_ref_m", 1.0)),
+            (Channel::Length(0), Source::new("q_m", 1.0)),
+            (Channel::Force(0), Source::new("u_V", DRIVE.force_gain)),
+        ];
+        if added {
+            columns.push((Channel::Added(0), Source::new("pulse_V", 1.0)));
+        }
+        let log = super::read(path, &Source::new("t_s", 1.0), &columns)?;
+        Ok(Recording::of(log))
+    }
+
+    fn of(log: Log) -> Recording {
+        let column = |channel| log.get(channel).unwrap_or_default();
+        let motion =
+            Motion::new(column(Channel::Length(0)), column(Channel::Force(0)), log.interval);
+        Recording { name: log.name.clone(), motion, log }
+    }
+
+    fn column(&self, channel: Channel) -> &[f64] {
+        self.log.get(channel).unwrap_or_default()
+    }
+}
+
+/// The recorded reference and the recorded added voltage.
+#[derive(Debug)]
+struct Recorded {
+    interval: f64,
+    lengths: Vec<f64>,
+    added: Vec<f64>,
+}
+
+impl Recorded {
+    fn at(&self, samples: &[f64], t: f64) -> f64 {
+        let last = samples.len().saturating_sub(1);
+        samples.get(((t / self.interval).round() as usize).min(last)).copied().unwrap_or(0.0)
+    }
+}
+
+impl Commands for Recorded {
+    fn at(&self, t: f64, commands: &mut [Command]) {
+        for command in commands {
+            *command = Command { length: self.at(&self.lengths, t), ..Command::default() };
+        }
+    }
+
+    fn added(&self, _: usize, t: f64) -> f64 {
+        self.at(&self.added, t)
+    }
+}
+
+/// The stage that a model describes: what is linear in its force as effects, and a lag beyond half a
+/// sample, which holding takes by itself.
+///
+/// # Errors
+/// An effect that the stage cannot take.
+pub fn stage(model: &Model, recording: &Recording) -> Result<Mechanism, Missing> {
+    let mass = model.factor(Term::Mass);
+    let lag = (model.factor(Term::Lag) / mass - 0.5 * DRIVE.interval).max(0.0);
+    let commands = Recorded {
+        interval: recording.log.interval,
+        lengths: recording.column(Channel::Command(0)).to_vec(),
+        added: recording.column(Channel::Added(0)).to_vec(),
+    };
+    let start = recording.column(Channel::Length(0)).first().copied().unwrap_or(0.0);
+    let drive = Drive::Sampled(Cascade { lag, ..DRIVE });
+    let mut mechanism =
+        drive_stage::build(mass, drive, [start, 0.0], Arc::new(commands), Vector2::zeros());
+    for effect in effects(model) {
+        effect.apply(&mut mechanism).map_err(|wrong| Missing::Wrong(wrong.message))?;
+    }
+    Ok(mechanism)
+}
+
+/// A model's terms as effects of a scenario.
+pub fn effects(model: &Model) -> Vec<Setting> {
+    let effect = |name: &str, values: &[(&'static str, f64)]| {
+        named(name).map(|kind| Setting::new(kind, Some("P1"), values))
+    };
+    let sum = |both: Term, way: Term| model.factor(both) + model.factor(way);
+    let mut found = Vec::new();
+    found.extend(effect(
+        "actuator-friction",
+        &[
+            ("coulomb_pos_N", sum(Term::Coulomb, Term::CoulombWay(true))),
+            ("coulomb_neg_N", sum(Term::Coulomb, Term::CoulombWay(false))),
+            ("viscous_pos_Ns_m", sum(Term::Viscous, Term::ViscousWay(true))),
+            ("viscous_neg_Ns_m", sum(Term::Viscous, Term::ViscousWay(false))),
+            // On the rod, where the regression has the force that the drive gives against it.
+            ("offset_N", -model.factor(Term::Offset)),
+            ("velocity_m_s", SIGN_SPEED),
+        ],
+    ));
+    for (term, factor) in &model.terms {
+        if let Term::Film(speed) = term {
+            let values = [("force_N", *factor), ("speed_m_s", *speed)];
+            found.extend(effect("film-friction", &values));
+        }
+    }
+    let [sin, cos] = [true, false].map(|sine| model.factor(Term::Ripple(PITCH, sine)));
+    if sin != 0.0 || cos != 0.0 {
+        let phase = cos.atan2(sin) + PI;
+        let values = [("amplitude_N", sin.hypot(cos)), ("pitch_m", PITCH), ("phase_rad", phase)];
+        found.extend(effect("screw-ripple", &values));
+    }
+    found
+}
+
+/// What the controller tells the drive when it sees the lengths of a recording: `G u` in N.
+pub fn controller_force(recording: &Recording, lengths: &[f64]) -> Vec<f64> {
+    let (commands, added) =
+        (recording.column(Channel::Command(0)), recording.column(Channel::Added(0)));
+    let mut held = Held::default();
+    (commands.iter().zip(lengths).enumerate())
+        .map(|(k, (length, q))| {
+            let command = Command { length: *length, ..Command::default() };
+            let added = added.get(k).copied().unwrap_or(0.0);
+            DRIVE.force_gain
+                * DRIVE.sample(&mut held, k as f64 * DRIVE.interval, &command, *q, added)
+        })
+        .collect()
+}
+
+/// Simulates the closed loop of a model on a recording's reference: lengths in m at its samples.
+///
+/// # Errors
+/// A run that breaks down.
+pub fn closed_loop(model: &Model, recording: &Recording) -> Result<Vec<f64>, Missing> {
+    let mechanism = stage(model, recording)?;
+    let interval = recording.log.interval;
+    let schedule = Schedule { duration: recording.log.duration(), interval };
+    let mut lengths = Vec::with_capacity(recording.log.samples);
+    engine::run(&mechanism, StepControl::Fixed(STEP), schedule, &mut |instant| {
+        lengths.push(instant.evaluation.lengths[0]);
+    })
+    .map_err(|halt| Missing::Wrong(halt.to_string()))?;
+    lengths.resize(recording.log.samples, f64::NAN);
+    Ok(lengths)
+}
+
+/// A model and how far off it is: shares of the norm of the recorded force.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// What was added.
+    pub name: &'static str,
+    /// Where its trace was seen.
+    pub trace: &'static str,
+    /// The model with everything so far, fitted to the training recording.
+    pub model: Model,
+    /// Inverse model on the training recording, and each half of it by the model of the other half.
+    pub train: f64,
+    /// See `train`; none of a declared model.
+    pub halves: Option<[f64; 2]>,
+    /// Inverse model of the training recording on the pulses.
+    pub pulses: f64,
+    /// Force of the simulated closed loop: training recording, pulses.
+    pub simulated: [f64; 2],
+}
+
+/// What of the last model was identified anew on the first half of the pulses.
+#[derive(Clone, Debug)]
+pub struct Carried {
+    /// That model.
+    pub model: Model,
+    /// Error on the second half, before and after; inverse model.
+    pub inverse: [f64; 2],
+    /// The same, closed loop.
+    pub simulated: [f64; 2],
+}
+
+/// What the study comes to.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Step by step.
+    pub steps: Vec<Step>,
+    /// The pulses.
+    pub carried: Carried,
+}
+
+fn halves(rows: &Range<usize>) -> [Range<usize>; 2] {
+    let middle = (rows.start + rows.end) / 2;
+    [rows.start..middle, middle..rows.end]
+}
+
+fn unfit() -> Missing {
+    Missing::Wrong("the recording does not tell the model's terms apart: does it move?".to_owned())
+}
+
+/// Terms of each step.
+fn plan(film: f64) -> [(&'static str, &'static str, Vec<Term>); 5] {
+    let symmetric = vec![Term::Mass, Term::Viscous, Term::Coulomb, Term::Offset];
+    let asymmetric = vec![
+        Term::Mass,
+        Term::ViscousWay(true),
+        Term::ViscousWay(false),
+        Term::CoulombWay(true),
+        Term::CoulombWay(false),
+    ];
+    let lag = [asymmetric.clone(), vec![Term::Lag]].concat();
+    let film = [lag.clone(), vec![Term::Film(film)]].concat();
+    let ripple = [film.clone(), [true, false].map(|s| Term::Ripple(PITCH, s)).to_vec()].concat();
+    [
+        ("dry friction and an offset", "a force with the sign of the speed", symmetric),
+        ("friction that differs with direction", "error grows with speed, one way", asymmetric),
+        ("lag of the drive", "error with the jerk, at 10 to 35 Hz", lag),
+        ("friction that builds up with speed", "error below 20 mm/s, against the motion", film),
+        ("ripple of the screw", "error periodic in position, 2.5 mm", ripple),
+    ]
+}
+
+/// Does the study.
+///
+/// # Errors
+/// Recordings that cannot be used.
+pub fn study(train: &Recording, pulses: &Recording) -> Result<Outcome, Missing> {
+    let (rows, other) = (train.motion.rows(), pulses.motion.rows());
+    let fit = |motion: &Motion, rows: Range<usize>, terms: &[Term]| {
+        Model::fit(motion, rows, terms, &[]).ok_or_else(unfit)
+    };
+    let step = |name, trace, model: Model, halves| -> Result<Step, Missing> {
+        let mut simulated = [0.0; 2];
+        for (error, recording) in simulated.iter_mut().zip([train, pulses]) {
+            let force = controller_force(recording, &closed_loop(&model, recording)?);
+            *error = recording.motion.relative_error(&force, recording.motion.rows());
+        }
+        let (train, pulses) =
+            (model.error(&train.motion, rows.clone()), model.error(&pulses.motion, other.clone()));
+        Ok(Step { name, trace, model, train, halves, pulses, simulated })
+    };
+    let declared = Model { terms: [Term::Mass, Term::Viscous].into_iter().zip(DECLARED).collect() };
+    let mut steps = vec![step("declared: mass and viscous friction", "", declared, None)?];
+
+    let mut film = (f64::INFINITY, FILM_SPEEDS[0]);
+    for speed in FILM_SPEEDS {
+        let [.., (_, _, terms), _] = plan(speed);
+        let error = fit(&train.motion, rows.clone(), &terms)?.error(&train.motion, rows.clone());
+        if error < film.0 {
+            film = (error, speed);
+        }
+    }
+    for (name, trace, terms) in plan(film.1) {
+        let [first, second] = halves(&rows);
+        let by_first = fit(&train.motion, first.clone(), &terms)?;
+        let by_second = fit(&train.motion, second.clone(), &terms)?;
+        let halves = [by_second.error(&train.motion, first), by_first.error(&train.motion, second)];
+        steps.push(step(name, trace, fit(&train.motion, rows.clone(), &terms)?, Some(halves))?);
+    }
+
+    let last = steps.last().map(|step| step.model.clone()).ok_or_else(unfit)?;
+    let carried = carry(&last, pulses)?;
+    Ok(Outcome { steps, carried })
+}
+
+/// Identifies anew on the first half of the pulses what need not be the same on another day: the phase
+/// of the screw (where the encoder's zero is), the lag (felt more by pulses), the dry friction.
+fn carry(model: &Model, pulses: &Recording) -> Result<Carried, Missing> {
+    let anew = |term: &Term| matches!(term, Term::Lag | Term::Ripple(..));
+    let (free, fixed): (Vec<_>, Vec<_>) =
+        model.terms.iter().copied().partition(|(term, _)| anew(term));
+    let free: Vec<Term> = free.into_iter().map(|(term, _)| term).collect();
+    let [first, second] = halves(&pulses.motion.rows());
+    let again = Model::fit(&pulses.motion, first, &free, &fixed).ok_or_else(unfit)?;
+    let mut carried = Carried { model: again.clone(), inverse: [0.0; 2], simulated: [0.0; 2] };
+    for (k, model) in [model, &again].into_iter().enumerate() {
+        carried.inverse[k] = model.error(&pulses.motion, second.clone());
+        let force = controller_force(pulses, &closed_loop(model, pulses)?);
+        carried.simulated[k] = pulses.motion.relative_error(&force, second.clone());
+    }
+    Ok(carried)
+}
+
+/// A share in percent with two decimals.
+fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+/// Published relative errors of the force: symmetric on both recordings, asymmetric on the first.
+const PUBLISHED: [(&str, &str); 2] = [("4.083 %", "5.982 %"), ("3.112 %", "")];
+
+impl Outcome {
+    /// Errors step by step.
+    pub fn table(&self) -> Table {
+        let header = [
+            "model",
+            "training recording, inverse model",
+            "each half by the other",
+            "published",
+            "training recording, simulated",
+            "pulses, inverse model",
+            "published",
+            "pulses, simulated",
+        ];
+        let rows = self.steps.iter().enumerate().map(|(i, step)| {
+            let published = i.checked_sub(1).and_then(|i| PUBLISHED.get(i)).unwrap_or(&("", ""));
+            let halves =
+                step.halves.map_or(String::new(), |halves| halves.map(percent).join(" / "));
+            let name = if i == 0 { step.name.to_owned() } else { format!("+ {}", step.name) };
+            vec![
+                name,
+                percent(step.train),
+                halves,
+                published.0.to_owned(),
+                percent(step.simulated[0]),
+                percent(step.pulses),
+                published.1.to_owned(),
+                percent(step.simulated[1]),
+            ]
+        });
+        Table { header: header.map(str::to_owned).to_vec(), rows: rows.collect() }
+    }
+
+    /// Parameters of the last model, and of the pulses.
+    pub fn parameters(&self) -> Table {
+        let Some(last) = self.steps.last() else {
+            return Table { header: Vec::new(), rows: Vec::new() };
+        };
+        let rows = last.model.terms.iter().map(|(term, factor)| {
+            let there = self.carried.model.factor(*term);
+            let how = if there == *factor { "carried over" } else { "anew, first half" };
+            let (name, unit, scale) = named_term(*term, last.model.factor(Term::Mass));
+            vec![
+                name,
+                format!("{:.4} {unit}", factor * scale),
+                format!("{:.4} {unit}", there * scale),
+                how.to_owned(),
+            ]
+        });
+        Table {
+            header: ["parameter", "training recording", "pulses", ""].map(str::to_owned).to_vec(),
+            rows: rows.collect(),
+        }
+    }
+}
+
+/// A term in words, the unit of its factor, and what the factor is to be multiplied by for it.
+fn named_term(term: Term, mass: f64) -> (String, &'static str, f64) {
+    let way = |outward: bool| if outward { "outward" } else { "inward" };
+    match term {
+        Term::Mass => ("moved mass".to_owned(), "kg", 1.0),
+        Term::Lag => {
+            ("lag of the force, half a sample of it by holding".to_owned(), "ms", 1e3 / mass)
+        }
+        Term::Offset => ("offset".to_owned(), "N", 1.0),
+        Term::Viscous => ("viscous friction".to_owned(), "N s/m", 1.0),
+        Term::ViscousWay(outward) => (format!("viscous friction {}", way(outward)), "N s/m", 1.0),
+        Term::Coulomb => ("dry friction".to_owned(), "N", 1.0),
+        Term::CoulombWay(outward) => (format!("dry friction {}", way(outward)), "N", 1.0),
+        Term::Film(speed) => {
+            (format!("friction that builds up over {} mm/s", 1e3 * speed), "N", 1.0)
+        }
+        Term::Ripple(_, sine) => {
+            (format!("ripple of the screw, {}", if sine { "sine" } else { "cosine" }), "N", 1.0)
+        }
+    }
+}
