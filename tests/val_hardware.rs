@@ -1,9 +1,19 @@
 //! Models against measured hardware. The recordings are not part of the project; without them the tests
 //! say so and pass.
 
+mod cli_common;
+
+use cli_common::Place;
+use freeplay::engine::{self, Schedule, StepControl};
 use freeplay::identify::inverse::Term;
+use freeplay::mechanism::pendulum as arm;
+use freeplay::scenario::Scenario;
 use freeplay::study::hardware::{Missing, emps, folder, pendulum, skipped};
 use std::path::PathBuf;
+
+fn rig(text: &str) -> Scenario {
+    Scenario::from_text(text, "rig.toml", &[]).expect("a scenario")
+}
 
 fn place(name: &str) -> PathBuf {
     folder(None).join(name)
@@ -23,8 +33,8 @@ fn present<T>(read: Result<T, Missing>) -> Option<T> {
 
 #[test]
 fn the_drive_stage_is_found_and_predicts_another_recording() {
-    let train = emps::Recording::read(&place("emps/emps_train.csv"), false);
-    let pulses = emps::Recording::read(&place("emps/emps_pulses.csv"), true);
+    let train = emps::Recording::read(&place("emps/emps_train.csv"), &rig(emps::RIG), false);
+    let pulses = emps::Recording::read(&place("emps/emps_pulses.csv"), &rig(emps::RIG), true);
     let (Some(train), Some(pulses)) = (present(train), present(pulses)) else { return };
     let found = emps::study(&train, &pulses).expect("usable");
     println!("{}\n{}", found.table().text(), found.parameters().text());
@@ -58,7 +68,10 @@ fn the_drive_stage_is_found_and_predicts_another_recording() {
 #[test]
 fn the_pendulum_is_found_and_predicts_what_follows() {
     let file = "pendulum/single_pendulum_1kHz.csv";
-    let Some(recording) = present(pendulum::Recording::read(&place(file))) else { return };
+    let Some(recording) = present(pendulum::Recording::read(&place(file), &rig(pendulum::RIG)))
+    else {
+        return;
+    };
     let found = pendulum::study(&recording);
     println!("{}\ndeclared {}\n{:?}", found.table().text(), found.declared, found.carried);
     for step in &found.steps {
@@ -68,4 +81,75 @@ fn the_pendulum_is_found_and_predicts_what_follows() {
     assert!(chosen.swinger.dry > 0.0 && chosen.swinger.air > 0.0);
     assert!(chosen.val <= 0.55 * viscous.val, "{} of {}", chosen.val, viscous.val);
     assert!(viscous.val <= found.declared * 1.2);
+}
+
+/// A recording like the pendulum's, simulated: time and angle.
+fn swings() -> Vec<[f64; 2]> {
+    let swinger = pendulum::Swinger { dry: 0.15, air: 4e-3, ..pendulum::Swinger::declared() };
+    let mechanism = swinger.released([1.6, 0.0], 2e-2);
+    let schedule = Schedule { duration: 6.0, interval: 1e-3 };
+    let mut rows: Vec<[f64; 2]> = Vec::new();
+    engine::run(&mechanism, StepControl::Fixed(1e-3), schedule, &mut |instant| {
+        let near = rows.last().map_or(1.6, |row| row[1]);
+        rows.push([instant.t, arm::angle(&instant.states[0], near)[0]]);
+    })
+    .expect("swings");
+    rows
+}
+
+fn csv(head: &str, rows: &[[f64; 2]]) -> String {
+    let rows = rows.iter().map(|[t, angle]| format!("{t:.6},{angle:.7}\n"));
+    format!("{head}\n{}", rows.collect::<String>())
+}
+
+#[test]
+fn wrong_columns_wrong_scales_and_spliced_recordings_are_refused() {
+    let place = Place::new();
+    let file = "data/pendulum/single_pendulum_1kHz.csv";
+    std::fs::create_dir_all(place.path("data/pendulum")).expect("a folder");
+    let good = swings();
+    let command = "study pendulum --data data --out out";
+    let refused = |text: String, words: &[&str]| {
+        place.write(file, &text);
+        place.refused(command, words);
+    };
+    refused(csv("t_s,theta", &good), &["theta1_rad", "columns.phi", "the file has t_s, theta"]);
+    let degrees: Vec<[f64; 2]> = good.iter().map(|[t, angle]| [*t, angle.to_degrees()]).collect();
+    refused(csv("t_s,theta1_rad", &degrees), &["columns.phi", "scale = 0.01745"]);
+    let spliced: Vec<[f64; 2]> = (0..5000)
+        .map(|i| [good[i][0], if i < 2500 { good[i][1] } else { good[i + 300][1] }])
+        .collect();
+    refused(csv("t_s,theta1_rad", &spliced), &["csv:250", "two runs", "cut the file"]);
+    let gap: Vec<[f64; 2]> = good
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| !(2000..2500).contains(i))
+        .map(|(_, r)| *r)
+        .collect();
+    refused(csv("t_s,theta1_rad", &gap), &["csv:2002", "constant rate"]);
+}
+
+#[test]
+fn without_recordings_the_studies_say_so_and_where_to_get_them() {
+    let place = Place::new();
+    for (which, words) in [("emps", "nonlinearbenchmark.org"), ("pendulum", "MultiArm-Pendulum")] {
+        let said = place.good(&format!("study {which} --data nowhere"));
+        assert!(said.starts_with("skipped: data not present") && said.contains(words), "{said}");
+    }
+}
+
+#[test]
+fn both_machines_run_and_are_checked_like_any_other() {
+    let place = Place::new();
+    for (name, text) in [("stage", emps::RIG), ("arm", pendulum::RIG)] {
+        place.write(&format!("{name}.toml"), text);
+        let checked = place.good(&format!("check {name}.toml"));
+        assert!(checked.contains("kg"), "{checked}");
+        place.good(&format!("run {name}.toml --duration 1 --quiet --out {name}"));
+        place.good(&format!("run {name}/scenario.toml --quiet --out {name}-again"));
+        assert_eq!(
+            place.read(&format!("{name}/timeseries.csv")),
+            place.read(&format!("{name}-again/timeseries.csv"))
+        );
+    }
 }

@@ -19,6 +19,7 @@ mod predict;
 mod progress;
 mod run;
 mod self_test;
+mod study;
 mod sweep;
 
 use clap::{Parser, Subcommand};
@@ -53,6 +54,7 @@ Exit codes: 0 done, 2 wrong input, 1 anything else.";
 #[derive(Debug, Subcommand)]
 enum Command {
     Run(run::Arguments),
+    Study(study::Arguments),
     Compare(compare::Arguments),
     Paper(paper::Arguments),
     Calibrate(calibrate::Arguments),
@@ -68,6 +70,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(arguments) => run::main(&arguments),
+        Command::Study(arguments) => study::main(&arguments),
         Command::Compare(arguments) => compare::main(&arguments),
         Command::Paper(arguments) => paper::main(&arguments),
         Command::Calibrate(arguments) => calibrate::main(&arguments),

@@ -2,4 +2,5 @@
 //! its free swings.
 
 pub mod inverse;
+pub mod plausible;
 pub mod swings;

@@ -16,7 +16,7 @@ const LOOK: f64 = 4e-3;
 
 /// Finite differences of the start in rad and rad/s, and corrections of it: the second is below 1e-9.
 const NUDGE: f64 = 1e-5;
-const CORRECTIONS: usize = 3;
+const CORRECTIONS: usize = 2;
 
 /// A stretch of a recording of one angle.
 #[derive(Clone, Debug)]
@@ -85,6 +85,12 @@ fn deviation(build: Build, window: &Window, plan: Plan) -> (Vec<f64>, [f64; 2]) 
     (deviations, start.into())
 }
 
+/// Predicted less recorded angle in rad over one window, with the time in s from its start.
+pub fn deviations(build: Build, window: &Window, plan: Plan) -> Vec<(f64, f64)> {
+    let (deviations, _) = deviation(build, window, plan);
+    (0u32..).map(|k| f64::from(k) * LOOK).zip(deviations).collect()
+}
+
 /// Root mean square deviation in rad over all windows, and over each.
 pub fn score(build: Build, windows: &[Window], plan: Plan) -> (f64, Vec<f64>) {
     let each: Vec<f64> = windows
@@ -129,7 +135,7 @@ pub fn fit(
         let (normal, gradient) = (jacobian.tr_mul(&jacobian), jacobian.tr_mul(&now));
         let before = now.norm_squared();
         let mut better = false;
-        while damping < 1e6 {
+        while damping < 1e3 {
             let mut damped = normal.clone();
             for k in 0..values.len() {
                 damped[(k, k)] *= 1.0 + damping;
@@ -146,7 +152,7 @@ pub fn fit(
             }
             damping *= 10.0;
         }
-        if !better || now.norm_squared() > before * (1.0 - 1e-5) {
+        if !better || now.norm_squared() > before * (1.0 - 1e-4) {
             break;
         }
     }
@@ -154,4 +160,4 @@ pub fn fit(
 }
 
 /// Iterations of a fit: from declared values it takes four to six.
-const ITERATIONS: usize = 15;
+const ITERATIONS: usize = 10;

@@ -50,7 +50,7 @@ pub enum Part<'a> {
 }
 
 /// A table with a heading and a remark.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Table {
     /// Where links find it.
     pub id: &'static str,

@@ -102,6 +102,9 @@ pub struct Scenario {
     /// `[sensors]`; absent unless a rig declares its instruments.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensors: Option<Sensors>,
+    /// `[columns]`; absent unless a rig says what its logs' columns are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub columns: Option<Columns>,
     /// `[motion]`
     pub motion: Motion,
     /// `[simulation]`
@@ -217,6 +220,7 @@ struct TopLevel {
     drive: toml::Table,
     environment: toml::Table,
     sensors: Option<toml::Table>,
+    columns: Option<toml::Table>,
     motion: toml::Table,
     simulation: toml::Table,
     effect: Vec<toml::Table>,
@@ -235,6 +239,7 @@ impl Default for TopLevel {
             drive: toml::Table::new(),
             environment: toml::Table::new(),
             sensors: None,
+            columns: None,
             motion: toml::Table::new(),
             simulation: toml::Table::new(),
             effect: Vec::new(),
@@ -260,6 +265,7 @@ fn read(document: Document) -> Result<Scenario, Problems> {
         drive: reader.read("drive", top.drive),
         environment: reader.read("environment", top.environment),
         sensors: top.sensors.map(|table| reader.read("sensors", table)),
+        columns: top.columns.map(|table| reader.read("columns", table)),
         motion: read_motion(&mut reader, top.motion),
         simulation: reader.read("simulation", top.simulation),
         effects: read_effects(&mut reader, top.effect),

@@ -1,6 +1,7 @@
 //! The sections of a scenario file, one type each. SI units; every number's meaning, unit, default
 //! and the reason for that default stand at its field.
 
+mod columns;
 mod contact;
 mod drive;
 mod environment;
@@ -14,6 +15,7 @@ mod simulation;
 
 pub use crate::contact::StiffnessForm;
 pub use crate::engine::StepControl;
+pub use columns::Columns;
 pub use contact::{Contact, Law};
 pub use drive::{Drive, DriveMode, Sampled};
 pub use environment::Environment;

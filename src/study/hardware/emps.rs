@@ -5,23 +5,19 @@ use super::{Missing, Table};
 use crate::effects::{Setting, named};
 use crate::engine::{self, Schedule, StepControl};
 use crate::identify::inverse::{Model, Motion, Term};
+use crate::identify::plausible;
 use crate::measure::log::{Channel, Log, Source};
 use crate::mechanism::{Cascade, Command, Commands, Drive, Held, Mechanism, drive_stage};
+use crate::scenario::Scenario;
+use crate::simulate::assemble;
 use nalgebra::Vector2;
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The drive of the EMPS: its controller, and 35.15 N on the load for each volt (README of the data).
-pub const DRIVE: Cascade = Cascade {
-    position_gain: 160.18,
-    velocity_gain: 243.45,
-    interval: 1e-3,
-    limit: 10.0,
-    force_gain: 35.150_651_882_485_47,
-    lag: 0.0,
-};
+/// The machine, its drive and the columns of its recordings, as a scenario.
+pub const RIG: &str = include_str!("../../../assets/drive-stage.toml");
 
 /// Declared: moved mass in kg and viscous friction in N·s/m, as published.
 pub const DECLARED: [f64; 2] = [95.1089, 203.50];
@@ -47,31 +43,81 @@ pub struct Recording {
     pub log: Log,
     /// The same for the regression.
     pub motion: Motion,
+    /// The controller that made it.
+    pub cascade: Cascade,
 }
 
 impl Recording {
-    /// Reads one of the files; `added` where it has a recorded voltage on top of the controller's.
+    /// Reads a recording of a rig; `added` where it has a recorded voltage on top of the controller's.
     ///
     /// # Errors
     /// Files that are not there or not what they should be.
-    pub fn read(path: &Path, added: bool) -> Result<Recording, Missing> {
-        let mut columns = vec![
-            (Channel::Command(0), Source::new("q_ref_m", 1.0)),
-            (Channel::Length(0), Source::new("q_m", 1.0)),
-            (Channel::Force(0), Source::new("u_V", DRIVE.force_gain)),
-        ];
+    pub fn read(path: &Path, rig: &Scenario, added: bool) -> Result<Recording, Missing> {
+        let mut known = vec![Channel::Command(0), Channel::Length(0), Channel::Force(0)];
+        let (time, mut sources) =
+            super::sources(rig, &[&known[..], &[Channel::Added(0)]].concat())?;
         if added {
-            columns.push((Channel::Added(0), Source::new("pulse_V", 1.0)));
+            known.push(Channel::Added(0));
         }
-        let log = super::read(path, &Source::new("t_s", 1.0), &columns)?;
-        Ok(Recording::of(log))
+        sources.retain(|(channel, _)| known.contains(channel));
+        let log = super::read(path, &time, &sources, &known)?;
+        for (channel, source) in &sources {
+            if matches!(channel, Channel::Length(_)) {
+                plausible::one_run(&log, *channel, source)?;
+            }
+        }
+        let machine = assemble(rig).map_err(|problem| Missing::Wrong(problem.to_string()))?;
+        let Some(Drive::Sampled(cascade)) = machine.mechanism.prismatics.first().map(|j| j.drive)
+        else {
+            let help =
+                "the rig needs mechanism.kind = \"drive-stage\" and drive.mode = \"sampled\"";
+            return Err(Missing::Wrong(help.to_owned()));
+        };
+        let recording = Recording::of(log, cascade);
+        recording.fits_its_controller(&sources)?;
+        Ok(recording)
     }
 
-    fn of(log: Log) -> Recording {
+    fn of(log: Log, cascade: Cascade) -> Recording {
         let column = |channel| log.get(channel).unwrap_or_default();
         let motion =
             Motion::new(column(Channel::Length(0)), column(Channel::Force(0)), log.interval);
-        Recording { name: log.name.clone(), motion, log }
+        Recording { name: log.name.clone(), motion, log, cascade }
+    }
+
+    /// The controller's law says the force from the lengths: a unit that is not what it is said to be
+    /// shows.
+    fn fits_its_controller(&self, sources: &[(Channel, Source)]) -> Result<(), Missing> {
+        let [q, command, force] = [Channel::Length(0), Channel::Command(0), Channel::Force(0)];
+        let disagreement = |channels: &[Channel], factor: f64| {
+            let scaled = |channel: Channel| -> Vec<f64> {
+                let factor = if channels.contains(&channel) { factor } else { 1.0 };
+                self.column(channel).iter().map(|value| value * factor).collect()
+            };
+            let told = self.told(&scaled(command), &scaled(q));
+            let recorded = scaled(force);
+            let square = |sum: f64, x: f64| sum + x * x;
+            let error = told.iter().zip(&recorded).map(|(a, b)| a - b).fold(0.0, square);
+            (error / told.iter().copied().fold(0.0, square)).sqrt()
+        };
+        let law = "the controller of [drive.sampled] says the force from the lengths";
+        let suspects: [&[Channel]; 4] = [&[force], &[q], &[command], &[q, command]];
+        Ok(plausible::scale(&self.log, law, sources, &suspects, disagreement)?)
+    }
+
+    /// What the controller tells the drive when it sees these lengths under these commands (m): `G u`
+    /// in N.
+    fn told(&self, commands: &[f64], lengths: &[f64]) -> Vec<f64> {
+        let (added, drive) = (self.column(Channel::Added(0)), self.cascade);
+        let mut held = Held::default();
+        (commands.iter().zip(lengths).enumerate())
+            .map(|(k, (length, q))| {
+                let command = Command { length: *length, ..Command::default() };
+                let added = added.get(k).copied().unwrap_or(0.0);
+                let t = k as f64 * drive.interval;
+                drive.force_gain * drive.sample(&mut held, t, &command, *q, added)
+            })
+            .collect()
     }
 
     fn column(&self, channel: Channel) -> &[f64] {
@@ -113,14 +159,14 @@ impl Commands for Recorded {
 /// An effect that the stage cannot take.
 pub fn stage(model: &Model, recording: &Recording) -> Result<Mechanism, Missing> {
     let mass = model.factor(Term::Mass);
-    let lag = (model.factor(Term::Lag) / mass - 0.5 * DRIVE.interval).max(0.0);
+    let lag = (model.factor(Term::Lag) / mass - 0.5 * recording.cascade.interval).max(0.0);
     let commands = Recorded {
         interval: recording.log.interval,
         lengths: recording.column(Channel::Command(0)).to_vec(),
         added: recording.column(Channel::Added(0)).to_vec(),
     };
     let start = recording.column(Channel::Length(0)).first().copied().unwrap_or(0.0);
-    let drive = Drive::Sampled(Cascade { lag, ..DRIVE });
+    let drive = Drive::Sampled(Cascade { lag, ..recording.cascade });
     let mut mechanism =
         drive_stage::build(mass, drive, [start, 0.0], Arc::new(commands), Vector2::zeros());
     for effect in effects(model) {
@@ -163,19 +209,9 @@ pub fn effects(model: &Model) -> Vec<Setting> {
     found
 }
 
-/// What the controller tells the drive when it sees the lengths of a recording: `G u` in N.
+/// What the controller tells the drive when it sees other lengths (m) than the recorded: `G u` in N.
 pub fn controller_force(recording: &Recording, lengths: &[f64]) -> Vec<f64> {
-    let (commands, added) =
-        (recording.column(Channel::Command(0)), recording.column(Channel::Added(0)));
-    let mut held = Held::default();
-    (commands.iter().zip(lengths).enumerate())
-        .map(|(k, (length, q))| {
-            let command = Command { length: *length, ..Command::default() };
-            let added = added.get(k).copied().unwrap_or(0.0);
-            DRIVE.force_gain
-                * DRIVE.sample(&mut held, k as f64 * DRIVE.interval, &command, *q, added)
-        })
-        .collect()
+    recording.told(recording.column(Channel::Command(0)), lengths)
 }
 
 /// Simulates the closed loop of a model on a recording's reference: lengths in m at its samples.
@@ -335,6 +371,39 @@ fn percent(share: f64) -> String {
 const PUBLISHED: [(&str, &str); 2] = [("4.083 %", "5.982 %"), ("3.112 %", "")];
 
 impl Outcome {
+    /// The result in words.
+    pub fn lead(&self) -> String {
+        let [_, symmetric, .., last] = &self.steps[..] else { return String::new() };
+        format!(
+            "The force of the drive is explained to {} where dry friction alone leaves {} (each half by \
+             the other: {}); on another recording with pulses, without anything identified anew, to {} \
+             where it leaves {}.",
+            percent(last.train),
+            percent(symmetric.train),
+            last.halves.map_or(String::new(), |halves| halves.map(percent).join(" and ")),
+            percent(last.pulses),
+            percent(symmetric.pulses),
+        )
+    }
+
+    /// What pointed to each effect.
+    pub fn traces(&self) -> Table {
+        let rows = self.steps[1..].iter().map(|s| vec![s.name.to_owned(), s.trace.to_owned()]);
+        Table { header: ["effect", "trace"].map(str::to_owned).to_vec(), rows: rows.collect() }
+    }
+
+    /// Errors on the second half of the pulses.
+    pub fn second_half(&self) -> Table {
+        let Carried { inverse, simulated, .. } = &self.carried;
+        let row = |name: &str, k: usize| {
+            vec![name.to_owned(), percent(inverse[k]), percent(simulated[k])]
+        };
+        Table {
+            header: ["model", "inverse model", "simulated"].map(str::to_owned).to_vec(),
+            rows: vec![row("carried over as it is", 0), row("phase of the screw and lag anew", 1)],
+        }
+    }
+
     /// Errors step by step.
     pub fn table(&self) -> Table {
         let header = [

@@ -3,9 +3,13 @@
 //! folder of the user's.
 
 pub mod emps;
+mod page;
 pub mod pendulum;
 
+pub use page::{STUDY_FILE, StudyError, emps_page, pendulum_page};
+
 use crate::measure::log::{Channel, Log, LogError, Source};
+use crate::scenario::Scenario;
 use std::path::{Path, PathBuf};
 
 /// Environment variable that says where the recordings are.
@@ -45,7 +49,28 @@ pub fn skipped(what: &str, missing: &Path) -> String {
     )
 }
 
-fn read(path: &Path, time: &Source, columns: &[(Channel, Source)]) -> Result<Log, Missing> {
+/// The columns of a rig's recordings.
+fn sources(rig: &Scenario, known: &[Channel]) -> Result<(Source, Vec<(Channel, Source)>), Missing> {
+    let columns = rig.columns.clone().unwrap_or_default();
+    columns.sources(known).map_err(|name| {
+        let names: Vec<String> = known.iter().map(Channel::to_string).collect();
+        let message = "is not a quantity of this machine's recordings";
+        let help = format!("known here: t, {}", names.join(", "));
+        Missing::Wrong(rig.problem(&format!("columns.{name}"), message, help).to_string())
+    })
+}
+
+/// Reads the columns of a recording that has to have all of `needed`.
+fn read(
+    path: &Path,
+    time: &Source,
+    columns: &[(Channel, Source)],
+    needed: &[Channel],
+) -> Result<Log, Missing> {
+    if let Some(channel) = needed.iter().find(|n| !columns.iter().any(|(c, _)| c == *n)) {
+        let help = format!("write {channel} = \"…\" under [columns]: the name of its column");
+        return Err(Missing::Wrong(format!("columns.{channel} is missing; {help}")));
+    }
     if !path.is_file() {
         return Err(Missing::Absent(path.to_owned()));
     }

@@ -1,0 +1,123 @@
+//! `freeplay study`: models against measured hardware.
+
+use super::failure::Failure;
+use super::options::FolderOptions;
+use super::output;
+use crate::scenario::Scenario;
+use crate::study::hardware::{
+    Missing, STUDY_FILE, StudyError, Table, emps, emps_page, folder, pendulum, pendulum_page,
+    skipped,
+};
+use crate::study::{Folder, default_name};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Identify measured hardware and judge the models on what they were not fitted to
+///
+/// Two published recordings, one of each kind of joint: `emps`, a driven slide, and `pendulum`, the free
+/// swings of an arm. What the declared model lacks is added effect after effect, with the error before
+/// and after each. The recordings are not part of freeplay; where they are not present the command says
+/// so, says where to get them, and ends with exit code 0.
+///
+/// Columns and units of the recordings are those of the rig's [columns]; a rig of your own makes your
+/// own recording readable as it is. A wrong name, a wrong scale and a recording spliced from two runs are
+/// refused with exit code 2.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// Which hardware
+    which: Which,
+    /// Folder of the recordings [default: $FREEPLAY_MEASURED, or ../shared/measured]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// Scenario of the rig, in place of the built-in one (assets/drive-stage.toml, assets/pendulum.toml)
+    #[arg(long, value_name = "SCENARIO")]
+    rig: Option<PathBuf>,
+    #[command(flatten)]
+    folder: FolderOptions,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  freeplay study emps --data measured         reads measured/emps/emps_train.csv and emps_pulses.csv
+  freeplay study pendulum --data measured     reads measured/pendulum/single_pendulum_1kHz.csv";
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Which {
+    /// The electro-mechanical positioning system: a driven slide
+    Emps,
+    /// One arm of the multi-arm pendulum
+    Pendulum,
+}
+
+const EMPS_SOURCE: &str = "The EMPS recordings are at nonlinearbenchmark.org (Janot, Gautier, Brunot, \
+    2019); a copy is in the repository forgi86/sysid-neural-continuous, examples/EMPS/data/.";
+const PENDULUM_SOURCE: &str = "The swings of the pendulum are in the repository \
+    dynamicslab/MultiArm-Pendulum (arXiv 2205.06231).";
+
+pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    let (name, built_in, source) = match arguments.which {
+        Which::Emps => ("emps", emps::RIG, EMPS_SOURCE),
+        Which::Pendulum => ("pendulum", pendulum::RIG, PENDULUM_SOURCE),
+    };
+    let rig = match &arguments.rig {
+        Some(path) => Scenario::load(Some(path), &[])?,
+        None => Scenario::from_text(built_in, "built-in rig", &[])?,
+    };
+    let out = arguments.folder.out.clone().unwrap_or_else(|| default_name("study", name));
+    let prepare = || Folder::prepare(&out, STUDY_FILE, arguments.folder.force);
+    let data = folder(arguments.data.as_deref()).join(name);
+    let absent = |missing: Missing| match missing {
+        Missing::Absent(path) => Ok(output::print(&(skipped(source, &path) + "\n"))?),
+        other => Err(Failure::from(other)),
+    };
+    let (lead, tables, folder) = match arguments.which {
+        Which::Emps => {
+            let read = |file: &str, added| emps::Recording::read(&data.join(file), &rig, added);
+            let (train, pulses) =
+                match (read("emps_train.csv", false), read("emps_pulses.csv", true)) {
+                    (Ok(train), Ok(pulses)) => (train, pulses),
+                    (Err(missing), _) | (_, Err(missing)) => return absent(missing),
+                };
+            let folder = prepare()?;
+            let found = emps::study(&train, &pulses)?;
+            let (lead, folder) = emps_page(&found, &train, folder)?;
+            (lead, vec![found.table(), found.parameters(), found.second_half()], folder)
+        }
+        Which::Pendulum => {
+            let file = data.join("single_pendulum_1kHz.csv");
+            let recording = match pendulum::Recording::read(&file, &rig) {
+                Ok(recording) => recording,
+                Err(missing) => return absent(missing),
+            };
+            let folder = prepare()?;
+            let found = pendulum::study(&recording);
+            let (lead, folder) = pendulum_page(&found, &recording, folder)?;
+            (lead, vec![found.table(), found.numbers()], folder)
+        }
+    };
+    let tables: Vec<String> = tables.iter().map(Table::text).collect();
+    let page = folder.join("index.html");
+    let text = format!(
+        "{lead}\n\n{}\nWritten to {}; open {}\n",
+        tables.join("\n"),
+        folder.display(),
+        page.display()
+    );
+    Ok(output::print(&text)?)
+}
+
+impl From<Missing> for Failure {
+    fn from(missing: Missing) -> Self {
+        Failure::Input(vec![missing.to_string()])
+    }
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Data(missing) => missing.into(),
+            StudyError::Files(error) => error.into(),
+        }
+    }
+}

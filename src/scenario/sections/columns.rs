@@ -1,0 +1,44 @@
+//! `[columns]`: which column of a recording is which quantity, and in which unit.
+
+use crate::measure::log::{Channel, Source};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Quantities by their names in logs (`t`, `q1_cmd`, `q1`, `F1`, `added1`, `x`, `y`, `phi`), each with the
+/// column that holds it: a name where the column is in SI units, `{ column = "…", scale = … }` where its
+/// numbers are to be multiplied. Columns that nothing asks for are left alone.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Columns(BTreeMap<String, Column>);
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "a column's name, or a table with column and scale")]
+enum Column {
+    Name(String),
+    Scaled(Source),
+}
+
+impl Columns {
+    /// The column of time, and those of channels out of `known`; the first name that is none of them.
+    ///
+    /// # Errors
+    /// That name.
+    pub fn sources(&self, known: &[Channel]) -> Result<(Source, Vec<(Channel, Source)>), &str> {
+        let mut time = Source::new("t", 1.0);
+        let mut found = Vec::new();
+        for (name, column) in &self.0 {
+            let source = match column {
+                Column::Name(column) => Source::new(column, 1.0),
+                Column::Scaled(source) => source.clone(),
+            };
+            if name == "t" {
+                time = source;
+                continue;
+            }
+            let channel =
+                known.iter().find(|channel| channel.to_string() == *name).ok_or(name.as_str())?;
+            found.push((*channel, source));
+        }
+        Ok((time, found))
+    }
+}

@@ -1,0 +1,214 @@
+//! The pages of the hardware studies.
+
+use super::{Missing, Table, emps, pendulum};
+use crate::report::{self, Curve, Panel, Part, Picture, Style, panels_svg};
+use crate::study::folder::Folder;
+use crate::study::run::{PAGE_FILE, RunError, refused, to_json};
+use serde_json::json;
+use std::fs;
+use std::path::PathBuf;
+
+/// The JSON file of a study, by which its folder is known.
+pub const STUDY_FILE: &str = "study.json";
+
+/// Why a study has no page.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// Its recordings.
+    #[error(transparent)]
+    Data(#[from] Missing),
+    /// Its files.
+    #[error(transparent)]
+    Files(#[from] RunError),
+}
+
+/// A study on its way to its folder.
+struct Page<'a> {
+    title: &'a str,
+    lead: String,
+    tables: Vec<report::Table>,
+    picture: Picture,
+    limits: &'a [String],
+}
+
+impl Page<'_> {
+    fn write(&self, folder: Folder) -> Result<PathBuf, RunError> {
+        let picture = std::slice::from_ref(&self.picture);
+        let mut parts: Vec<Part> = self.tables.iter().cloned().map(Part::Table).collect();
+        parts.push(Part::Pictures(picture));
+        let title = "What this does not prove";
+        parts.push(Part::Text { id: "limits", title, paragraphs: self.limits });
+        let html = report::document(self.title, &self.lead, &parts);
+        let tables: serde_json::Map<String, serde_json::Value> = (self.tables.iter())
+            .map(|table| {
+                let rows: Vec<_> = [&table.header].into_iter().chain(&table.rows).collect();
+                (table.id.to_owned(), json!(rows))
+            })
+            .collect();
+        let files = [PAGE_FILE, &self.picture.file];
+        let result = json!({
+            "program": env!("CARGO_PKG_NAME"),
+            "version": env!("CARGO_PKG_VERSION"),
+            "study": self.title,
+            "result": self.lead,
+            "tables": tables,
+            "files": files,
+        });
+        let write =
+            |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
+        write(STUDY_FILE, &to_json(&result))?;
+        write(PAGE_FILE, &html)?;
+        write(&self.picture.file, &self.picture.svg)?;
+        Ok(folder.finish()?)
+    }
+}
+
+fn table(id: &'static str, title: &str, table: Table, note: &str) -> report::Table {
+    report::Table {
+        id,
+        title: title.to_owned(),
+        header: table.header,
+        rows: table.rows,
+        note: note.to_owned(),
+    }
+}
+
+fn picture(file: &str, title: &str, caption: &str, panels: &[Panel]) -> Result<Picture, RunError> {
+    let svg = panels_svg(panels)?;
+    Ok(Picture { file: file.to_owned(), title: title.to_owned(), caption: caption.to_owned(), svg })
+}
+
+fn panel(title: &str, label: &str, curves: Vec<(&str, Vec<(f64, f64)>)>) -> Panel {
+    let curve = |(name, points): (&str, Vec<(f64, f64)>)| Curve {
+        name: name.to_owned(),
+        points,
+        style: Style::Solid,
+    };
+    Panel {
+        title: title.to_owned(),
+        x_label: "time (s)".to_owned(),
+        y_label: label.to_owned(),
+        curves: curves.into_iter().map(curve).collect(),
+    }
+}
+
+/// Samples of the training recording that are drawn: one stroke and its turns.
+const DRAWN: std::ops::Range<usize> = 2000..6000;
+
+/// Writes the page of the drive stage.
+///
+/// # Errors
+/// Files that cannot be written.
+pub fn emps_page(
+    found: &emps::Outcome,
+    train: &emps::Recording,
+    folder: Folder,
+) -> Result<(String, PathBuf), RunError> {
+    let residual = |step: &emps::Step| -> Vec<(f64, f64)> {
+        let model = step.model.force(&train.motion);
+        let drawn = DRAWN.start.min(model.len())..DRAWN.end.min(model.len());
+        drawn.map(|i| (i as f64 * train.log.interval, train.motion.force()[i] - model[i])).collect()
+    };
+    let panels: Vec<Panel> = (found.steps[1..].iter())
+        .map(|step| {
+            panel(&format!("With {}", step.name), "force left (N)", vec![("left", residual(step))])
+        })
+        .collect();
+    let lead = found.lead();
+    let page = Page {
+        title: "A measured drive stage (EMPS)",
+        lead: lead.clone(),
+        tables: vec![
+            table(
+                "errors",
+                "Errors of the force, step by step",
+                found.table(),
+                "Norm of the error over norm of the force, both through the same filter (Butterworth, \
+                 fourth order, forward and backward, 50 Hz; 0.2 s left out at both ends). Each line has \
+                 all that stands above it. All models are fitted to the training recording only; the \
+                 halves are fitted each by itself and judged on the other. Simulated: the closed loop \
+                 with the recorded reference as its only input. Published: Janot, Gautier, Brunot 2019.",
+            ),
+            table("traces", "What pointed to each effect", found.traces(), ""),
+            table(
+                "parameters",
+                "What carries over to the pulses",
+                found.parameters(),
+                "Identified anew on the first half of the pulses, judged on the second half: the next \
+                 table. The encoder's zero is another one each time the stage is switched on, so that \
+                 the phase of the screw cannot carry over; its amplitude does.",
+            ),
+            table("anew", "Pulses, second half", found.second_half(), ""),
+        ],
+        picture: picture(
+            "residual.svg",
+            "What is left of the force",
+            "Recorded less modelled force over one stroke of the training recording.",
+            &panels,
+        )?,
+        limits: &[
+            "Nobody has measured a clearance in this machine: nothing here says that the model of joints \
+             with clearance is right. It says that the drive of a prismatic joint, simulated by the same \
+             engine, is that of a real one to the given error."
+                .to_owned(),
+            "What is left is largest at the edges of the pulses, above 40 Hz: give of the screw and the \
+             current loop are in the lag as far as one number goes, and not beyond."
+                .to_owned(),
+        ],
+    };
+    Ok((lead, page.write(folder)?))
+}
+
+/// Writes the page of the pendulum.
+///
+/// # Errors
+/// Files that cannot be written.
+pub fn pendulum_page(
+    found: &pendulum::Outcome,
+    recording: &pendulum::Recording,
+    folder: Folder,
+) -> Result<(String, PathBuf), RunError> {
+    let lead = found.lead();
+    let panels: Vec<Panel> = (recording.val.iter().enumerate())
+        .map(|(i, window)| {
+            let curve = |k: usize| pendulum::deviation(&found.steps[k].swinger, window);
+            let title = format!("Window {} of val", i + 1);
+            let curves = vec![("viscous", curve(0)), ("chosen", curve(found.chosen))];
+            panel(&title, "error (mrad)", curves)
+        })
+        .collect();
+    let page = Page {
+        title: "A measured pendulum",
+        lead: lead.clone(),
+        tables: vec![
+            table(
+                "errors",
+                "Errors of the angle, model by model",
+                found.table(),
+                "Root mean square over windows of 2.5 s side by side, in each of which angle and speed at \
+                 the start are fitted to the first 0.25 s. All models are fitted to id; every other window of \
+                 id by the rest is what a model is chosen by, fewer parameters first where that \
+                 makes less than a tenth of difference; val is looked at last.",
+            ),
+            table("carried", "For other swings of this pendulum", found.numbers(), ""),
+        ],
+        picture: picture(
+            "deviation.svg",
+            "Predicted less recorded angle",
+            "Each window of val, under the viscous and under the chosen model.",
+            &panels,
+        )?,
+        limits: &[
+            "Nobody has measured a clearance in this joint: nothing here says that the model of joints \
+             with clearance is right. It says that a revolute joint and its friction, simulated by the \
+             same engine, are those of a real one to the given error."
+                .to_owned(),
+            "Dry friction found in large swings is less than what the smallest swings show: below half \
+             a radian the amplitude falls a little faster than any of these models says."
+                .to_owned(),
+            "A free swing shows m a g/J and friction over J, never mass or inertia by themselves."
+                .to_owned(),
+        ],
+    };
+    Ok((lead, page.write(folder)?))
+}
