@@ -16,6 +16,7 @@
 //! | [`engine`] | the only room that knows rapier: ring shape, contact hook, stepping |
 //! | [`scenario`] | the TOML file, validated |
 //! | [`simulate`] | scenario → mechanism → samples and summary |
+//! | [`identify`] | parameters of one joint from a recording of it alone |
 //! | [`report`] | pictures and the page, from plain data |
 //! | [`study`] | what users come for: a run and its files, sweeps |
 //! | [`calibrate`] | what a declared model lacks, by recorded runs of the machine |

@@ -9,10 +9,9 @@ use std::sync::Arc;
 pub(super) const KIND: Kind = Kind {
     name: "film-friction",
     summary: "friction between rod and cylinder that builds up with speed and then stays: the opposite of \
-              a Stribeck fall, as of greased ball screws and rolling guides",
+              a Stribeck fall",
     equation: "force on the rod -F sign(v) (1 - exp(-|v|/v_f)), v the rod's speed: viscous F/v_f near rest",
-    source: "rolling friction in grease saturates where shear thinning balances speed: Olsson, Astrom, Canudas \
-             de Wit, Gafvert, Lischinsky, European Journal of Control 4 (1998) 176-195, figure 3",
+    source: "a smooth curve from nothing to F; measured on the drive of the EMPS recordings (freeplay study emps)",
     trace: "the force of one actuator: less than its dry friction says where its motion is slow",
     joints: Joints::Prismatic,
     parameters: &[

@@ -18,12 +18,15 @@ enum Column {
     Scaled(Source),
 }
 
+/// The column of time, and those of channels.
+pub type Sources = (Source, Vec<(Channel, Source)>);
+
 impl Columns {
     /// The column of time, and those of channels out of `known`; the first name that is none of them.
     ///
     /// # Errors
     /// That name.
-    pub fn sources(&self, known: &[Channel]) -> Result<(Source, Vec<(Channel, Source)>), &str> {
+    pub fn sources(&self, known: &[Channel]) -> Result<Sources, &str> {
         let mut time = Source::new("t", 1.0);
         let mut found = Vec::new();
         for (name, column) in &self.0 {

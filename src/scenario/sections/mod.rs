@@ -15,7 +15,7 @@ mod simulation;
 
 pub use crate::contact::StiffnessForm;
 pub use crate::engine::StepControl;
-pub use columns::Columns;
+pub use columns::{Columns, Sources};
 pub use contact::{Contact, Law};
 pub use drive::{Drive, DriveMode, Sampled};
 pub use environment::Environment;

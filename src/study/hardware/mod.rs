@@ -9,7 +9,7 @@ pub mod pendulum;
 pub use page::{STUDY_FILE, StudyError, emps_page, pendulum_page};
 
 use crate::measure::log::{Channel, Log, LogError, Source};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Sources};
 use std::path::{Path, PathBuf};
 
 /// Environment variable that says where the recordings are.
@@ -50,7 +50,7 @@ pub fn skipped(what: &str, missing: &Path) -> String {
 }
 
 /// The columns of a rig's recordings.
-fn sources(rig: &Scenario, known: &[Channel]) -> Result<(Source, Vec<(Channel, Source)>), Missing> {
+fn sources(rig: &Scenario, known: &[Channel]) -> Result<Sources, Missing> {
     let columns = rig.columns.clone().unwrap_or_default();
     columns.sources(known).map_err(|name| {
         let names: Vec<String> = known.iter().map(Channel::to_string).collect();

@@ -134,9 +134,10 @@ pub fn emps_page(
                 "parameters",
                 "What carries over to the pulses",
                 found.parameters(),
-                "Identified anew on the first half of the pulses, judged on the second half: the next \
-                 table. The encoder's zero is another one each time the stage is switched on, so that \
-                 the phase of the screw cannot carry over; its amplitude does.",
+                "Anew: identified on the first half of the pulses, judged on the second half in the next \
+                 table. The phase of the screw is another one in the other recording, its amplitude alike: \
+                 likely the encoder counts from elsewhere. Carried over with the wrong phase, the ripple \
+                 makes the pulses worse.",
             ),
             table("anew", "Pulses, second half", found.second_half(), ""),
         ],
@@ -151,8 +152,8 @@ pub fn emps_page(
              with clearance is right. It says that the drive of a prismatic joint, simulated by the same \
              engine, is that of a real one to the given error."
                 .to_owned(),
-            "What is left is largest at the edges of the pulses, above 40 Hz: give of the screw and the \
-             current loop are in the lag as far as one number goes, and not beyond."
+            "On the pulses most of what is left lies within a tenth of a second of their edges: whatever \
+             gives way or answers late there is in the lag as far as one number goes, and not beyond."
                 .to_owned(),
         ],
     };
