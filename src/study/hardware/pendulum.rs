@@ -194,7 +194,8 @@ pub struct Outcome {
     pub declared: f64,
     /// Model by model; the first is the viscous one.
     pub steps: Vec<Step>,
-    /// Index of the model that is chosen without `val`.
+    /// Index of the model that is chosen, by a rule that does not look at `val` (but was settled with
+    /// `val` known).
     pub chosen: usize,
     /// The chosen model, fitted to the whole recording: for other swings of this pendulum.
     pub carried: Swinger,
