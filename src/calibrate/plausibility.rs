@@ -77,6 +77,11 @@ pub fn rig(rig: &Scenario) -> Vec<Problem> {
     let mut complain = |path: &str, message: String, help: &str| {
         found.push(rig.problem(path, message, help));
     };
+    if !matches!(rig.mechanism, Mechanism::ThreeRpr(_)) {
+        let help = "calibrate and predict know the 3rpr; `freeplay study` identifies drive stages and \
+                    pendulums";
+        complain("mechanism.kind", "is not \"3rpr\"".to_owned(), help);
+    }
     if !rig.effects.is_empty() {
         let message = format!("holds {} effect(s)", rig.effects.len());
         let help = "calibrate starts from what a rig's maker declares: give it the rig without \
@@ -181,13 +186,14 @@ fn still(log: &Log) -> Vec<Channel> {
         Channel::Command(_) => false,
         Channel::Length(leg) => moves(leg),
         Channel::Force(_) | Channel::Pose(_) => (0..3).any(moves),
+        Channel::Added(_) => false,
     };
     log.channels().filter(|channel| moved(*channel) && range(*channel) == 0.0).collect()
 }
 
 /// Lengths and poses held against each other and against the rig, as (message, help).
 fn geometry(rig: &Scenario, log: &Log) -> Vec<(String, String)> {
-    let Mechanism::ThreeRpr(machine) = &rig.mechanism;
+    let Mechanism::ThreeRpr(machine) = &rig.mechanism else { return Vec::new() };
     let geometry = Geometry { base_side: machine.base_side, platform_side: machine.platform_side };
     let Some(commands) = triple(log, Channel::Command) else { return Vec::new() };
     let lengths = triple(log, Channel::Length);

@@ -15,7 +15,7 @@ use crate::engine::{Halt, RAPIER_VERSION};
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use crate::report::Style;
-use crate::scenario::{Law, Problem, Scenario};
+use crate::scenario::{self, Law, Problem, Scenario};
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -78,6 +78,10 @@ pub fn check(model: &Scenario, recording: &Recording) -> Result<(), CalibrateErr
         .iter()
         .map(ToString::to_string)
         .collect();
+    if !matches!(model.mechanism, scenario::Mechanism::ThreeRpr(_)) {
+        let help = "predict knows the 3rpr; `freeplay study` simulates recorded drive stages and pendulums";
+        found.push(model.problem("mechanism.kind", "is not \"3rpr\"", help).to_string());
+    }
     if model.contact.law == Law::Native {
         let help = "write law = \"hertz-step\": predict needs a contact law whose error is known";
         found.push(model.problem("contact.law", "is \"native\"", help).to_string());
@@ -188,7 +192,7 @@ fn complete(model: &Scenario, log: &Log) -> Log {
     for channel in Channel::all(3) {
         let value = match channel {
             Channel::Pose(k) => start[k],
-            Channel::Command(_) | Channel::Length(_) | Channel::Force(_) => 0.0,
+            Channel::Command(_) | Channel::Length(_) | Channel::Force(_) | Channel::Added(_) => 0.0,
         };
         if log.get(channel).is_none() {
             channels.push((channel, vec![value; log.samples]));

@@ -257,7 +257,7 @@ fn recorded(trial: &Trial) -> std::result::Result<(Case, Vec<Setting>), SearchEr
                 // Nine decimals, as logs have them.
                 Channel::Command(leg) => (length(i, leg) * 1e9).round() * 1e-9,
                 Channel::Length(leg) => length(i, leg),
-                Channel::Force(_) => 0.0,
+                Channel::Force(_) | Channel::Added(_) => 0.0,
                 Channel::Pose(k) => pose(i)[k],
             });
             (channel, values.collect())

@@ -215,7 +215,7 @@ impl Log {
             for (channel, values) in &self.channels {
                 let value = values[row];
                 let _ = match channel {
-                    Channel::Command(_) => write!(text, ",{value}"),
+                    Channel::Command(_) | Channel::Added(_) => write!(text, ",{value}"),
                     Channel::Force(_) => write!(text, ",{value:.6}"),
                     Channel::Length(_) | Channel::Pose(_) => write!(text, ",{value:.9}"),
                 };
