@@ -153,12 +153,13 @@ fn curve(name: &str, log: &Log, values: Option<&[f64]>, style: Style) -> Option<
     Some(Curve { name: name.to_owned(), points: points.collect(), style })
 }
 
+/// Of each actuator, for what each of [`OVER`] explains: the share of the residual's variance before and
+/// after.
+type Shares = [[[f64; 2]; 4]; 3];
+
 /// The residual of the calibration run's dynamics over length, speed and acceleration, actuator by
 /// actuator, and the share of its variance that each explains.
-fn dependence(
-    case: &Case,
-    outcome: &Outcome,
-) -> Result<(Vec<Picture>, [[[f64; 2]; 4]; 3]), ReportError> {
+fn dependence(case: &Case, outcome: &Outcome) -> Result<(Vec<Picture>, Shares), ReportError> {
     let run = &case.runs[0];
     let rows = run.rows();
     let effects: Vec<Setting> = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();

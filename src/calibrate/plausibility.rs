@@ -205,7 +205,7 @@ fn geometry(rig: &Scenario, log: &Log) -> Vec<(String, String)> {
         None => (commands, Channel::Command),
     };
     let mut scales = [1.0; 3];
-    if let Some(pose) = triple(log, |k| Channel::Pose(k)) {
+    if let Some(pose) = triple(log, Channel::Pose) {
         let fit = fit(&geometry, &rows, base, pose);
         if fit.misfit > MISFIT {
             let message = format!(
