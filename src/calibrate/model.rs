@@ -138,9 +138,13 @@ impl Case {
     /// # Errors
     /// A run that broke down.
     pub fn simulate(&self, machines: &[Mechanism], swinging: bool) -> Result<Vec<Vec<Log>>, Halt> {
-        let swinging = swinging && !self.chaotic;
-        let push = if swinging { SWING } else { START_SPREAD };
-        let count = if swinging { self.replicas.max(SWINGING_REPLICAS) } else { self.replicas };
+        // A search compares models by the same few replicas; a prediction is better for being the mean
+        // of more.
+        let (push, count) = match (swinging, self.chaotic) {
+            (true, false) => (SWING, self.replicas.max(SWINGING_REPLICAS)),
+            (true, true) | (false, false) => (START_SPREAD, self.replicas),
+            (false, true) => (START_SPREAD, 2 * self.replicas),
+        };
         let jobs: Vec<(usize, u64)> = (0..self.runs.len())
             .flat_map(|run| (0..count as u64).map(move |replica| (run, replica)))
             .collect();

@@ -142,14 +142,14 @@ fn text(calibrated: &Calibrated) -> String {
     }
     let _ = writeln!(
         text,
-        "\n  {:<20}{:<13}{:<9}{:>12}{:>12}{:>12}",
+        "\n  {:<20}{:<13}{:<9}{:>14}{:>14}{:>14}",
         "run", "role", "channel", "before", "after", "floor"
     );
     for e in &report.errors {
         let cell = |value: f64| quantity(value, e.unit);
         let _ = writeln!(
             text,
-            "  {:<20}{:<13}{:<9}{:>12}{:>12}{:>12}",
+            "  {:<20}{:<13}{:<9}{:>14}{:>14}{:>14}",
             e.run,
             e.role,
             e.channel,
