@@ -34,6 +34,10 @@ pub const OVER: [(&str, &str); 4] = [
     ("time", "time (s)"),
 ];
 
+/// For each actuator and each of [`OVER`], the share of the variance of the dynamics residual that lies
+/// between [`BINS`] bins: under the declared and under the calibrated model.
+pub type Shares = [[[f64; 2]; 4]; 3];
+
 /// Pictures, and what was found while they were drawn.
 #[derive(Debug)]
 pub struct Charts {
@@ -41,9 +45,8 @@ pub struct Charts {
     pub runs: Vec<Picture>,
     /// The residual of the dynamics over what it may depend on.
     pub over: Vec<Picture>,
-    /// Share of that residual's variance that [`BINS`] bins of each of [`OVER`] explain, for each
-    /// actuator: under the declared and under the calibrated model.
-    pub shares: [[[f64; 2]; 4]; 3],
+    /// What that residual depends on.
+    pub shares: Shares,
 }
 
 impl Charts {
@@ -177,7 +180,7 @@ fn dependence(case: &Case, outcome: &Outcome) -> Result<(Vec<Picture>, Shares), 
             }
         }
     }
-    let shares: [[[f64; 2]; 4]; 3] = std::array::from_fn(|leg| {
+    let shares: Shares = std::array::from_fn(|leg| {
         std::array::from_fn(|k| [0, 1].map(|m| share(&over[leg][k], &residuals[m][leg])))
     });
     let mut pictures = Vec::new();

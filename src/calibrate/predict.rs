@@ -143,7 +143,7 @@ pub fn into_folder(
         }
     }
     tell("drawing and writing");
-    let predicted = errors::ensemble(&after);
+    let predicted = errors::ensemble(&after).arranged(recording.log.channels());
     let declared = before.as_deref().map(errors::ensemble);
     let mut models = Vec::new();
     if let Some(declared) = &declared {

@@ -148,7 +148,11 @@ pub fn into_folder(
     let predictions: Vec<(String, String)> = outcome
         .predictions
         .iter()
-        .map(|log| (format!("predicted-{}.csv", stem(log)), log.to_csv()))
+        .zip(&case.runs)
+        .map(|(log, run)| {
+            let arranged = log.arranged(run.log.channels());
+            (format!("predicted-{}.csv", stem(log)), arranged.to_csv())
+        })
         .collect();
     let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let predicted = predictions.iter().map(|(name, _)| name.clone());

@@ -201,6 +201,15 @@ impl Log {
         self.samples.saturating_sub(1) as f64 * self.interval
     }
 
+    /// The same with its columns in the order of `channels`, those that are not among them at the end.
+    pub fn arranged(&self, channels: impl Iterator<Item = Channel>) -> Log {
+        let order: Vec<Channel> = channels.collect();
+        let place = |channel: Channel| order.iter().position(|c| *c == channel);
+        let mut columns = self.channels.clone();
+        columns.sort_by_key(|(channel, _)| place(*channel).unwrap_or(order.len()));
+        Log::new(&self.name, self.start, self.interval, columns)
+    }
+
     /// The log as CSV, as [`Log::read`] takes it: commands as they are, lengths to a nanometre, forces
     /// to a micronewton, angles to a nanoradian.
     pub fn to_csv(&self) -> String {
