@@ -156,10 +156,6 @@ fn curve(name: &str, log: &Log, values: Option<&[f64]>, style: Style) -> Option<
     Some(Curve { name: name.to_owned(), points: points.collect(), style })
 }
 
-/// Of each actuator, for what each of [`OVER`] explains: the share of the residual's variance before and
-/// after.
-type Shares = [[[f64; 2]; 4]; 3];
-
 /// The residual of the calibration run's dynamics over length, speed and acceleration, actuator by
 /// actuator, and the share of its variance that each explains.
 fn dependence(case: &Case, outcome: &Outcome) -> Result<(Vec<Picture>, Shares), ReportError> {
