@@ -26,8 +26,8 @@ impl ZeroPhase {
             let a2 = (1.0 - damping * warped + warped * warped) / norm;
             [b, 2.0 * b, b, a1, a2]
         });
-        // Two periods of the corner: by then the filter's answer to its start has died away.
-        let padding = (2.0 / (corner * interval)).ceil() as usize;
+        // Six periods of the corner: by then a millionth is left of the filter's answer to its start.
+        let padding = (6.0 / (corner * interval)).ceil() as usize;
         Self { sections: sections.collect(), padding }
     }
 
