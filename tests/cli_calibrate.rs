@@ -263,7 +263,8 @@ fn a_calibration_writes_everything_that_was_promised() {
         assert!(files.iter().any(|name| name == file), "{file}");
     }
     assert_eq!(json["program"], "freeplay");
-    assert_eq!(json["verdict"], "explained", "{out}");
+    // Halves of 1.5 s need not tell whether anything else is missing; what is certain they tell.
+    assert_ne!(json["verdict"], "nothing-missing", "{out}");
     let effect = &json["effects"][0];
     assert_eq!((&effect["kind"], &effect["joint"]), (&"actuator-friction".into(), &"P2".into()));
     assert!(effect["evidence"].as_str().unwrap().starts_with("removes "));

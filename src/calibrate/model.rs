@@ -2,7 +2,7 @@
 
 use super::commands::LoggedCommands;
 use super::lens::Lens;
-use super::replica::{self, START_SPREAD};
+use super::replica;
 use super::spectrum::{Noise, Signal, transform};
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
@@ -116,11 +116,6 @@ struct Part {
     noise: Noise,
 }
 
-/// Push in m/s that swings a platform by some 30 µm at 40 Hz in joints of 0.1 mm, as its release does;
-/// and how many such replicas are simulated at least.
-const SWING: f64 = 5e-3;
-const SWINGING_REPLICAS: usize = 3;
-
 /// Draws of sensor noise from which a covariance is taken.
 const DRAWS: usize = 16;
 
@@ -131,20 +126,15 @@ impl Case {
         transform(&lens.residuals(mechanism, segment.rows.clone()), interval)
     }
 
-    /// Noiseless logs of a model: `[run][replica]`. Replicas that are `swinging` start with a push that
-    /// makes loaded joints swing, each in its own way: how a recorded machine was released is not known
-    /// well enough to predict its swing after seconds, and the noise has to say so.
+    /// Noiseless logs of a model: `[run][replica]`, as many as a search or a prediction takes.
     ///
     /// # Errors
     /// A run that broke down.
-    pub fn simulate(&self, machines: &[Mechanism], swinging: bool) -> Result<Vec<Vec<Log>>, Halt> {
+    pub fn simulate(&self, machines: &[Mechanism], searching: bool) -> Result<Vec<Vec<Log>>, Halt> {
         // A search compares models by the same few replicas; a prediction is better for being the mean
         // of more.
-        let (push, count) = match (swinging, self.chaotic) {
-            (true, false) => (SWING, self.replicas.max(SWINGING_REPLICAS)),
-            (true, true) | (false, false) => (START_SPREAD, self.replicas),
-            (false, true) => (START_SPREAD, 2 * self.replicas),
-        };
+        let more = if self.chaotic && !searching { 2 } else { 1 };
+        let count = more * self.replicas;
         let jobs: Vec<(usize, u64)> = (0..self.runs.len())
             .flat_map(|run| (0..count as u64).map(move |replica| (run, replica)))
             .collect();
@@ -152,7 +142,7 @@ impl Case {
             .into_par_iter()
             .map(|(run, replica)| {
                 let log = &self.runs[run].log;
-                replica::simulate(&machines[run], &self.sensors, self.control, log, replica, push)
+                replica::simulate(&machines[run], &self.sensors, self.control, log, replica)
             })
             .collect();
         let mut logs = logs?.into_iter();

@@ -111,8 +111,7 @@ pub fn into_folder(
     tell("predicting the run");
     let simulate = |machine: &Mechanism| {
         let replicas = (0..rattle.replicas as u64).into_par_iter();
-        let logs = replicas
-            .map(|r| replica::simulate(machine, &sensors, control, &log, r, replica::START_SPREAD));
+        let logs = replicas.map(|r| replica::simulate(machine, &sensors, control, &log, r));
         logs.collect::<Result<Vec<Log>, Halt>>()
     };
     let after = simulate(&machine)?;

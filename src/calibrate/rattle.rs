@@ -44,9 +44,7 @@ pub fn look(
     control: StepControl,
     log: &Log,
 ) -> Result<Rattle, Halt> {
-    let simulated = |replica| {
-        replica::simulate(mechanism, sensors, control, log, replica, replica::START_SPREAD)
-    };
+    let simulated = |replica| replica::simulate(mechanism, sensors, control, log, replica);
     let logs = (0..2u64).into_par_iter().map(simulated).collect::<Result<Vec<_>, _>>()?;
     let differences = logs[0].channels().filter_map(|channel| {
         let noise = noise(sensors, channel)?;

@@ -17,12 +17,12 @@ const FINE: f64 = 2e-4;
 
 /// Speed in m/s by which starts of replicas differ: far below what any sensor sees, and after some
 /// e-foldings of a rattling machine its rattle is another.
-pub const START_SPREAD: f64 = 1e-6;
+const START_SPREAD: f64 = 1e-6;
 
 /// What the sensors would have recorded without noise and rounding: one log a replica.
 ///
-/// `mechanism` starts at its epoch before the log's first row; `replica` chooses the push (m/s, of the
-/// size of `push`) with which its output starts.
+/// `mechanism` starts at its epoch before the log's first row; `replica` chooses the hair by which its
+/// output's start differs from another's.
 ///
 /// # Errors
 /// A run that broke down.
@@ -32,13 +32,12 @@ pub fn simulate(
     control: StepControl,
     log: &Log,
     replica: u64,
-    push: f64,
 ) -> Result<Log, Halt> {
     let mut mechanism = mechanism.clone();
     let mut random = ChaCha8Rng::seed_from_u64(replica);
     let direction = Vector2::from_fn(|_, _| sample(&mut random));
     let output = mechanism.output;
-    mechanism.bodies[output].start.twist += (direction * push).push(0.0);
+    mechanism.bodies[output].start.twist += (direction * START_SPREAD).push(0.0);
     let mechanism = &mechanism;
     let fine = (log.interval / FINE).ceil().max(1.0) as usize;
     let interval = log.interval / fine as f64;

@@ -277,14 +277,8 @@ fn recorded(trial: &Trial) -> std::result::Result<(Case, Vec<Setting>), SearchEr
         let machine = case.machines(&hidden)?.remove(0);
         let log = &case.runs[0].log;
         // Another start of the rattle than any replica's.
-        let clean = replica::simulate(
-            &machine,
-            &sensors,
-            control,
-            log,
-            trial.seed + 1000 + i as u64,
-            replica::START_SPREAD,
-        )?;
+        let clean =
+            replica::simulate(&machine, &sensors, control, log, trial.seed + 1000 + i as u64)?;
         logs.push(replica::with_noise(&clean, &sensors, trial.seed + 77 + i as u64));
     }
     let runs = logs

@@ -145,7 +145,18 @@ impl Model {
         // Columns of one size: masses, frictions and volts differ by decades.
         let scales: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
         let matrix = DMatrix::from_fn(rest.len(), terms.len(), |i, k| matrix[(i, k)] / scales[k]);
-        let solved = (matrix.tr_mul(&matrix)).cholesky()?.solve(&matrix.tr_mul(&rest));
+        // Columns that say the same leave next to nothing of themselves when the others are taken out.
+        let factor = matrix.tr_mul(&matrix).cholesky()?;
+        let alike = factor
+            .l_dirty()
+            .diagonal()
+            .iter()
+            .zip(matrix.column_iter())
+            .any(|(left, column)| *left < 1e-6 * column.norm());
+        if alike {
+            return None;
+        }
+        let solved = factor.solve(&matrix.tr_mul(&rest));
         let found = terms.iter().zip(solved.iter().zip(&scales)).map(|(t, (x, s))| (*t, x / s));
         Some(Model { terms: found.chain(fixed.iter().copied()).collect() })
     }
