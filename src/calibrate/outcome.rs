@@ -107,7 +107,10 @@ pub fn calibrate(
     let Found { model, declared, rounds, mut simulations } = search(case, &question, tell)?;
     let before = left(case, &question, &declared);
     let after = left(case, &question, &model);
-    let explained = after.iter().all(|l| l.mean_square < l.limit) && largest_is_noise(&after);
+    // A residual that cannot be looked at is not noise.
+    let explained = !after.is_empty()
+        && after.iter().all(|left| left.mean_square < left.limit)
+        && largest_is_noise(&after);
     let (verdict, described, last) = if !explained {
         tell("describing what has no name");
         let certain = certain(case, &question, &declared, &rounds)?;
@@ -127,7 +130,7 @@ pub fn calibrate(
     let [declared, predicted] = [&[][..], &last.fit.effects]
         .map(|effects| Ok::<_, SearchError>(case.simulate(&case.machines(effects)?, false)?));
     let (declared, predicted) = (declared?, predicted?);
-    simulations += 2 * case.runs.len() * case.replicas;
+    simulations += declared.iter().chain(&predicted).map(Vec::len).sum::<usize>();
     let role = |run: usize| if run == 0 { "calibration" } else { "validation" };
     let errors = case.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| {
         errors::of_run(case, &run.log, role(i), &declared[i], &predicted[i])

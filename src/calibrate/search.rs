@@ -6,6 +6,7 @@ use super::model::{Baseline, Case, Segment};
 use crate::effects::Setting;
 use crate::engine::Halt;
 use crate::scenario::Problem;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Drop of Σ of squares on data not used for the fit that an effect has to bring, with loaded joints and
@@ -214,8 +215,8 @@ pub fn search(
         for &i in &rivals {
             let (scored, effects) = &ranking[i];
             tell(&format!("simulating with {}", name(&scored.effect)));
-            simulations += 2 * case.runs.len() * case.replicas;
             let Ok(settled) = settle(case, question, effects, 2) else { continue };
+            simulations += settled.times * case.runs.len() * case.replicas;
             let values = scored.effect.values().count() as f64;
             let (scored, _) = &mut ranking[i];
             let drop = model.misfit - settled.misfit;
@@ -262,6 +263,8 @@ fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored, Vec
     let target = Target { case, baseline, on: question.on, fixed: &[], blind: None };
     let Ok(machine) = case.runs[0].machine(&case.rig, &[]) else { return Vec::new() };
     let candidates = candidates::all(&machine, question.without);
+    // What the values of the present effects could make good: the same for nearly every candidate.
+    let Some(present) = without_values(&target, &model.fit.effects) else { return Vec::new() };
     let mut scored: Vec<(Scored, Vec<Setting>)> =
         candidates
             .par_iter()
@@ -277,10 +280,9 @@ fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored, Vec
                 }
                 let others: Vec<Setting> =
                     model.fit.effects.iter().filter(|effect| !same(effect)).cloned().collect();
-                let bare = Target { ..target }.look(&others)?;
-                let blind = (!others.is_empty())
-                    .then(|| fit::jacobian(&target, &bare).map(|jacobian| jacobian.qr().q()))
-                    .flatten();
+                let replaced = others.len() < model.fit.effects.len();
+                let fewer = if replaced { Some(without_values(&target, &others)?) } else { None };
+                let blind = fewer.as_ref().unwrap_or(&present);
                 let own = Target { fixed: &others, blind: blind.as_ref(), ..target };
                 let plain = own.look(&[])?;
                 let tuned = candidates::tune(&own, &plain, candidate)?;
@@ -298,6 +300,16 @@ fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored, Vec
             .collect();
     scored.sort_by(|a, b| b.0.gain.total_cmp(&a.0.gain));
     scored
+}
+
+/// Orthonormal directions of the residual that the values of `effects` could make good, none without
+/// effects; or nothing where the machine cannot be.
+fn without_values(target: &Target, effects: &[Setting]) -> Option<Option<DMatrix<f64>>> {
+    if effects.is_empty() {
+        return Some(None);
+    }
+    let bare = target.look(effects)?;
+    Some(fit::jacobian(target, &bare).map(|jacobian| jacobian.qr().q()))
 }
 
 /// An effect in words: `joint-wear at A2`.
