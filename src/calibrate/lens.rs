@@ -34,7 +34,7 @@ const CLOSURE_BAND: f64 = 150.0;
 const RATE: f64 = 500.0;
 const PREFILTER: f64 = 200.0;
 /// Left out at both ends in s, where filters see beyond the log.
-const TRIM: f64 = 0.06;
+pub const TRIM: f64 = 0.06;
 
 /// A log prepared for looking at through models.
 #[derive(Clone, Debug)]

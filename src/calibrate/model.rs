@@ -1,6 +1,7 @@
 //! A model and the runs it is held against.
 
 use super::commands::LoggedCommands;
+use super::guide::{guided, start_as_seen};
 use super::lens::Lens;
 use super::replica;
 use super::spectrum::{Noise, Signal, transform};
@@ -75,6 +76,17 @@ pub fn released(
     Ok(machine)
 }
 
+/// Why a search cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum SearchError {
+    /// The rig cannot be simulated as declared.
+    #[error("{0}")]
+    Model(#[from] Problem),
+    /// A simulation broke down.
+    #[error("{0}")]
+    Halted(#[from] Halt),
+}
+
 /// A stretch of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Segment {
@@ -126,15 +138,25 @@ impl Case {
         transform(&lens.residuals(mechanism, segment.rows.clone()), interval)
     }
 
-    /// Noiseless logs of a model: `[run][replica]`, as many as a search or a prediction takes.
+    /// Noiseless logs of a model with these effects: `[run][replica]`, to predict with. A search compares
+    /// models by the same few replicas; a prediction is better for being the mean of more, and where
+    /// joints stay loaded for the best start that a log shows.
     ///
     /// # Errors
-    /// A run that broke down.
-    pub fn simulate(&self, machines: &[Mechanism], searching: bool) -> Result<Vec<Vec<Log>>, Halt> {
-        // A search compares models by the same few replicas; a prediction is better for being the mean
-        // of more.
-        let more = if self.chaotic && !searching { 2 } else { 1 };
-        let count = more * self.replicas;
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn simulate(&self, effects: &[Setting]) -> Result<Vec<Vec<Log>>, SearchError> {
+        let mut machines = self.released(effects)?;
+        if !self.chaotic {
+            for (machine, run) in machines.iter_mut().zip(&self.runs) {
+                *machine = start_as_seen(machine.clone(), &run.log, &self.sensors, self.control)?;
+            }
+        }
+        let count = if self.chaotic { 2 } else { 1 } * self.replicas;
+        Ok(self.replicas(&machines, count)?)
+    }
+
+    /// Noiseless logs of a model, so many of each run.
+    fn replicas(&self, machines: &[Mechanism], count: usize) -> Result<Vec<Vec<Log>>, Halt> {
         let jobs: Vec<(usize, u64)> = (0..self.runs.len())
             .flat_map(|run| (0..count as u64).map(move |replica| (run, replica)))
             .collect();
@@ -149,18 +171,55 @@ impl Case {
         Ok(self.runs.iter().map(|_| logs.by_ref().take(count).collect()).collect())
     }
 
-    /// The machine of each run, with these effects, ready to be simulated.
-    pub fn machines(&self, effects: &[Setting]) -> Result<Vec<Mechanism>, Problem> {
+    /// Simulations that a baseline takes.
+    pub fn simulations(&self) -> usize {
+        self.runs.len() * (self.replicas + usize::from(!self.chaotic))
+    }
+
+    /// The machine of each run, with these effects, let go.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take.
+    pub fn released(&self, effects: &[Setting]) -> Result<Vec<Mechanism>, Problem> {
         self.runs.iter().map(|run| released(&self.rig, run.pose, &run.commands, effects)).collect()
     }
 
-    /// The baseline of a model from its noiseless logs.
+    /// The machine of each run, guided by what `seen` makes of its log where joints stay loaded.
+    fn guided(
+        &self,
+        effects: &[Setting],
+        seen: impl Fn(&Log) -> Log,
+    ) -> Result<Vec<Mechanism>, Problem> {
+        let machines = self.released(effects)?.into_iter().zip(&self.runs);
+        Ok(machines
+            .map(
+                |(machine, run)| {
+                    if self.chaotic { machine } else { guided(machine, &seen(&run.log)) }
+                },
+            )
+            .collect())
+    }
+
+    /// The baseline of a model with these effects, from simulations of it.
+    ///
+    /// Where joints stay loaded, the swing that a run starts with is known as well as its sensors are
+    /// good: the same model, guided by a log of more noise, swings otherwise by as much.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
     pub fn baseline(
         &self,
-        machines: &[Mechanism],
-        logs: &[Vec<Log>],
+        effects: &[Setting],
         segments: &[Segment],
-    ) -> Baseline {
+    ) -> Result<Baseline, SearchError> {
+        let machines = self.guided(effects, Log::clone)?;
+        let logs = self.replicas(&machines, self.replicas)?;
+        let swinging = if self.chaotic {
+            Vec::new()
+        } else {
+            let noisy = |log: &Log| replica::with_noise(log, &self.sensors, 3000);
+            self.replicas(&self.guided(effects, noisy)?, 1)?
+        };
         let part = |segment: &Segment| {
             let machine = &machines[segment.run];
             let look = |log: &Log| {
@@ -193,9 +252,12 @@ impl Case {
                     noisy
                 })
                 .collect();
-            Part { segment: segment.clone(), bias, noise: Noise::from_draws(&draws) }
+            let other = swinging.get(segment.run).and_then(|logs| logs.first());
+            let swing = other.map(|log| difference(&look(log), &clean[0]));
+            let noise = Noise::from_draws(&draws, swing.as_deref());
+            Part { segment: segment.clone(), bias, noise }
         };
-        Baseline { parts: segments.iter().map(part).collect() }
+        Ok(Baseline { parts: segments.iter().map(part).collect() })
     }
 
     /// Residuals of the data on a segment as they are, with the measured lengths of the legs.
@@ -282,6 +344,11 @@ impl Baseline {
             })
             .collect()
     }
+}
+
+fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let channels = a.iter().zip(b);
+    channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
 }
 
 fn mean(draws: &[Vec<Vec<f64>>]) -> Vec<Vec<f64>> {

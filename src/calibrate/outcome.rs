@@ -1,9 +1,11 @@
 //! The whole way: from a rig and its logs to a verdict, a calibrated model and its errors.
 
 use super::errors::{self, ChannelError};
-use super::fit::{self, Target};
-use super::model::{Case, Run, Segment};
-use super::search::{Found, Question, Round, SearchError, Settled, name, search, settle};
+use super::fit;
+use super::left::{Left, is_noise, left};
+use super::model::{Case, Run, SearchError, Segment};
+use super::search::{Found, Round, Way, name, search};
+use super::settle::{Question, Settled};
 use super::unnamed::{Described, describe, settle_described};
 use crate::effects::Setting;
 use crate::measure::log::Log;
@@ -39,19 +41,6 @@ impl Estimate {
     }
 }
 
-/// How much of a residual stands above noise, on data not used for fits.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Left {
-    /// Which residual: servo, closure, dynamics.
-    pub residual: &'static str,
-    /// Mean square in units of noise: 1 for noise.
-    pub mean_square: f64,
-    /// Its largest coefficient in units of noise.
-    pub largest: f64,
-    /// Up to where noise reaches.
-    pub limit: f64,
-}
-
 /// A calibration.
 #[derive(Debug)]
 pub struct Outcome {
@@ -77,12 +66,6 @@ pub struct Outcome {
     pub simulations: usize,
 }
 
-/// Mean squares and largest coefficients, in units of noise, up to which a residual is noise; with
-/// gravity, where nothing is chaotic, and without. Replicas of models that lack nothing stay well
-/// below.
-const LIMITS: [([f64; 2], f64); 3] = [([1.5, 2.0], 7.0), ([1.25, 1.8], 6.5), ([1.2, 1.45], 6.0)];
-const NAMES: [&str; 3] = ["servo", "closure", "dynamics"];
-
 /// Calibrates: fits on the first run, judges on the others; with one run alone, fits on its first half
 /// and judges on the second.
 ///
@@ -104,32 +87,23 @@ pub fn calibrate(
         count => (vec![whole(0)], (1..count).map(whole).collect()),
     };
     let question = Question { on: &on, hold: &hold, without };
-    let Found { model, declared, rounds, mut simulations } = search(case, &question, tell)?;
+    let Found { best, declared, certain, mut simulations } = search(case, &question, tell)?;
     let before = left(case, &question, &declared);
-    let after = left(case, &question, &model);
-    // A residual that cannot be looked at is not noise.
-    let explained = !after.is_empty()
-        && after.iter().all(|left| left.mean_square < left.limit)
-        && largest_is_noise(&after);
-    let (verdict, described, last) = if !explained {
+    let after = left(case, &question, &best.model);
+    let (verdict, described, Way { model: last, rounds, .. }) = if !is_noise(&after) {
         tell("describing what has no name");
-        let certain = certain(case, &question, &declared, &rounds)?;
-        let described = describe(case, &question, &certain)?.filter(|d| d.share > 0.05);
-        let settled = match &described {
-            Some(described) => settle_described(case, &question, &certain, described)?,
-            None => certain,
-        };
-        (Verdict::Unexplained, described, settled)
-    } else if model.fit.effects.is_empty() {
-        (Verdict::NothingMissing, None, model)
+        let bare = Way { model: declared, rounds: best.rounds.clone(), certain: true };
+        let (way, described) = remaining(case, &question, bare, certain)?;
+        (Verdict::Unexplained, described, way)
+    } else if best.model.fit.effects.is_empty() {
+        (Verdict::NothingMissing, None, best)
     } else {
-        (Verdict::Explained, None, model)
+        (Verdict::Explained, None, best)
     };
     let estimates = estimates(&last);
     tell("predicting the runs");
-    let [declared, predicted] = [&[][..], &last.fit.effects]
-        .map(|effects| Ok::<_, SearchError>(case.simulate(&case.machines(effects)?, false)?));
-    let (declared, predicted) = (declared?, predicted?);
+    let declared = case.simulate(&[])?;
+    let predicted = case.simulate(&last.fit.effects)?;
     simulations += declared.iter().chain(&predicted).map(Vec::len).sum::<usize>();
     let role = |run: usize| if run == 0 { "calibration" } else { "validation" };
     let errors = case.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| {
@@ -149,51 +123,36 @@ pub fn calibrate(
     })
 }
 
-/// Share of what stands above noise that an effect has to remove to be believed where something else
-/// remains: what passes for an effect without being it rarely removes as much.
-const CERTAIN: f64 = 0.9;
-
-/// The model with those effects alone that are certain although something else remains.
-fn certain(
+/// What is certain although something else remains, and a map of that: of all models whose effects are
+/// certain, the declared one among them, the one that explains most together with its map.
+fn remaining(
     case: &Case,
     question: &Question,
-    declared: &Settled,
-    rounds: &[Round],
-) -> Result<Settled, SearchError> {
-    let believed = rounds.iter().map_while(|round| {
-        let added = round.added.as_ref()?;
-        let own = round.ranking.iter().find(|scored| scored.simulated)?;
-        (own.share > CERTAIN).then(|| added.clone())
-    });
-    let effects: Vec<Setting> = believed.collect();
-    if effects.is_empty() { Ok(declared.clone()) } else { settle(case, question, &effects, 4) }
+    declared: Way,
+    mut certain: Vec<Way>,
+) -> Result<(Way, Option<Described>), SearchError> {
+    certain.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    certain.truncate(BASES);
+    let mut best: Option<(Way, Option<Described>)> = None;
+    for way in [declared].into_iter().chain(certain) {
+        let described = describe(case, question, &way.model)?.filter(|d| d.share > WORTH_A_MAP);
+        let model = match &described {
+            Some(described) => settle_described(case, question, &way.model, described)?,
+            None => way.model,
+        };
+        if best.as_ref().is_none_or(|(other, _)| model.misfit < other.model.misfit) {
+            best = Some((Way { model, ..way }, described));
+        }
+    }
+    // The declared model is always among them.
+    best.ok_or_else(|| case.rig.problem("effect", "cannot be described", "other data").into())
 }
 
-/// What is left of a model's residuals on the held-out segments.
-fn left(case: &Case, question: &Question, model: &Settled) -> Vec<Left> {
-    let baseline = &model.baseline;
-    let target = Target { case, baseline, on: question.hold, fixed: &[], blind: None };
-    let Some(held) = target.look(&model.fit.effects) else { return Vec::new() };
-    let places = baseline.places(case, question.hold);
-    (0..3)
-        .map(|group| {
-            let own = held.white.iter().zip(&places).filter(|(_, (c, _))| c / 3 == group);
-            let (mut sum, mut count, mut largest) = (0.0, 0.0, 0.0f64);
-            for (value, _) in own {
-                sum += value * value;
-                count += 1.0;
-                largest = largest.max(value.abs());
-            }
-            let limits = LIMITS[group].0;
-            let limit = if case.chaotic { limits[1] } else { limits[0] };
-            Left { residual: NAMES[group], mean_square: sum / f64::max(count, 1.0), largest, limit }
-        })
-        .collect()
-}
+/// Models with certain effects that are held against each other, each with a map.
+const BASES: usize = 3;
 
-fn largest_is_noise(left: &[Left]) -> bool {
-    left.iter().zip(LIMITS).all(|(left, (_, largest))| left.largest < largest)
-}
+/// Share of what stands above noise on held-out data that a map has to remove: less is chance.
+const WORTH_A_MAP: f64 = 0.05;
 
 /// Estimates of each effect's values: `(JᵀJ)⁻¹` in units of noise, wider where the fit's own residual
 /// is larger than noise.

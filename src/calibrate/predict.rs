@@ -3,6 +3,7 @@
 use super::LoggedCommands;
 use super::charts;
 use super::errors::{self, ChannelError};
+use super::guide::start_as_seen;
 use super::model::{Case, released};
 use super::plausibility;
 use super::predict_page;
@@ -109,18 +110,21 @@ pub fn into_folder(
     let rattle = rattle::look(&machine, &sensors, control, &log)?;
     refuse(plausibility::forces(&recording.path, &recording.log, &rattle.logs[0], &model.drive))?;
     tell("predicting the run");
-    let simulate = |machine: &Mechanism| {
+    let simulate = |mut machine: Mechanism| {
+        if !rattle.chaotic {
+            machine = start_as_seen(machine, &recording.log, &sensors, control)?;
+        }
         let replicas = (0..rattle.replicas as u64).into_par_iter();
-        let logs = replicas.map(|r| replica::simulate(machine, &sensors, control, &log, r));
+        let logs = replicas.map(|r| replica::simulate(&machine, &sensors, control, &log, r));
         logs.collect::<Result<Vec<Log>, Halt>>()
     };
-    let after = simulate(&machine)?;
+    let after = simulate(machine)?;
     let before = if model.effects.is_empty() {
         None
     } else {
         let mut declared = model.clone();
         declared.effects.clear();
-        Some(simulate(&self::machine(&declared, &log)?)?)
+        Some(simulate(self::machine(&declared, &log)?)?)
     };
     // What errors are counted against is the model's instruments alone.
     let case = Case {

@@ -1,8 +1,9 @@
 //! `report.json`: what a calibration came to.
 
 use super::errors::ChannelError;
+use super::left::Left;
 use super::model::Case;
-use super::outcome::{Left, Outcome, Verdict, evidence};
+use super::outcome::{Outcome, Verdict, evidence};
 use super::rattle::Rattle;
 use super::search::name;
 use crate::effects::{DependsOn, Setting};

@@ -1,11 +1,11 @@
 //! A calibration and its folder of results.
 
+use super::model::SearchError;
 use super::model::{Case, Run};
 use super::outcome::calibrate;
 use super::rattle::{self, Rattle};
 use super::recording::{Recording, stem};
 use super::report::{Report, Sources, calibrated};
-use super::search::SearchError;
 use super::{charts, page, plausibility};
 use crate::engine::{Halt, StepControl};
 use crate::measure::log::LogError;
@@ -182,7 +182,7 @@ pub fn into_folder(
 /// Forces in a wrong unit, a rig that cannot be simulated.
 pub fn case(prepared: Prepared) -> Result<(Case, Rattle), CalibrateError> {
     let Prepared { mut case, paths } = prepared;
-    let machines = case.machines(&[])?;
+    let machines = case.released(&[])?;
     let mut found = Vec::new();
     let mut worst: Option<Rattle> = None;
     for ((run, machine), path) in case.runs.iter().zip(&machines).zip(paths) {

@@ -1,10 +1,10 @@
 //! The method held against what it should find: known effects of random size, hidden in synthetic
 //! recordings.
 
+use super::model::SearchError;
 use super::model::{Case, Run};
 use super::outcome::{Outcome, Verdict, calibrate};
 use super::replica;
-use super::search::SearchError;
 use crate::effects::{Setting, named};
 use crate::engine::StepControl;
 use crate::measure::log::{Channel, Log};
@@ -274,7 +274,7 @@ fn recorded(trial: &Trial) -> std::result::Result<(Case, Vec<Setting>), SearchEr
         let runs = vec![Run::new(template).map_err(missing)?];
         let case =
             Case { rig: rig.clone(), sensors: sensors.clone(), runs, control, replicas, chaotic };
-        let machine = case.machines(&hidden)?.remove(0);
+        let machine = case.released(&hidden)?.remove(0);
         let log = &case.runs[0].log;
         // Another start of the rattle than any replica's.
         let clean =

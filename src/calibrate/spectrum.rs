@@ -66,9 +66,14 @@ pub struct Noise {
 const NEIGHBOURS: usize = 8;
 const SHARE: f64 = 0.12;
 
+/// Variance of a swing over that of the one swing that it is known by: what one draw says of an
+/// amplitude is uncertain by as much as itself.
+const SWINGS: f64 = 2.0;
+
 impl Noise {
-    /// From coefficients of pure noise, several draws of it.
-    pub fn from_draws(draws: &[Vec<Vec<f64>>]) -> Self {
+    /// From coefficients of pure noise, several draws of it; and of a `swing` that comes on top, with an
+    /// amplitude of its own in each run.
+    pub fn from_draws(draws: &[Vec<Vec<f64>>], swing: Option<&[Vec<f64>]>) -> Self {
         let channels = draws[0].len();
         let bins = draws[0].iter().map(Vec::len).max().unwrap_or(0);
         let mut factors = Vec::with_capacity(bins);
@@ -76,22 +81,30 @@ impl Noise {
         for k in 0..bins {
             let active: Vec<usize> = (0..channels).filter(|&c| draws[0][c].len() > k).collect();
             let reach = NEIGHBOURS.max((SHARE * k as f64) as usize);
-            let mut covariance = DMatrix::<f64>::zeros(active.len(), active.len());
-            let mut count = 0.0;
+            let size = active.len();
+            let [mut covariance, mut swinging] =
+                [(); 2].map(|()| DMatrix::<f64>::zeros(size, size));
+            let (mut count, mut places) = (0.0, 0.0);
             for j in k.saturating_sub(reach)..=k + reach {
                 if active.iter().any(|&c| draws[0][c].len() <= j) {
                     continue;
                 }
+                let at = |draw: &[Vec<f64>]| DVector::from_fn(size, |i, _| draw[active[i]][j]);
                 for draw in draws {
-                    let vector =
-                        DVector::from_iterator(active.len(), active.iter().map(|&c| draw[c][j]));
+                    let vector = at(draw);
                     covariance.ger(1.0, &vector, &vector, 1.0);
                     count += 1.0;
                 }
+                // A swing is sharper than noise.
+                if let Some(swing) = swing.filter(|_| j.abs_diff(k) <= NEIGHBOURS) {
+                    let vector = at(swing);
+                    swinging.ger(SWINGS, &vector, &vector, 1.0);
+                    places += 1.0;
+                }
             }
-            covariance /= count;
+            covariance = covariance / count + swinging / f64::max(places, 1.0);
             // A hair of the diagonal keeps channels without noise from being singular.
-            for i in 0..active.len() {
+            for i in 0..size {
                 covariance[(i, i)] = covariance[(i, i)] * (1.0 + 1e-6) + 1e-30;
             }
             let diagonal = DMatrix::from_diagonal(&covariance.diagonal());

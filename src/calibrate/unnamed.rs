@@ -1,8 +1,9 @@
 //! What remains when no effect explains it: forces as a map of what they depend on.
 
 use super::fit::Target;
+use super::model::SearchError;
 use super::model::{Case, Segment};
-use super::search::{Question, SearchError, Settled, settle};
+use super::settle::{Question, Settled, settle};
 use crate::effects::{DependsOn, Map, Motion, Setting};
 use crate::mechanism::{Command, Commands};
 use nalgebra::{DMatrix, DVector};

@@ -1,0 +1,120 @@
+//! Values of a model that agree with simulations of it.
+
+use super::fit::{self, Fit, Target};
+use super::model::{Baseline, Case, SearchError, Segment};
+use crate::effects::Setting;
+
+/// How much more than nothing each value of an effect has to bring: Akaike's price of a parameter in
+/// units of −2 log likelihood.
+pub const GAIN_PER_VALUE: f64 = 2.0;
+
+/// The change of a value, in its standard deviations, that is no change.
+const SETTLED: f64 = 0.3;
+
+/// A model that simulations of itself have been held against.
+#[derive(Clone, Debug)]
+pub struct Settled {
+    /// Its effects at their best values on the segments that count.
+    pub fit: Fit,
+    /// Bias and noise from simulations at (nearly) these values.
+    pub baseline: Baseline,
+    /// Σ of squares on the held-out segments.
+    pub held: f64,
+    /// −2 log likelihood there, but for a constant: Σ of squares plus the logarithm of the noise's
+    /// determinant. A model that rattles more is not better for explaining less.
+    pub misfit: f64,
+    /// How often it was simulated.
+    pub times: usize,
+}
+
+/// Which data count for the fits and which are held out, and what must not be found.
+#[derive(Clone, Debug)]
+pub struct Question<'a> {
+    /// Segments that values are fitted on.
+    pub on: &'a [Segment],
+    /// Segments that candidates are judged on.
+    pub hold: &'a [Segment],
+    /// Kinds of effects that are no candidates.
+    pub without: &'a [&'a str],
+}
+
+impl Question<'_> {
+    fn segments(&self) -> Vec<Segment> {
+        [self.on, self.hold].concat()
+    }
+}
+
+/// Fits the values of a model, simulating it anew each time: the lens's own fault depends on them.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn settle(
+    case: &Case,
+    question: &Question,
+    effects: &[Setting],
+    times: usize,
+) -> Result<Settled, SearchError> {
+    let segments = question.segments();
+    let mut effects = effects.to_vec();
+    let mut settled = None;
+    for time in 1..=times.max(1) {
+        let baseline = case.baseline(&effects, &segments)?;
+        let target = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
+        let iterations = if effects.is_empty() { 0 } else { 6 };
+        let Some(mut fit) = fit::fit(&target, &effects, iterations) else { break };
+        fit.jacobian = fit::jacobian(&target, &fit);
+        let held = Target { on: question.hold, ..target };
+        let held = held.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
+        let change = change(&effects, &fit);
+        effects.clone_from(&fit.effects);
+        let misfit = held + baseline.log_determinant(question.hold);
+        settled = Some(Settled { fit, baseline, held, misfit, times: time });
+        if change < SETTLED {
+            break;
+        }
+    }
+    settled.ok_or_else(|| {
+        case.rig.problem("effect", "gives a machine that cannot be", "other values").into()
+    })
+}
+
+/// Largest change of a value by a fit, in its standard deviations, each by itself.
+fn change(before: &[Setting], fit: &Fit) -> f64 {
+    let (before, after) = (fit::values(before), fit::values(&fit.effects));
+    let Some(jacobian) = &fit.jacobian else { return 0.0 };
+    let columns = jacobian.column_iter().map(|column| column.norm());
+    let moved = before.iter().zip(&after).zip(columns).map(|((b, a), size)| (a - b).abs() * size);
+    moved.fold(0.0, f64::max)
+}
+
+/// The model with simpler variants of its effects where they do as well: fewer values that explain the
+/// held-out data up to what the values may bring.
+pub fn simplified(case: &Case, question: &Question, model: Settled) -> Settled {
+    let mut best = model;
+    for i in 0..best.fit.effects.len() {
+        let effect = best.fit.effects[i].clone();
+        let mut variants: Vec<_> = effect.kind.variants.to_vec();
+        variants.sort_by_key(|names| names.len());
+        for names in variants.iter().filter(|names| names.len() < effect.values().count()) {
+            let values: Vec<(&'static str, f64)> =
+                names.iter().map(|name| (*name, effect.value(name).unwrap_or(0.0))).collect();
+            let simpler = Setting::new(effect.kind, effect.joint.as_deref(), &values);
+            let mut effects = best.fit.effects.clone();
+            effects[i] = simpler;
+            let baseline = best.baseline.clone();
+            let on = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
+            let Some(mut fit) = fit::fit(&on, &effects, 8) else { continue };
+            let Some(held) = (Target { on: question.hold, ..on }).look(&fit.effects) else {
+                continue;
+            };
+            let fewer = (effect.values().count() - names.len()) as f64;
+            if held.chi2 - best.held < 2.0 * GAIN_PER_VALUE * fewer + 4.0 {
+                fit.jacobian = fit::jacobian(&on, &fit);
+                let misfit = best.misfit + held.chi2 - best.held;
+                best = Settled { fit, held: held.chi2, misfit, ..best };
+                break;
+            }
+        }
+    }
+    best
+}
