@@ -41,6 +41,12 @@ const APART: f64 = 0.25 / SWING;
 /// Size of a correction (m/s, m/s, rad/s) by which the others are counted: a micrometre within a pulse.
 const SIZES: [f64; 3] = [1e-4, 1e-4, 3e-3];
 
+/// What keeps corrections that do nothing at nothing: far below what one size does.
+const RIDGE: f64 = 1e-3;
+
+/// Share of its squares that a guided start has to leave of those of a release to be the better one.
+const SLACK: f64 = 0.95;
+
 /// Corrections as multiples of their sizes: along x, y and φ of each pulse.
 type Corrections = SVector<f64, { 3 * PULSES }>;
 
@@ -78,11 +84,51 @@ fn couple(
 }
 
 /// The machine with its output coupled to a log's first rows, if the log has a pose.
-pub fn guided(machine: Mechanism, log: &Log) -> Mechanism {
+pub fn guided(machine: &Mechanism, log: &Log) -> Mechanism {
     match velocities(log) {
-        Some(velocities) => couple(&machine, log, &velocities, Corrections::zeros()),
-        None => machine,
+        Some(velocities) => couple(machine, log, &velocities, Corrections::zeros()),
+        None => machine.clone(),
     }
+}
+
+/// How well starts meet the swing that a log shows.
+struct Judge<'a> {
+    log: Log,
+    sensors: &'a Sensors,
+    control: StepControl,
+}
+
+impl<'a> Judge<'a> {
+    fn new(log: &Log, sensors: &'a Sensors, control: StepControl) -> Self {
+        let rows = (((TRIM + SEEN) / log.interval) as usize).min(log.samples);
+        Self { log: log.part(0..rows), sensors, control }
+    }
+
+    /// What is not met, each in units of noise.
+    fn look(&self, machine: &Mechanism) -> Result<Vec<f64>, Halt> {
+        let seen = replica::simulate(machine, self.sensors, self.control, &self.log, 0)?;
+        Ok(swing(&self.log, &seen, self.sensors))
+    }
+}
+
+fn norm(residual: &[f64]) -> f64 {
+    residual.iter().map(|v| v * v).sum()
+}
+
+/// Whether a log shows another swing than the machine has when it is let go as it is said to have been.
+///
+/// # Errors
+/// A run that broke down.
+pub fn swings_otherwise(
+    machine: &Mechanism,
+    log: &Log,
+    sensors: &Sensors,
+    control: StepControl,
+) -> Result<bool, Halt> {
+    let judge = Judge::new(log, sensors, control);
+    let (released, guided) =
+        rayon::join(|| judge.look(machine), || judge.look(&guided(machine, log)));
+    Ok(norm(&guided?) < SLACK * norm(&released?))
 }
 
 /// The machine with the start that a log shows best: as it was let go, guided, or guided by velocities
@@ -97,41 +143,35 @@ pub fn start_as_seen(
     control: StepControl,
 ) -> Result<Mechanism, Halt> {
     let Some(velocities) = velocities(log) else { return Ok(machine) };
-    let rows = (((TRIM + SEEN) / log.interval) as usize).min(log.samples);
-    let log = log.part(0..rows);
-    let look = |machine: &Mechanism| {
-        let seen = replica::simulate(machine, sensors, control, &log, 0)?;
-        Ok(swing(&log, &seen, sensors))
-    };
-    let with = |corrections| couple(&machine, &log, &velocities, corrections);
+    let judge = Judge::new(log, sensors, control);
+    let with = |corrections| couple(&machine, log, &velocities, corrections);
     let unit = |i: usize| Corrections::from_fn(|k, _| if k == i { 1.0 } else { 0.0 });
     let tried: Vec<Mechanism> = [machine.clone(), with(Corrections::zeros())]
         .into_iter()
         .chain((0..3 * PULSES).map(|i| with(unit(i))))
         .collect();
-    let seen = tried.par_iter().map(look).collect::<Result<Vec<Vec<f64>>, Halt>>()?;
-    let norm = |residual: &[f64]| residual.iter().map(|v| v * v).sum::<f64>();
+    let looks = tried.par_iter().map(|machine| judge.look(machine));
+    let seen = looks.collect::<Result<Vec<Vec<f64>>, Halt>>()?;
     let (released, base) = (&seen[0], &seen[1]);
+    if norm(released) < norm(base) {
+        return Ok(machine);
+    }
     let columns: Vec<Vec<f64>> = seen[2..]
         .iter()
         .map(|moved| moved.iter().zip(base).map(|(moved, base)| moved - base).collect())
         .collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let normal = SMatrix::<f64, { 3 * PULSES }, { 3 * PULSES }>::from_fn(|r, c| {
-        dot(&columns[r], &columns[c]) + f64::from(u8::from(r == c)) * 1e-3
+        dot(&columns[r], &columns[c]) + f64::from(u8::from(r == c)) * RIDGE
     });
     let rhs = Corrections::from_fn(|r, _| -dot(&columns[r], base));
-    let mut best = (norm(released), &tried[0]);
-    if norm(base) < best.0 {
-        best = (norm(base), &tried[1]);
-    }
     if let Some(factor) = normal.cholesky() {
         let corrected = with(factor.solve(&rhs));
-        if norm(&look(&corrected)?) < best.0 {
+        if norm(&judge.look(&corrected)?) < norm(base) {
             return Ok(corrected);
         }
     }
-    Ok(best.1.clone())
+    Ok(tried[1].clone())
 }
 
 /// What a log's pose shows of a swing that a simulated one does not, after the coupling, in units of its

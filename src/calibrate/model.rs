@@ -1,7 +1,7 @@
 //! A model and the runs it is held against.
 
 use super::commands::LoggedCommands;
-use super::guide::{guided, start_as_seen};
+use super::guide::{guided, start_as_seen, swings_otherwise};
 use super::lens::Lens;
 use super::replica;
 use super::spectrum::{Noise, Signal, transform};
@@ -128,7 +128,7 @@ struct Part {
     noise: Noise,
 }
 
-/// Draws of sensor noise from which a covariance is taken.
+/// Draws of sensor noise from which a mean and a covariance are taken, at least.
 const DRAWS: usize = 16;
 
 impl Case {
@@ -184,26 +184,11 @@ impl Case {
         self.runs.iter().map(|run| released(&self.rig, run.pose, &run.commands, effects)).collect()
     }
 
-    /// The machine of each run, guided by what `seen` makes of its log where joints stay loaded.
-    fn guided(
-        &self,
-        effects: &[Setting],
-        seen: impl Fn(&Log) -> Log,
-    ) -> Result<Vec<Mechanism>, Problem> {
-        let machines = self.released(effects)?.into_iter().zip(&self.runs);
-        Ok(machines
-            .map(
-                |(machine, run)| {
-                    if self.chaotic { machine } else { guided(machine, &seen(&run.log)) }
-                },
-            )
-            .collect())
-    }
-
     /// The baseline of a model with these effects, from simulations of it.
     ///
-    /// Where joints stay loaded, the swing that a run starts with is known as well as its sensors are
-    /// good: the same model, guided by a log of more noise, swings otherwise by as much.
+    /// Where joints stay loaded, a run may show another swing than that of the release: then the model is
+    /// guided by the log, and knows its swing as well as the sensors are good. The same model, guided by
+    /// a log of more noise, swings otherwise by as much.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -212,48 +197,60 @@ impl Case {
         effects: &[Setting],
         segments: &[Segment],
     ) -> Result<Baseline, SearchError> {
-        let machines = self.guided(effects, Log::clone)?;
+        let mut machines = self.released(effects)?;
+        let mut swinging: Vec<Option<Log>> = vec![None; self.runs.len()];
+        if !self.chaotic {
+            for ((machine, run), swinging) in machines.iter_mut().zip(&self.runs).zip(&mut swinging)
+            {
+                let (log, sensors, control) = (&run.log, &self.sensors, self.control);
+                if swings_otherwise(machine, log, sensors, control)? {
+                    let noisy = guided(machine, &replica::with_noise(log, sensors, 3000));
+                    *swinging = Some(replica::simulate(&noisy, sensors, control, log, 0)?);
+                    *machine = guided(machine, log);
+                }
+            }
+        }
         let logs = self.replicas(&machines, self.replicas)?;
-        let swinging = if self.chaotic {
-            Vec::new()
-        } else {
-            let noisy = |log: &Log| replica::with_noise(log, &self.sensors, 3000);
-            self.replicas(&self.guided(effects, noisy)?, 1)?
-        };
         let part = |segment: &Segment| {
             let machine = &machines[segment.run];
             let look = |log: &Log| {
                 let lens = Lens::new(log).expect("the channels of the recorded log");
                 self.coefficients(&lens, machine, segment)
             };
-            let clean: Vec<Vec<Vec<f64>>> = logs[segment.run].par_iter().map(look).collect();
-            let bias = mean(&clean);
-            let count = clean.len() as f64;
-            // A replica stands for the data, the mean of the others for the bias: sensor noise, the
-            // rattle of one run, and what is left of it in a mean.
-            let draws: Vec<Vec<Vec<f64>>> = (0..DRAWS)
+            // Residuals are seen through noise: where they are bent, as friction is by the noise of a
+            // slow speed, so is their mean.
+            let logs = &logs[segment.run];
+            let each = DRAWS.div_ceil(logs.len());
+            let noisy: Vec<Vec<Vec<f64>>> = (0..each * logs.len())
                 .into_par_iter()
                 .map(|draw| {
-                    let index = draw % clean.len();
-                    let log = &logs[segment.run][index];
-                    let mut noisy =
-                        look(&replica::with_noise(log, &self.sensors, draw as u64 + 1000));
-                    for (c, channel) in noisy.iter_mut().enumerate() {
-                        for (k, value) in channel.iter_mut().enumerate() {
-                            let own = clean[index][c][k];
-                            let others = if clean.len() > 1 {
-                                (bias[c][k] * count - own) / (count - 1.0)
-                            } else {
-                                own
-                            };
-                            *value -= others;
-                        }
-                    }
-                    noisy
+                    let log = &logs[draw / each];
+                    look(&replica::with_noise(log, &self.sensors, draw as u64 + 1000))
                 })
                 .collect();
-            let other = swinging.get(segment.run).and_then(|logs| logs.first());
-            let swing = other.map(|log| difference(&look(log), &clean[0]));
+            let bias = mean(&noisy);
+            // A draw stands for the data, the mean of the others for the bias, those of its own replica
+            // aside where there are several: sensor noise, the rattle of one run, and what is left of both
+            // in a mean.
+            let own = if logs.len() > 1 { each } else { 1 };
+            let draws: Vec<Vec<Vec<f64>>> = noisy
+                .par_chunks(own)
+                .flat_map_iter(|same| {
+                    let (count, same_mean) = (noisy.len() as f64, mean(same));
+                    let part = same.len() as f64 / count;
+                    let others: Vec<Vec<f64>> = bias
+                        .iter()
+                        .zip(&same_mean)
+                        .map(|(all, own)| {
+                            let both = all.iter().zip(own);
+                            both.map(|(all, own)| (all - part * own) / (1.0 - part)).collect()
+                        })
+                        .collect();
+                    same.iter().map(move |draw| difference(draw, &others))
+                })
+                .collect();
+            let other = swinging[segment.run].as_ref();
+            let swing = other.map(|log| difference(&look(log), &look(&logs[0])));
             let noise = Noise::from_draws(&draws, swing.as_deref());
             Part { segment: segment.clone(), bias, noise }
         };
@@ -276,30 +273,6 @@ impl Case {
             whole[segment.rows.clone()].iter().step_by(run.lens.stride()).copied().collect()
         });
         Ok((run.lens.residuals(&machine, segment.rows.clone()), lengths))
-    }
-
-    /// A signal of each leg's dynamics on segments (leg, then value at each row), as the residual of
-    /// the dynamics would show it, in units of noise.
-    pub fn white_forces(
-        &self,
-        baseline: &Baseline,
-        on: &[Segment],
-        values: &dyn Fn(usize, usize, usize) -> f64,
-    ) -> DVector<f64> {
-        let mut all = Vec::new();
-        for part in baseline.parts.iter().filter(|part| on.contains(&part.segment)) {
-            let run = part.segment.run;
-            let mut signals = self.runs[run].lens.nothing();
-            for (c, signal) in signals.iter_mut().enumerate() {
-                let rows = part.segment.rows.clone().step_by(self.runs[run].lens.stride());
-                signal.values =
-                    rows.map(|row| if c < 6 { 0.0 } else { values(run, c - 6, row) }).collect();
-            }
-            let interval = self.runs[run].log.interval * self.runs[run].lens.stride() as f64;
-            let coefficients = transform(&signals, interval);
-            all.extend(part.noise.whiten(&coefficients).iter());
-        }
-        DVector::from_vec(all)
     }
 
     /// Residuals of the data under a model in units of noise, of all segments in a row.

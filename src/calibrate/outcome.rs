@@ -6,7 +6,7 @@ use super::left::{Left, is_noise, left};
 use super::model::{Case, Run, SearchError, Segment};
 use super::search::{Found, Round, Way, name, search};
 use super::settle::{Question, Settled};
-use super::unnamed::{Described, describe, settle_described};
+use super::unnamed::{Described, describe};
 use crate::effects::Setting;
 use crate::measure::log::Log;
 use serde::Serialize;
@@ -135,10 +135,9 @@ fn remaining(
     certain.truncate(BASES);
     let mut best: Option<(Way, Option<Described>)> = None;
     for way in [declared].into_iter().chain(certain) {
-        let described = describe(case, question, &way.model)?.filter(|d| d.share > WORTH_A_MAP);
-        let model = match &described {
-            Some(described) => settle_described(case, question, &way.model, described)?,
-            None => way.model,
+        let (described, model) = match describe(case, question, &way.model, WORTH_A_MAP)? {
+            Some((described, model)) => (Some(described), model),
+            None => (None, way.model),
         };
         if best.as_ref().is_none_or(|(other, _)| model.misfit < other.model.misfit) {
             best = Some((Way { model, ..way }, described));

@@ -64,8 +64,11 @@ impl Way {
 
     /// Its effects, whatever their order and values.
     fn key(effects: &[Setting]) -> Vec<String> {
-        let mut names: Vec<String> =
-            effects.iter().map(|e| format!("{} {}", name(e), e.values().count())).collect();
+        let with_values = |effect: &Setting| {
+            let values: Vec<&str> = effect.values().map(|(name, _)| name).collect();
+            format!("{}: {}", name(effect), values.join(" "))
+        };
+        let mut names: Vec<String> = effects.iter().map(with_values).collect();
         names.sort();
         names
     }
@@ -100,10 +103,10 @@ pub fn search(
     let mut best = Way { model: declared.clone(), rounds: Vec::new(), certain: true };
     let mut ways = vec![best.clone()];
     let mut certain = Vec::new();
-    let mut tried: Vec<Vec<String>> = Vec::new();
     while best.model.fit.effects.len() < EFFECTS {
         let mut next: Vec<Way> = Vec::new();
         let mut searched = Vec::new();
+        let mut tried: Vec<Vec<String>> = Vec::new();
         for way in &ways {
             tell(&format!("trying every effect beside {}", names(&way.model.fit.effects)));
             let (found, round, count) = beside(case, question, way, &mut tried, tell)?;

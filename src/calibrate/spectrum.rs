@@ -59,6 +59,15 @@ pub struct Noise {
     factors: Vec<Cholesky<f64, Dyn>>,
     /// Channels that reach each frequency.
     active: Vec<Vec<usize>>,
+    log_determinant: f64,
+}
+
+/// The Cholesky factor of a covariance; of its diagonal alone, should rounding have made it indefinite.
+fn factor(covariance: DMatrix<f64>) -> Cholesky<f64, Dyn> {
+    let diagonal = DMatrix::from_diagonal(&covariance.diagonal());
+    let factor = covariance.cholesky().or_else(|| diagonal.cholesky());
+    // A positive diagonal always has a factor.
+    factor.expect("positive diagonal")
 }
 
 /// Half the number of neighbouring frequencies over which a covariance is averaged, at least; as a
@@ -78,6 +87,7 @@ impl Noise {
         let bins = draws[0].iter().map(Vec::len).max().unwrap_or(0);
         let mut factors = Vec::with_capacity(bins);
         let mut all_active = Vec::with_capacity(bins);
+        let mut log_determinant = 0.0;
         for k in 0..bins {
             let active: Vec<usize> = (0..channels).filter(|&c| draws[0][c].len() > k).collect();
             let reach = NEIGHBOURS.max((SHARE * k as f64) as usize);
@@ -102,18 +112,20 @@ impl Noise {
                     places += 1.0;
                 }
             }
-            covariance = covariance / count + swinging / f64::max(places, 1.0);
+            covariance /= count;
             // A hair of the diagonal keeps channels without noise from being singular.
             for i in 0..size {
                 covariance[(i, i)] = covariance[(i, i)] * (1.0 + 1e-6) + 1e-30;
             }
-            let diagonal = DMatrix::from_diagonal(&covariance.diagonal());
-            let factor = covariance.cholesky().or_else(|| diagonal.cholesky());
-            // A positive diagonal always has a factor.
-            factors.push(factor.expect("positive diagonal"));
+            let alone = factor(covariance.clone());
+            log_determinant += 2.0 * alone.l_dirty().diagonal().map(f64::ln).sum();
+            factors.push(match swing {
+                Some(_) => factor(covariance + swinging / f64::max(places, 1.0)),
+                None => alone,
+            });
             all_active.push(active);
         }
-        Self { factors, active: all_active }
+        Self { factors, active: all_active, log_determinant }
     }
 
     /// Coefficients in units of the noise: independent, of variance one, if they are noise.
@@ -128,11 +140,10 @@ impl Noise {
         DVector::from_vec(white)
     }
 
-    /// Logarithm of the determinant of the whole covariance: what a model pays for being noisy, where
-    /// likelihoods are compared.
+    /// Logarithm of the determinant of the covariance, of the swing aside: what a model pays for being
+    /// noisy, where likelihoods are compared. The swing is known by one draw: its determinant is chance.
     pub fn log_determinant(&self) -> f64 {
-        let logs = self.factors.iter().map(|f| f.l_dirty().diagonal().map(f64::ln).sum());
-        2.0 * logs.sum::<f64>()
+        self.log_determinant
     }
 
     /// Channel and frequency bin of each number that [`whiten`](Self::whiten) returns.

@@ -5,8 +5,10 @@ use super::model::SearchError;
 use super::model::{Case, Segment};
 use super::settle::{Question, Settled, settle};
 use crate::effects::{DependsOn, Map, Motion, Setting};
-use crate::mechanism::{Command, Commands};
+use crate::measure::log::Channel;
+use crate::mechanism::Command;
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// A map that describes what remains.
 #[derive(Clone, Debug)]
@@ -19,117 +21,136 @@ pub struct Described {
     pub others: Vec<(DependsOn, f64)>,
 }
 
-/// Ridges that are tried, as shares of the mean square of a column.
-const RIDGES: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+/// Ridges that are tried, as shares of the mean square of a component's columns.
+const RIDGES: [f64; 6] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
 
-/// The map that removes most of a model's residual on data that it was not fitted on.
+/// How often a map is fitted anew, its model simulated in between: the lens's fault depends on it.
+const PASSES: usize = 2;
+
+/// The map that removes most of a model's residual on data that it was not fitted on, if it removes more
+/// than `worth` of what stands above noise; and the model with it.
+///
+/// # Errors
+/// A machine that cannot be simulated.
 pub fn describe(
     case: &Case,
     question: &Question,
     model: &Settled,
-) -> Result<Option<Described>, SearchError> {
-    let baseline = &model.baseline;
-    let target = Target { case, baseline, on: question.on, fixed: &[], blind: None };
+    worth: f64,
+) -> Result<Option<(Described, Settled)>, SearchError> {
+    let mut last = None;
+    let mut simulated = model.clone();
+    let mut others = Vec::new();
+    for pass in 0..PASSES {
+        let maps = best_maps(case, question, model, &simulated, &others);
+        if pass == 0 {
+            others = maps.iter().map(|(share, map)| (map.depends_on, *share)).collect();
+        }
+        let Some((share, map)) = maps.into_iter().next().filter(|(share, _)| *share > worth) else {
+            break;
+        };
+        let effect = Setting::unnamed(map);
+        let effects = [model.fit.effects.as_slice(), std::slice::from_ref(&effect)].concat();
+        simulated = settle(case, question, &effects, 1)?;
+        let share = share.clamp(0.0, 1.0);
+        last = Some((Described { effect, share, others: others.clone() }, simulated.clone()));
+    }
+    Ok(last)
+}
+
+/// The best map of each class, or of the first of `classes`, with the share that it removes; the best
+/// class first. Bias and noise are those of `simulated`, the effects those of `model`.
+fn best_maps(
+    case: &Case,
+    question: &Question,
+    model: &Settled,
+    simulated: &Settled,
+    classes: &[(DependsOn, f64)],
+) -> Vec<(f64, Map)> {
+    let baseline = &simulated.baseline;
     let effects = &model.fit.effects;
-    let held = Target { on: question.hold, ..target }.look(effects);
-    let (Some(fitted), Some(held)) = (target.look(effects), held) else { return Ok(None) };
-    let noise = held.white.len() as f64;
-    let excess = (held.chi2 - noise).max(1.0);
+    let on = Target { case, baseline, on: question.on, fixed: effects, blind: None };
+    let hold = Target { on: question.hold, ..on };
+    let (Some(fitted), Some(held)) = (on.look(&[]), hold.look(&[])) else { return Vec::new() };
+    let excess = (held.chi2 - held.white.len() as f64).max(1.0);
+    let classes: Vec<DependsOn> = match classes.first() {
+        Some((class, _)) => vec![*class],
+        None => DependsOn::ALL.to_vec(),
+    };
     let mut found: Vec<(f64, Map)> = Vec::new();
-    for depends_on in DependsOn::ALL {
+    for depends_on in classes {
         let empty = empty(case, question.on, depends_on);
-        let [columns, held_columns] =
-            [question.on, question.hold].map(|on| columns(case, &model.baseline, on, &empty));
+        let (Some(columns), Some(held_columns)) =
+            (columns(&on, &fitted.white, &empty), columns(&hold, &held.white, &empty))
+        else {
+            continue;
+        };
+        let components = empty.components(3);
+        let features = columns.ncols() / components;
         let normal = columns.transpose() * &columns;
         let rhs = -(columns.transpose() * &fitted.white);
-        let size = normal.diagonal().mean();
+        // Forces and torques have sizes of their own.
+        let sizes: Vec<f64> = (0..components)
+            .map(|i| normal.diagonal().rows(i * features, features).mean())
+            .collect();
         let best = RIDGES
             .into_iter()
             .filter_map(|ridge| {
-                let diagonal = DMatrix::identity(normal.nrows(), normal.ncols()) * (ridge * size);
-                let weights: DVector<f64> = (&normal + diagonal).cholesky()?.solve(&rhs);
+                let ridges = DVector::from_fn(columns.ncols(), |i, _| ridge * sizes[i / features]);
+                let ridged = &normal + DMatrix::from_diagonal(&ridges);
+                let weights: DVector<f64> = ridged.cholesky()?.solve(&rhs);
                 let left = (&held.white + &held_columns * &weights).norm_squared();
                 Some(((held.chi2 - left) / excess, weights))
             })
             .max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((share, weights)) = best {
-            let features = weights.len() / 3;
             let coefficients = weights.as_slice().chunks(features).map(<[f64]>::to_vec).collect();
             found.push((share, Map { coefficients, ..empty }));
         }
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let others = found.iter().map(|(share, map)| (map.depends_on, *share)).collect();
-    let Some((share, map)) = found.into_iter().next() else { return Ok(None) };
-    Ok(Some(Described { effect: Setting::unnamed(map), share: share.clamp(0.0, 1.0), others }))
-}
-
-/// The model with a map, its map fitted twice: the lens's fault depends on it.
-///
-/// # Errors
-/// A machine that cannot be simulated.
-pub fn settle_described(
-    case: &Case,
-    question: &Question,
-    model: &Settled,
-    described: &Described,
-) -> Result<Settled, SearchError> {
-    let effects = [model.fit.effects.as_slice(), std::slice::from_ref(&described.effect)].concat();
-    settle(case, question, &effects, 1)
+    found
 }
 
 /// A map without coefficients over the range of the measured motion.
 fn empty(case: &Case, on: &[Segment], depends_on: DependsOn) -> Map {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 4];
+    let mut widen = |k: usize, value: f64| {
+        ranges[k] = [ranges[k][0].min(value), ranges[k][1].max(value)];
+    };
     for segment in on {
+        let run = &case.runs[segment.run];
         for row in segment.rows.clone() {
-            let [pose, _] = case.runs[segment.run].lens.motion(row);
-            for k in 0..3 {
-                low[k] = low[k].min(pose[k]);
-                high[k] = high[k].max(pose[k]);
+            let [pose, _] = run.lens.motion(row);
+            (0..3).for_each(|k| widen(k, pose[k]));
+            for leg in 0..3 {
+                run.log.get(Channel::Length(leg)).into_iter().for_each(|q| widen(3, q[row]));
             }
         }
     }
-    let middle = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
+    let middle = ranges.map(|[low, high]| 0.5 * (low + high));
     // A pose that does not vary has no scale of its own: a millimetre, a milliradian.
-    let reach = [0, 1, 2].map(|k| (0.5 * (high[k] - low[k])).max(1e-3));
-    Map { depends_on, middle, reach, coefficients: Vec::new() }
+    let reach = ranges.map(|[low, high]| (0.5 * (high - low)).max(1e-3));
+    Map {
+        depends_on,
+        middle: [0, 1, 2].map(|k| middle[k]),
+        reach: [0, 1, 2].map(|k| reach[k]),
+        lengths: [middle[3], reach[3]],
+        coefficients: Vec::new(),
+    }
 }
 
-/// Change of the residual in units of noise by each coefficient, leg by leg: a force on a rod is force
-/// that the drive need not give.
-fn columns(
-    case: &Case,
-    baseline: &super::model::Baseline,
-    on: &[Segment],
-    map: &Map,
-) -> DMatrix<f64> {
-    // Features of each leg at each row of each run.
-    let table: Vec<[Vec<Vec<f64>>; 3]> = case
-        .runs
-        .iter()
-        .map(|run| {
-            let mut commands = [Command::default(); 3];
-            let mut legs = [const { Vec::new() }; 3];
-            for row in 0..run.log.samples {
-                run.commands.at(row as f64 * run.log.interval, &mut commands);
-                let [pose, rate] = run.lens.motion(row);
-                for (leg, rows) in legs.iter_mut().enumerate() {
-                    let speed = run.lens.speed(row, leg);
-                    rows.push(map.features(Motion { pose, rate }, &commands, speed));
-                }
-            }
-            legs
-        })
-        .collect();
-    let features = table[0][0][0].len();
-    let columns: Vec<DVector<f64>> = (0..3)
-        .flat_map(|leg| (0..features).map(move |k| (leg, k)))
-        .map(|(leg, k)| {
-            case.white_forces(baseline, on, &|run, of, row| {
-                if of == leg { table[run][leg][row][k] } else { 0.0 }
-            })
-        })
-        .collect();
-    DMatrix::from_columns(&columns)
+/// Change of a target's residual by each coefficient of a map, component by component: it is linear in
+/// them.
+fn columns(target: &Target, white: &DVector<f64>, map: &Map) -> Option<DMatrix<f64>> {
+    let origin = Motion::default();
+    let features = map.features(origin, &[Command::default(); 3]).len();
+    let components = map.components(3);
+    let columns = (0..components * features).into_par_iter().map(|i| {
+        let mut coefficients = vec![vec![0.0; features]; components];
+        coefficients[i / features][i % features] = 1.0;
+        let unit = Setting::unnamed(Map { coefficients, ..map.clone() });
+        Some(target.look(&[unit])?.white - white)
+    });
+    Some(DMatrix::from_columns(&columns.collect::<Option<Vec<_>>>()?))
 }

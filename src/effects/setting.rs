@@ -190,6 +190,7 @@ impl Serialize for Setting {
             map.serialize_entry("depends_on", &unnamed.depends_on)?;
             map.serialize_entry("middle", &unnamed.middle)?;
             map.serialize_entry("reach", &unnamed.reach)?;
+            map.serialize_entry("lengths", &unnamed.lengths)?;
             map.serialize_entry("coefficients", &unnamed.coefficients)?;
         }
         map.end()
