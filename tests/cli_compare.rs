@@ -93,3 +93,46 @@ fn bad_steps_are_refused() {
         .refused("compare --set native.restitution=1.5", &["native.restitution", "0 (no rebound)"]);
     place.refused("compare --set native.freqency=10", &["did you mean `frequency`?"]);
 }
+
+const PENDULUM: &str =
+    "--set mechanism.kind=pendulum --set environment.gravity=[0,-9.81] --set effect=[]";
+
+/// A machine with one joint and without actuators: nothing is said of what it does not have.
+#[test]
+fn a_pendulum_with_clearance_is_compared() {
+    let place = Place::new();
+    let line = "compare --duration 0.3 --steps 2e-5,1e-5 --starts 3 --out p --json";
+    let out = place.good(&format!("{line} {PENDULUM}"));
+    let json: Value = serde_json::from_str(&out).unwrap();
+    let (rows, verdicts) = (json["rows"].as_array().unwrap(), json["verdicts"].as_array().unwrap());
+    assert_eq!(verdicts.len(), 13, "{verdicts:?}");
+    for row in rows {
+        for key in ["peak_actuator_force_N", "rms_actuator_force_deviation_N"] {
+            assert!(row["quantities"][key]["mean"].is_null(), "{row}");
+        }
+    }
+    assert!(verdicts.iter().all(|v| !v["quantity"].as_str().unwrap().contains("actuator")));
+    // Without clearance the arm is where the ideal swing is: a mean of 10 ms deviates by the errors of
+    // two steps, not by the swing's own 10 m/s².
+    let ideal = rows.last().unwrap();
+    assert_eq!((&ideal["law"], &ideal["step_s"]), (&"ideal".into(), &Value::Null));
+    let smooth = &ideal["quantities"]["rms_smooth_acceleration_deviation_m_s2"]["mean"];
+    assert!(smooth.as_f64().unwrap() < 1e-3, "{smooth}");
+    // Starts differ: three equal runs would have no scatter.
+    let law = rows.iter().find(|row| row["step_s"].is_null()).unwrap();
+    assert_eq!(law["law"], "hertz-step");
+    let peak = &law["quantities"]["rms_acceleration_deviation_m_s2"];
+    assert!(peak["sem"].as_f64().unwrap() > 0.0, "{peak}");
+}
+
+#[test]
+fn a_machine_without_revolute_joints_is_refused() {
+    let place = Place::new();
+    let stage = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/drive-stage.toml");
+    let fragments = ["drive-stage.toml:7: mechanism.kind: has no revolute joint", "\"pendulum\""];
+    place.refused(&format!("compare {stage} --duration 0.3"), &fragments);
+    place.refused(
+        "compare --set mechanism.kind=drive-stage --duration 0.3",
+        &["--set mechanism.kind: has no revolute joint"],
+    );
+}

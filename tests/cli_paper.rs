@@ -141,6 +141,12 @@ fn wrong_input_is_refused() {
     place.refused("paper --set motion.phi=0", &["motion.phi", "singular"]);
     place.refused("paper --set motion.radius=0.09", &["motion.radius", "0.2 to 0.4 m"]);
     place.refused("paper --set motion.center=[0,0.015]", &["stroke", "variant `phi-90`"]);
+    for kind in ["pendulum", "drive-stage"] {
+        place.refused(
+            &format!("paper --set mechanism.kind={kind}"),
+            &["--set mechanism.kind: is not the paper's machine", "expected \"3rpr\""],
+        );
+    }
     assert_eq!(place.freeplay("paper --phases 1").code, 2);
     assert_eq!(place.freeplay("paper scenario.toml").code, 2);
 }

@@ -67,11 +67,12 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let mut scenario = arguments.scenario.load()?;
     scenario.contact.law = Law::HertzStep;
     refuse_errors(findings(&scenario, &assemble(&scenario)?))?;
+    let simulated = simulated_time(&scenario, &options)?;
     let out = arguments.folder.out.clone();
     let out = out.unwrap_or_else(|| default_name("compare", &scenario.name));
     let folder = Folder::prepare(&out, COMPARE_FILE, arguments.folder.force)?;
 
-    let mut progress = Progress::new(simulated_time(&scenario, &options)?, arguments.print.quiet);
+    let mut progress = Progress::new(simulated, arguments.print.quiet);
     let compared = compare(&scenario, &options, folder, &mut |t| progress.reached(t));
     progress.clear();
     let compared = compared?;

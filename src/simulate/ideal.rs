@@ -21,6 +21,8 @@ pub struct Ideal {
 pub struct IdealInstant<'a> {
     /// Position of the output body's centre of mass in m.
     pub position: Vector2<f64>,
+    /// Its velocity in m/s.
+    pub velocity: Vector2<f64>,
     /// Acceleration of the output body (m/s², m/s², rad/s²).
     pub acceleration: Vector3<f64>,
     /// Force of each drive in N.
@@ -43,6 +45,7 @@ impl Ideal {
         let output = self.mechanism.output;
         IdealInstant {
             position: states[output].position,
+            velocity: states[output].twist.xy(),
             acceleration: self.now.accelerations[output],
             drive_forces: &self.now.drive_forces,
         }

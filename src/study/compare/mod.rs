@@ -70,7 +70,7 @@ pub enum CompareError {
 /// Simulated time in s of a comparison, by which its progress counts.
 ///
 /// # Errors
-/// A motion table that cannot be read.
+/// A motion table that cannot be read, a machine without joints to compare.
 pub fn simulated_time(scenario: &Scenario, options: &Options) -> Result<f64, Problem> {
     let plan = plan(scenario, options)?;
     Ok(plan.runs().len() as f64 * scenario.simulation.duration)

@@ -2,7 +2,7 @@
 
 use super::SAMPLE_INTERVAL;
 use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
-use crate::scenario::{Law, Motion, Problem, Scenario};
+use crate::scenario::{Law, Mechanism, Motion, Problem, Scenario};
 use crate::simulate::{Machine, assemble};
 use crate::study::chaos::DISPLACEMENT;
 use nalgebra::Vector2;
@@ -68,9 +68,14 @@ impl Plan {
 /// Plans a comparison.
 ///
 /// # Errors
-/// A motion table that cannot be read.
+/// A motion table that cannot be read, a machine without joints to compare.
 pub fn plan(scenario: &Scenario, options: &Options) -> Result<Plan, Problem> {
     let law = machine(scenario, Law::HertzStep, tolerance(scenario), 0, 1)?;
+    if law.mechanism.revolutes.is_empty() {
+        let message = "has no revolute joint: there are no contacts to compare";
+        let help = "expected a mechanism with clearance in its joints, \"3rpr\" or \"pendulum\"";
+        return Err(scenario.problem("mechanism.kind", message, help));
+    }
     let longest = law.mechanism.longest_step(TYPICAL_IMPACT_SPEED).unwrap_or(f64::INFINITY);
     let servo = law.mechanism.longest_servo_step().unwrap_or(f64::INFINITY);
     let mut rows = Vec::new();
@@ -98,8 +103,9 @@ pub fn tolerance(scenario: &Scenario) -> StepControl {
 }
 
 /// The machine of a scenario under a law, at start `start` of `starts`. A circle begins at `starts`
-/// points around it; any other motion has one beginning, and the platform is displaced there by the
-/// [`DISPLACEMENT`] of pairs, which chaos makes another motion of where there is chaos.
+/// points around it; any other motion has one beginning, and so has a pendulum, which follows none: the
+/// output body is displaced there by the [`DISPLACEMENT`] of pairs, which chaos makes another motion of
+/// where there is chaos.
 ///
 /// # Errors
 /// A motion table that cannot be read.
@@ -114,7 +120,9 @@ pub fn machine(
     scenario.contact.law = law;
     scenario.simulation.output_interval = SAMPLE_INTERVAL;
     let turn = TAU * start as f64 / starts as f64;
-    if let Motion::Circle(circle) = &mut scenario.motion {
+    if let (Mechanism::ThreeRpr(_), Motion::Circle(circle)) =
+        (&scenario.mechanism, &mut scenario.motion)
+    {
         circle.phase += turn;
         let mut machine = assemble(&scenario)?;
         machine.control = control;

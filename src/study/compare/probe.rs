@@ -14,7 +14,7 @@ const SMOOTHING: usize = 100;
 /// What a run came to.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    /// The compared quantities, in their order; NaN where a law has none.
+    /// The compared quantities, in their order; NaN where a law or a machine has none.
     pub values: [f64; COUNT],
     /// Steps per simulated second.
     pub steps_per_s: f64,
@@ -38,13 +38,14 @@ pub fn measure(
     let mechanism = &machine.mechanism;
     let mut recorder = Recorder::new(mechanism, settle);
     let mut probe = Probe::default();
-    let (ideal, motion) = (&mut machine.ideal, &machine.motion);
+    let ideal = &mut machine.ideal;
     let mut told = 0.0;
     let ended = engine::run(mechanism, machine.control, machine.schedule, &mut |instant| {
-        recorder.row(mechanism, instant, &ideal.at(instant.t));
+        let ideal = ideal.at(instant.t);
+        recorder.row(mechanism, instant, &ideal);
         if instant.t >= settle {
-            let platform = instant.states[mechanism.output].twist.xy();
-            probe.row(instant, platform - motion.at(instant.t).rate.xy());
+            let platform = mechanism.output_state(instant.states).twist.xy();
+            probe.row(instant, platform - ideal.velocity);
         }
         if instant.t - told > 0.01 {
             progress(instant.t - told);
@@ -106,14 +107,16 @@ impl Probe {
         let clearance = s.joints.iter().any(|joint| joint.clearance_m.is_some());
         // An ideal joint transmits forces, but nothing in it touches or gives way.
         let contact = |value: f64| if clearance { value } else { f64::NAN };
+        let driven = !machine.mechanism.prismatics.is_empty();
+        let drive = |value: f64| if driven { value } else { f64::NAN };
         let values = [
             s.rms_path_error_m,
             s.max_path_error_m,
             (self.smooth.0 / self.smooth.1 as f64).sqrt(),
             s.rms_acceleration_deviation_m_s2,
             s.peak_platform_acceleration_m_s2,
-            s.rms_actuator_force_deviation,
-            s.peak_actuator_force,
+            drive(s.rms_actuator_force_deviation),
+            drive(s.peak_actuator_force),
             contact(quantile(&self.forces, 0.5)),
             contact(quantile(&self.forces, 0.95)),
             contact(quantile(&self.forces, 0.99)),

@@ -55,9 +55,11 @@ pub struct Verdict {
     pub reason: String,
 }
 
-/// Judges every quantity.
+/// Judges every quantity that the machine has: one that no row has a value of, such as the actuator
+/// forces of a machine without actuators, is none of it.
 pub fn verdicts(comparison: &Comparison) -> Vec<Verdict> {
     let judge = |(i, quantity): (usize, &Quantity)| {
+        comparison.rows.iter().find(|row| row.quantities[i].mean.is_finite())?;
         let law = comparison.best(Law::HertzStep)?.quantities[i];
         let native: Vec<(f64, Mean)> = comparison
             .rows_of(Law::Native)

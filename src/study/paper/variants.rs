@@ -1,7 +1,7 @@
 //! What the study varies: clearances, starts, and everything that the paper leaves open.
 
 use super::PaperError;
-use crate::scenario::{Law, Motion, Problem, Problems, Scenario, Source};
+use crate::scenario::{Law, Mechanism, Motion, Problem, Problems, Scenario, Source};
 use crate::simulate::{Machine, Severity, assemble, findings};
 use crate::study::compare::SAMPLE_INTERVAL;
 use nalgebra::{Rotation2, Vector2};
@@ -92,6 +92,11 @@ pub fn scenarios(
     starts: usize,
 ) -> Result<Vec<(Variant, Scenario)>, PaperError> {
     let base = source.scenario(sets)?;
+    if !matches!(base.mechanism, Mechanism::ThreeRpr(_)) {
+        let help =
+            "expected \"3rpr\", the paper's machine: its figures and claims are about no other";
+        return Err(base.problem("mechanism.kind", "is not the paper's machine", help).into());
+    }
     if !matches!(base.motion, Motion::Circle(_) | Motion::Line(_)) {
         let help = "expected \"circle\" or \"line\": statistics are taken over starts around a \
                     circle, or over directions of a line";
