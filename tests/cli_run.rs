@@ -226,3 +226,65 @@ fn a_run_that_breaks_down_keeps_what_it_has() {
     assert!((rows - json["simulated_s"].as_f64().unwrap() / 5e-4).abs() < 3.0, "{rows}");
     assert!(place.read("h/index.html").contains("did not reach its end"));
 }
+
+/// The file system takes 50 kB a file and no more: a run of 1000 s ends there, after a fraction of a
+/// second of them.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_ends_the_run_at_once() {
+    let place = Place::new();
+    let script = "trap '' XFSZ; ulimit -f 100; exec \"$0\" run --duration 1000 --out r --quiet";
+    let started = std::time::Instant::now();
+    let output = std::process::Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_freeplay")])
+        .current_dir(place.path(""))
+        .output()
+        .unwrap();
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert!(err.starts_with("error: cannot write timeseries.csv: "), "{err}");
+    assert!(started.elapsed().as_secs() < 20, "the run went on");
+    let kept = place.entries();
+    assert!(kept.len() == 1 && kept[0].starts_with("r.partial-"), "{kept:?}");
+    assert!(err.contains(&format!("{}`", kept[0])), "{err}");
+    let text = place.read(&format!("{}/timeseries.csv", kept[0]));
+    assert!(text.starts_with("t,x,y,phi,") && text.lines().count() > 10, "{text}");
+}
+
+#[test]
+fn a_table_that_ends_early_is_warned_about() {
+    let place = Place::new();
+    let table: String = (0..=10).map(|k| format!("{},0,0,0.5\n", f64::from(k) * 1e-3)).collect();
+    place.write("path.csv", &format!("t,x,y,phi\n{table}"));
+    let motion = "--set motion.kind=table --set motion.file=path.csv";
+    for command in ["run", "check"] {
+        let done = place.freeplay(&format!("{command} {motion} --duration 0.02"));
+        let fragments = ["warning: ", "motion.file: ends at t = 0.01 s, and the run at 0.02 s"];
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert!(fragments.iter().all(|fragment| done.err.contains(fragment)), "{}", done.err);
+    }
+    place.good(&format!("check {motion} --duration 0.01"));
+}
+
+#[test]
+fn effects_are_added_by_their_kind() {
+    let place = Place::new();
+    let ideal = "run --duration 0.02 --set contact.law=ideal";
+    place.good(&format!(
+        "{ideal} --out a --set effect.0.kind=payload --set effect.0.mass_kg=0.1 \
+         --set effect.1.kind=drag --set effect.1.force_Ns_m=0.5"
+    ));
+    place.good(&format!(
+        "{ideal} --out b --set \
+         effect=[{{kind=\"payload\",mass_kg=0.1}},{{kind=\"drag\",force_Ns_m=0.5}}]"
+    ));
+    assert_eq!(place.read("a/timeseries.csv"), place.read("b/timeseries.csv"));
+    assert_eq!(place.read("a/scenario.toml"), place.read("b/scenario.toml"));
+    for (set, fragments) in [
+        ("effect.0.mass_kg=1", ["`effect` is a list of 0", "--set effect.0.kind=…"]),
+        ("effect.1.kind=drag", ["`effect` is a list of 0", "it has no 1"]),
+        ("effect.0.kind=paylode", ["effect.0.kind", "\"paylode\" is not an effect"]),
+    ] {
+        place.refused(&format!("run --set {set}"), &fragments);
+    }
+}

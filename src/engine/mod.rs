@@ -23,7 +23,7 @@ pub use colliders::{JointColliders, Solver};
 pub use dispatcher::RingDispatcher;
 pub use ring::BearingRing;
 pub use run::{
-    Halt, Instant, Peaks, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Tally, Work, run,
+    Halt, Instant, Peaks, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Tally, Work, run, run_while,
 };
 
 use nalgebra::Vector2;

@@ -5,6 +5,7 @@ use super::fixed::Fixed;
 use super::native::Native;
 use crate::contact::Contact;
 use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
+use std::ops::ControlFlow;
 
 /// How the time step is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,6 +152,22 @@ pub fn run(
     schedule: Schedule,
     observe: &mut dyn FnMut(&Instant),
 ) -> Result<Work, Halt> {
+    run_while(mechanism, control, schedule, &mut |instant| {
+        observe(instant);
+        ControlFlow::Continue(())
+    })
+}
+
+/// [`run`] with an `observe` that may end it early: the work is then what was done until that row.
+///
+/// # Errors
+/// [`Halt`] when a state turns impossible; the rows handed out before stand.
+pub fn run_while(
+    mechanism: &Mechanism,
+    control: StepControl,
+    schedule: Schedule,
+    observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
+) -> Result<Work, Halt> {
     let native = mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Native { .. }));
     match control {
         StepControl::Fixed(step) if native => {
@@ -180,7 +197,7 @@ fn drive(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
-    observe: &mut dyn FnMut(&Instant),
+    observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
     let mut work = Work { smallest_step: f64::INFINITY, ..Work::default() };
     let mut watch = Watch::new(mechanism);
@@ -217,7 +234,10 @@ fn drive(
         }
         let Watch { tallies, peaks, .. } = &watch;
         let (states, evaluation) = (stepper.states(), stepper.evaluation());
-        observe(&Instant { t, states, evaluation, tallies, peaks: *peaks });
+        let instant = Instant { t, states, evaluation, tallies, peaks: *peaks };
+        if observe(&instant).is_break() {
+            break;
+        }
         watch.new_row();
     }
     Ok(work)

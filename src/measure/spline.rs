@@ -30,6 +30,11 @@ impl CubicSpline {
         Self { t: t.to_vec(), value: value.to_vec(), curvature }
     }
 
+    /// The last sample's t.
+    pub fn end(&self) -> f64 {
+        self.t[self.t.len() - 1]
+    }
+
     /// Value, first and second derivative at `t`; outside the samples the nearest end, at rest.
     pub fn at(&self, t: f64) -> [f64; 3] {
         let last = self.t.len() - 1;

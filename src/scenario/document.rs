@@ -40,7 +40,7 @@ impl Document {
     /// Applies one `PATH=VALUE`.
     ///
     /// Missing sections are made on the way. A number in the path counts the elements of a list
-    /// from 0. A new `kind` starts its section afresh: what the file gave for the old kind (but
+    /// from 0, and the number after the last makes a new one if its `kind` is what is set. A new `kind` starts its section afresh: what the file gave for the old kind (but
     /// not what earlier overrides gave) is dropped, because it means nothing to the new one.
     pub(super) fn set(&mut self, assignment: &str) -> Result<(), Problem> {
         let (path, value) = assignment.split_once('=').unwrap_or((assignment, ""));
@@ -69,15 +69,16 @@ impl Document {
         if let Some(section) = path.strip_suffix(".kind") {
             self.forget_other_kind(section, &value);
         }
-        let mut node = child_of_table(&mut self.table, keys[0]);
+        let mut node = child_of_table(&mut self.table, keys[0], &keys[1..]);
         let mut so_far = keys[0].to_owned();
         self.origins.record_set(&so_far, &path);
-        for key in &keys[1..] {
-            node = child(node, key).map_err(|reason| {
-                problem(
-                    format!("`{so_far}` {reason}"),
-                    &format!("set the whole of it: --set {so_far}=…"),
-                )
+        for (i, key) in (1..).zip(&keys[1..]) {
+            node = child(node, key, &keys[i + 1..]).map_err(|reason| {
+                let mut help = format!("set the whole of it: --set {so_far}=…");
+                if so_far == "effect" {
+                    help.push_str(", or begin an effect by its kind: --set effect.0.kind=…");
+                }
+                problem(format!("`{so_far}` {reason}"), &help)
             })?;
             so_far = format!("{so_far}.{key}");
             self.origins.record_set(&so_far, &path);
@@ -185,15 +186,22 @@ pub(super) fn join(prefix: &str, key: &str) -> String {
     if prefix.is_empty() { key.to_owned() } else { format!("{prefix}.{key}") }
 }
 
-fn child_of_table<'a>(table: &'a mut Table, key: &str) -> &'a mut Value {
-    table.entry(key).or_insert_with(|| Value::Table(Table::new()))
+/// What is under `key`; if nothing is, a list or a section, by what is sought in it, `rest`.
+fn child_of_table<'a>(table: &'a mut Table, key: &str, rest: &[&str]) -> &'a mut Value {
+    let list = rest.first().is_some_and(|key| key.parse::<usize>().is_ok());
+    table
+        .entry(key)
+        .or_insert_with(|| if list { Value::Array(Vec::new()) } else { Value::Table(Table::new()) })
 }
 
-fn child<'a>(node: &'a mut Value, key: &str) -> Result<&'a mut Value, String> {
+fn child<'a>(node: &'a mut Value, key: &str, rest: &[&str]) -> Result<&'a mut Value, String> {
     match node {
-        Value::Table(table) => Ok(child_of_table(table, key)),
+        Value::Table(table) => Ok(child_of_table(table, key, rest)),
         Value::Array(elements) => {
             let count = elements.len();
+            if rest == ["kind"] && key.parse() == Ok(count) {
+                elements.push(Value::Table(Table::new()));
+            }
             key.parse()
                 .ok()
                 .and_then(|i: usize| elements.get_mut(i))

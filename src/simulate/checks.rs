@@ -63,6 +63,7 @@ pub fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
     found.extend(step(scenario, machine));
     found.extend(rows(scenario));
     found.extend(conformal(scenario));
+    found.extend(table_end(scenario, machine));
     found
 }
 
@@ -100,6 +101,20 @@ fn two_digits_below(limit: f64) -> f64 {
     let unit = 10f64.powf(limit.log10().floor() - 1.0);
     // 1e-9 forgives rounding where the limit has two digits itself.
     (limit / unit + 1e-9).floor() * unit
+}
+
+/// A motion table that ends before the run does: the machine is commanded to stop there, at once.
+fn table_end(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
+    let (end, duration) = (machine.motion.known_until(), scenario.simulation.duration);
+    // 1e-9 forgives rounding.
+    (end < duration * (1.0 - 1e-9)).then(|| {
+        let message = format!(
+            "ends at t = {end} s, and the run at {duration} s: from there on the motion rests at the \
+             last row's pose"
+        );
+        let help = format!("simulate {end} s (--duration), or give a table with more rows");
+        Finding::warning(scenario.problem("motion.file", message, help))
+    })
 }
 
 /// Too few rows for peaks and means.

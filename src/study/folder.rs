@@ -121,9 +121,18 @@ impl Folder {
     }
 }
 
+impl Folder {
+    /// Leaves what was written under the name that it has now, and says that name: half a result is
+    /// worth more than none, but it is not the result.
+    pub fn keep(mut self) -> PathBuf {
+        std::mem::take(&mut self.partial)
+    }
+}
+
 impl Drop for Folder {
     fn drop(&mut self) {
-        // After `finish` there is nothing left under this name. A failure to tidy up is no news.
+        // After `finish` there is nothing left under this name, after `keep` there is no name. A
+        // failure to tidy up is no news.
         let _ = fs::remove_dir_all(&self.partial);
     }
 }

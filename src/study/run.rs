@@ -12,6 +12,7 @@ use crate::simulate::{Machine, Recorder, Summary, TimeSeries};
 use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant as Clock;
 
@@ -46,6 +47,16 @@ pub enum RunError {
         /// Why.
         source: io::Error,
     },
+    /// A file of a run cannot be written, and others were.
+    #[error("cannot write {file}: {source}; what was written before is in `{}`", kept.display())]
+    Cut {
+        /// Its name.
+        file: String,
+        /// Why.
+        source: io::Error,
+        /// Where the others are.
+        kept: PathBuf,
+    },
     /// A picture cannot be drawn.
     #[error(transparent)]
     Picture(#[from] ReportError),
@@ -64,13 +75,30 @@ pub(crate) fn refused(file: &str) -> impl FnOnce(io::Error) -> RunError {
 /// reached, in s. A run that breaks down is written up to there; its summary says so in `halted`.
 ///
 /// # Errors
-/// [`RunError`], if files cannot be written; the folder is left as it was.
+/// [`RunError`]; the folder is left as it was. A file that cannot be written ends the run at once, and
+/// those written before are kept beside it.
 pub fn run(
     scenario: &Scenario,
     machine: &mut Machine,
     folder: Folder,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Outcome, RunError> {
+    match run_into(scenario, machine, &folder, progress) {
+        Ok((summary, json)) => Ok(Outcome { summary, json, folder: folder.finish()? }),
+        Err(RunError::File { file, source }) => {
+            Err(RunError::Cut { file, source, kept: folder.keep() })
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// The summary, and the text of its file.
+fn run_into(
+    scenario: &Scenario,
+    machine: &mut Machine,
+    folder: &Folder,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(Summary, String), RunError> {
     let started = Clock::now();
     let mechanism = &machine.mechanism;
     let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
@@ -81,11 +109,10 @@ pub fn run(
     let phi = machine.motion.at(0.0).pose.z;
     let mut series =
         TimeSeries::new(BufWriter::new(file), mechanism, phi).map_err(refused(TIME_SERIES_FILE))?;
-    // The engine cannot be stopped from here: the first refusal is kept, later rows are not tried.
     let mut written = Ok(());
     let mut positions = Vec::new();
     let ideal = &mut machine.ideal;
-    let ended = engine::run(mechanism, machine.control, machine.schedule, &mut |instant| {
+    let ended = engine::run_while(mechanism, machine.control, machine.schedule, &mut |instant| {
         let ideal = ideal.at(instant.t);
         recorder.row(mechanism, instant, &ideal);
         gallery.row(mechanism, instant, &ideal);
@@ -93,10 +120,9 @@ pub fn run(
         if instant.t <= chaos::WINDOW {
             positions.push(mechanism.output_state(instant.states).position);
         }
-        if written.is_ok() {
-            written = series.row(mechanism, instant);
-        }
         progress(instant.t);
+        written = series.row(mechanism, instant);
+        if written.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     written.and_then(|()| series.finish()).map_err(refused(TIME_SERIES_FILE))?;
     let (work, halted) = match ended {
@@ -132,7 +158,7 @@ pub fn run(
     write(PAGE_FILE, &page(&summary, &pictures))?;
     write(PLAYER_FILE, &film.player())?;
     write(ANIMATION_FILE, &film.animation())?;
-    Ok(Outcome { summary, json, folder: folder.finish()? })
+    Ok((summary, json))
 }
 
 /// Pretty JSON with a line break at the end.

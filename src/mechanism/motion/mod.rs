@@ -24,4 +24,9 @@ pub struct PathPoint {
 pub trait Motion: Debug + Send + Sync {
     /// The motion at time `t` in s.
     fn at(&self, t: f64) -> PathPoint;
+
+    /// Time in s up to which somebody has said what to do; endless where a formula does.
+    fn known_until(&self) -> f64 {
+        f64::INFINITY
+    }
 }

@@ -90,4 +90,8 @@ impl Motion for Table {
         let pick = |k: usize| Vector3::from(columns.map(|c| c[k]));
         PathPoint { pose: pick(0), rate: pick(1), acceleration: pick(2) }
     }
+
+    fn known_until(&self) -> f64 {
+        self.splines[0].end()
+    }
 }
