@@ -5,7 +5,7 @@ mod cli_common;
 use cli_common::{Place, names};
 use serde_json::Value;
 
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
     "beginning.svg",
     "chaos.svg",
     "compare.csv",
@@ -14,6 +14,7 @@ const FILES: [&str; 8] = [
     "index.html",
     "over-step.svg",
     "scenario.toml",
+    "table.md",
 ];
 
 #[test]
@@ -135,4 +136,43 @@ fn a_machine_without_revolute_joints_is_refused() {
         "compare --set mechanism.kind=drive-stage --duration 0.3",
         &["--set mechanism.kind: has no revolute joint"],
     );
+}
+
+/// The table of the README, between its two comments.
+fn table_of_readme() -> &'static str {
+    let readme = include_str!("../README.md");
+    let (_, rest) = readme.split_once("<!-- table.md -->\n").expect("begins");
+    rest.split_once("<!-- end of table.md -->").expect("ends").0
+}
+
+/// Its shape from a short comparison: what stands in the cells takes a whole one.
+#[test]
+fn the_readme_shows_the_table_that_compare_writes() {
+    let place = Place::new();
+    place.good("compare --duration 0.06 --starts 2 --out c --quiet");
+    let table = place.read("c/table.md");
+    assert_eq!(table.lines().count(), table_of_readme().lines().count());
+    for (k, (ours, readme)) in table.lines().zip(table_of_readme().lines()).enumerate() {
+        let cells =
+            |line: &str| line.split('|').map(str::trim).map(String::from).collect::<Vec<_>>();
+        let (ours, readme) = (cells(ours), cells(readme));
+        assert_eq!((ours.len(), &ours[1]), (readme.len(), &readme[1]));
+        if k < 2 {
+            assert_eq!(ours, readme);
+            continue;
+        }
+        for (ours, readme) in ours.iter().zip(&readme) {
+            let unit =
+                |cell: &str| cell.split(' ').nth(1).unwrap_or("").trim_end_matches(',').to_owned();
+            assert!(!ours.contains('–') && unit(ours) == unit(readme), "{ours} and {readme}");
+        }
+    }
+}
+
+#[test]
+#[ignore = "a whole comparison: half a minute on two cores"]
+fn the_readmes_table_is_that_of_the_default_comparison() {
+    let place = Place::new();
+    place.good("compare --quiet");
+    assert_eq!(place.read("freeplay-compare-default/table.md"), table_of_readme());
 }

@@ -304,16 +304,7 @@ fn residuals(report: &Report) -> Table {
 fn provenance(case: &Case, report: &Report) -> Vec<(String, String)> {
     let runs: Vec<&str> = case.runs.iter().map(|run| run.log.name.as_str()).collect();
     let replicas = report.seeds.replicas.len();
-    let entries = [
-        (
-            "Program",
-            format!(
-                "{} {}, on rapier2d-f64 {}",
-                report.program, report.version, report.rapier_version
-            ),
-        ),
-        ("Rig", report.scenario_name.clone()),
-        ("SHA-256 of the rig", report.scenario_hash.clone()),
+    let more = [
         ("Runs", runs.join(", ")),
         (
             "Excluded effects",
@@ -325,5 +316,5 @@ fn provenance(case: &Case, report: &Report) -> Vec<(String, String)> {
         ("Figures", "report.json beside this page".to_owned()),
         ("Time of computing", format!("{} s", number(report.wall_s))),
     ];
-    entries.map(|(label, value)| (label.to_owned(), value)).into()
+    report.provenance.lines("rig", None, more)
 }

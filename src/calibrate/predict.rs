@@ -12,11 +12,12 @@ use super::recording::Recording;
 use super::replica;
 use super::report::RattleReport;
 use super::result::{CalibrateError, control, refuse, sensors, to_json};
-use crate::engine::{Halt, RAPIER_VERSION};
+use crate::engine::Halt;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use crate::report::Style;
 use crate::scenario::{self, Law, Problem, Scenario};
+use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -34,16 +35,9 @@ const PREDICTED_FILE: &str = "predicted.csv";
 /// `errors.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Prediction {
-    /// The program that wrote this: how a result is told from other files.
-    pub program: &'static str,
-    /// Its version.
-    pub version: &'static str,
-    /// Version of the physics engine underneath.
-    pub rapier_version: &'static str,
-    /// Name of the model.
-    pub scenario_name: String,
-    /// SHA-256 of the model, overrides included.
-    pub scenario_hash: String,
+    /// Program, versions, model.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// The log.
     pub run: String,
     /// Names of the model's effects.
@@ -156,11 +150,7 @@ pub fn into_folder(
     let pictures = charts::of_run(&recording.log, "prediction", &models).map_err(RunError::from)?;
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let prediction = Prediction {
-        program: env!("CARGO_PKG_NAME"),
-        version: env!("CARGO_PKG_VERSION"),
-        rapier_version: RAPIER_VERSION,
-        scenario_name: model.name.clone(),
-        scenario_hash: model.hash(),
+        provenance: Provenance::of(model),
         run: recording.log.name.clone(),
         effects: model.effects.iter().map(super::search::name).collect(),
         errors,

@@ -24,7 +24,7 @@ pub fn page(prediction: &Prediction, pictures: &[Picture]) -> String {
     parts.push(Part::Provenance(&provenance));
     let lead = format!(
         "{}, {effects}, driven by the commands of {}. {}",
-        prediction.scenario_name,
+        prediction.provenance.scenario_name,
         prediction.run,
         if prediction.rattle.chaotic {
             format!(
@@ -39,13 +39,10 @@ pub fn page(prediction: &Prediction, pictures: &[Picture]) -> String {
 }
 
 fn provenance(p: &Prediction) -> Vec<(String, String)> {
-    let entries = [
-        ("Program", format!("{} {}, on rapier2d-f64 {}", p.program, p.version, p.rapier_version)),
-        ("Model", p.scenario_name.clone()),
-        ("SHA-256 of the model", p.scenario_hash.clone()),
+    let more = [
         ("Run", p.run.clone()),
         ("Figures", "errors.json, predicted.csv beside this page".to_owned()),
         ("Time of computing", format!("{} s", number(p.wall_s))),
     ];
-    entries.map(|(label, value)| (label.to_owned(), value)).into()
+    p.provenance.lines("model", None, more)
 }

@@ -7,24 +7,18 @@ use super::outcome::{Outcome, Verdict, evidence};
 use super::rattle::Rattle;
 use super::search::name;
 use crate::effects::{DependsOn, Setting};
-use crate::engine::{RAPIER_VERSION, StepControl};
+use crate::engine::StepControl;
 use crate::scenario::Scenario;
+use crate::simulate::Provenance;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 /// The report. Keys are promised to scripts; see the README.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// The program that wrote this: how a result is told from other files.
-    pub program: &'static str,
-    /// Its version.
-    pub version: &'static str,
-    /// Version of the physics engine underneath.
-    pub rapier_version: &'static str,
-    /// Name of the rig.
-    pub scenario_name: String,
-    /// SHA-256 of the rig as declared, overrides included.
-    pub scenario_hash: String,
+    /// Program, versions, rig as declared.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// What the calibration comes to.
     pub verdict: Verdict,
     /// The same in a sentence or two.
@@ -170,11 +164,7 @@ impl Report {
         let Sources { case, outcome, rattle, without } = from;
         let rig = &case.rig;
         Self {
-            program: env!("CARGO_PKG_NAME"),
-            version: env!("CARGO_PKG_VERSION"),
-            rapier_version: RAPIER_VERSION,
-            scenario_name: rig.name.clone(),
-            scenario_hash: rig.hash(),
+            provenance: Provenance::of(rig),
             verdict: outcome.verdict,
             summary: summary(outcome),
             effects: outcome

@@ -126,7 +126,7 @@ fn without(names: &[String]) -> Result<Vec<&'static str>, Failure> {
 /// The result for people.
 fn text(calibrated: &Calibrated) -> String {
     let report = &calibrated.report;
-    let mut text = format!("{}: {}\n", report.scenario_name, report.summary);
+    let mut text = format!("{}: {}\n", report.provenance.scenario_name, report.summary);
     // Writing to a string cannot fail, here and below.
     for effect in &report.effects {
         let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));

@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 /// at its tolerance), from several starts. The results go into a new folder: index.html (look at this
 /// first; it ends with a plain answer: what native contacts may be used for in this machine, and what
 /// not), compare.json, compare.csv (a row per law and step, means over the starts with their standard
-/// errors, SI units), scenario.toml and pictures (SVG).
+/// errors, SI units), table.md (the main figures, to be pasted), scenario.toml and pictures (SVG).
 ///
 /// The native contacts are given a spring that lasts as long and returns as much speed in one hit as
 /// the law; [native] in the scenario sets them otherwise.
@@ -122,7 +122,7 @@ fn text(compared: &Compared) -> String {
     let c = &compared.comparison;
     let mut text = format!(
         "{}: {} starts of {} s, compared in {} s\n\n",
-        c.scenario_name,
+        c.provenance.scenario_name,
         c.starts,
         number(c.duration_s),
         number(c.wall_s)

@@ -70,7 +70,8 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
 fn text(predicted: &Predicted) -> String {
     let p = &predicted.prediction;
     let effects = if p.effects.is_empty() { "none".to_owned() } else { p.effects.join(", ") };
-    let mut text = format!("{} along {}; effects: {effects}\n\n", p.scenario_name, p.run);
+    let mut text =
+        format!("{} along {}; effects: {effects}\n\n", p.provenance.scenario_name, p.run);
     // Writing to a string cannot fail, here and below.
     let _ = writeln!(
         text,

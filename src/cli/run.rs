@@ -71,7 +71,7 @@ fn text(outcome: &Outcome) -> String {
     let s = &outcome.summary;
     let mut text = format!(
         "{}: {} s simulated in {} s, {} steps\n\n",
-        s.scenario_name,
+        s.provenance.scenario_name,
         number(s.simulated_s),
         number(s.wall_s),
         s.steps

@@ -87,7 +87,7 @@ pub(super) fn print(outcome: &Outcome, title: &str, options: &PrintOptions) -> R
         let page = outcome.folder.join("index.html");
         output::print(&format!(
             "{}: {} of {} runs, {title}: {} ok, {} halted, {} refused\n\nWritten to {}; open {}\n",
-            record.identity.scenario_name,
+            record.identity.provenance.scenario_name,
             record.finished,
             record.runs_of_shard,
             record.ok,

@@ -2,7 +2,8 @@
 
 use super::assemble::{Machine, radial_clearance};
 use super::ideal::IdealInstant;
-use crate::engine::{Instant, RAPIER_VERSION, StepControl, Work};
+use super::provenance::Provenance;
+use crate::engine::{Instant, StepControl, Work};
 use crate::mechanism::Mechanism;
 use crate::scenario::{DriveMode, Law, Scenario};
 use serde::Serialize;
@@ -11,16 +12,9 @@ use serde::Serialize;
 /// of them are NaN (`null` in JSON) if a run ended before.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// The program that wrote this: how a result is told from other files.
-    pub program: &'static str,
-    /// Its version.
-    pub version: &'static str,
-    /// Version of the physics engine underneath.
-    pub rapier_version: &'static str,
-    /// Name of the scenario.
-    pub scenario_name: String,
-    /// SHA-256 of the effective scenario.
-    pub scenario_hash: String,
+    /// Program, versions, scenario.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// Seed of all random numbers.
     pub seed: u64,
     /// Contact law.
@@ -241,11 +235,7 @@ impl Recorder {
             StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
         };
         Summary {
-            program: env!("CARGO_PKG_NAME"),
-            version: env!("CARGO_PKG_VERSION"),
-            rapier_version: RAPIER_VERSION,
-            scenario_name: scenario.name.clone(),
-            scenario_hash: scenario.hash(),
+            provenance: Provenance::of(scenario),
             seed: scenario.seed,
             law: scenario.contact.law,
             drive: scenario.drive.mode,

@@ -1,13 +1,13 @@
 //! The page of a run: the main result in words, the figures in a table, the pictures.
 
-use super::run::PLAYER_FILE;
+use super::run::{PLAYER_FILE, SCENARIO_FILE};
 use crate::report::{self, Fact, Part, Picture, length, number};
 use crate::scenario::{DriveMode, Law};
 use crate::simulate::Summary;
 
 /// The page as HTML.
 pub(super) fn page(summary: &Summary, pictures: &[Picture]) -> String {
-    let title = format!("Run: {}", summary.scenario_name);
+    let title = format!("Run: {}", summary.provenance.scenario_name);
     let (facts, provenance) = (facts(summary), provenance(summary));
     let player =
         Part::Link { file: PLAYER_FILE, text: "▶ Watch the machine and its joints move" };
@@ -176,17 +176,14 @@ fn provenance(s: &Summary) -> Vec<(String, String)> {
         DriveMode::Servo => "servo",
         DriveMode::Sampled => "sampled controller",
     };
-    let entries = [
-        ("Program", format!("{} {}, on rapier2d-f64 {}", s.program, s.version, s.rapier_version)),
-        ("Scenario", format!("{} (scenario.toml beside this page)", s.scenario_name)),
-        ("SHA-256 of the scenario", s.scenario_hash.clone()),
+    let more = [
         ("Seed", s.seed.to_string()),
         ("Contact law", law(s.law).to_owned()),
         ("Drive", drive.to_owned()),
         ("Step", step),
         ("Figures leave out", format!("the first {} s", number(s.settle_s))),
     ];
-    entries.into_iter().map(|(label, value)| (label.to_owned(), value)).collect()
+    s.provenance.lines("scenario", Some(SCENARIO_FILE), more)
 }
 
 fn law(law: Law) -> &'static str {

@@ -9,6 +9,7 @@ mod probe;
 mod quantities;
 mod result;
 mod statistics;
+mod table;
 mod verdict;
 
 pub use first_hit::{FirstHit, FirstHits};
@@ -21,14 +22,13 @@ pub use verdict::{Use, Verdict, in_words};
 
 use super::chaos::{self, Chaos};
 use super::folder::Folder;
-use super::run::{RunError, refused};
-use crate::engine::{self, RAPIER_VERSION, StepControl};
+use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused};
+use crate::engine::{self, StepControl};
 use crate::scenario::{Law, Problem, Scenario};
-use crate::simulate::FIT_SPEED;
+use crate::simulate::{FIT_SPEED, Provenance};
 use plan::{Plan, machine, plan, tolerance};
 use probe::{Measured, measure};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -42,8 +42,7 @@ pub const SAMPLE_INTERVAL: f64 = 1e-4;
 pub const COMPARE_FILE: &str = "compare.json";
 
 const TABLE_FILE: &str = "compare.csv";
-const SCENARIO_FILE: &str = "scenario.toml";
-const PAGE_FILE: &str = "index.html";
+const SUMMARY_FILE: &str = "table.md";
 
 /// What a comparison came to.
 #[derive(Debug)]
@@ -111,11 +110,7 @@ pub fn compare(
         runs[*row].push(measured);
     }
     let mut comparison = Comparison {
-        program: env!("CARGO_PKG_NAME"),
-        version: env!("CARGO_PKG_VERSION"),
-        rapier_version: RAPIER_VERSION,
-        scenario_name: scenario.name.clone(),
-        scenario_hash: scenario.hash(),
+        provenance: Provenance::of(scenario),
         seed: scenario.seed,
         drive: scenario.drive.mode,
         duration_s: scenario.simulation.duration,
@@ -136,13 +131,15 @@ pub fn compare(
     comparison.answer = verdict::answer(&comparison);
 
     let pictures = pictures::draw(scenario, &comparison, &plan, &runs, &looks)?;
-    let texts = [COMPARE_FILE, TABLE_FILE, SCENARIO_FILE, PAGE_FILE].map(str::to_owned);
+    let texts =
+        [COMPARE_FILE, TABLE_FILE, SUMMARY_FILE, SCENARIO_FILE, PAGE_FILE].map(str::to_owned);
     let drawn = pictures.iter().map(|picture| picture.file.clone());
     comparison.files = texts.into_iter().chain(drawn).collect();
     let json = super::run::to_json(&comparison);
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
     write(COMPARE_FILE, &json)?;
-    write(TABLE_FILE, &table(&comparison))?;
+    write(TABLE_FILE, &table::csv(&comparison))?;
+    write(SUMMARY_FILE, &table::markdown(&comparison))?;
     write(SCENARIO_FILE, &scenario.to_toml())?;
     for picture in &pictures {
         write(&picture.file, &picture.svg)?;
@@ -254,35 +251,6 @@ fn trends(comparison: &Comparison) -> Vec<TrendResult> {
         }
     }
     trends
-}
-
-/// `compare.csv`: a row per law and step.
-fn table(comparison: &Comparison) -> String {
-    let mut table = "law,step_s,tolerance_m_s,resolved,starts,halted,steps_per_s,\
-                     wall_s_per_simulated_s"
-        .to_owned();
-    for quantity in &QUANTITIES {
-        // Writing to a string cannot fail, here and below.
-        let _ = write!(table, ",{},{}_sem", quantity.key, quantity.key);
-    }
-    table.push('\n');
-    let number =
-        |value: f64| if value.is_finite() { format!("{value:.6e}") } else { String::new() };
-    for row in &comparison.rows {
-        let (law, resolved) = (law_key(row.law), row.resolved);
-        let [step, tolerance] = [row.step_s, row.tolerance_m_s]
-            .map(|v| v.map_or_else(String::new, |v| format!("{v:e}")));
-        let runs = format!("{},{}", row.starts, row.halted);
-        let _ = write!(table, "{law},{step},{tolerance},{resolved},{runs}");
-        for value in [row.steps_per_s, row.wall_s_per_simulated_s] {
-            let _ = write!(table, ",{}", number(value));
-        }
-        for mean in &row.quantities {
-            let _ = write!(table, ",{},{}", number(mean.mean), number(mean.sem));
-        }
-        table.push('\n');
-    }
-    table
 }
 
 /// A law's name as scenarios have it.

@@ -7,6 +7,7 @@ use super::statistics::Behaviour;
 use super::verdict::{Use, criteria, in_words};
 use crate::report::{Fact, Part, Picture, Table, document, length, number};
 use crate::scenario::Law;
+use crate::study::run::SCENARIO_FILE;
 
 /// The page as HTML.
 pub fn page(comparison: &Comparison, pictures: &[Picture]) -> String {
@@ -22,7 +23,7 @@ pub fn page(comparison: &Comparison, pictures: &[Picture]) -> String {
         Part::Table(verdicts(comparison)),
         Part::Text { id: "answer", title: "Answer", paragraphs: &comparison.answer },
     ];
-    let title = format!("Contact models compared: {}", comparison.scenario_name);
+    let title = format!("Contact models compared: {}", comparison.provenance.scenario_name);
     document(&title, &lead(comparison), &parts)
 }
 
@@ -242,13 +243,10 @@ fn verdicts(c: &Comparison) -> Table {
 }
 
 fn provenance(c: &Comparison) -> Vec<(String, String)> {
-    let entries = [
-        ("Program", format!("{} {}, on rapier2d-f64 {}", c.program, c.version, c.rapier_version)),
-        ("Scenario", format!("{} (scenario.toml beside this page)", c.scenario_name)),
-        ("SHA-256 of the scenario", c.scenario_hash.clone()),
+    let more = [
         ("Seed", c.seed.to_string()),
         ("Figures", "compare.json, compare.csv beside this page".to_owned()),
         ("Time of computing", format!("{} s", number(c.wall_s))),
     ];
-    entries.map(|(label, value)| (label.to_owned(), value)).into()
+    c.provenance.lines("scenario", Some(SCENARIO_FILE), more)
 }

@@ -4,22 +4,16 @@ use super::first_hit::FirstHits;
 use super::statistics::{Mean, Trend};
 use super::verdict::Verdict;
 use crate::scenario::{DriveMode, Law};
+use crate::simulate::Provenance;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
 /// The result of a comparison. Figures leave out the first `settle_s` seconds of each run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
-    /// The program that wrote this: how a result is told from other files.
-    pub program: &'static str,
-    /// Its version.
-    pub version: &'static str,
-    /// Version of the physics engine underneath.
-    pub rapier_version: &'static str,
-    /// Name of the scenario.
-    pub scenario_name: String,
-    /// SHA-256 of the effective scenario.
-    pub scenario_hash: String,
+    /// Program, versions, scenario.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// Seed of all random numbers.
     pub seed: u64,
     /// Kind of drive.

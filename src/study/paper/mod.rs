@@ -21,8 +21,8 @@ pub use variants::{CLEARANCES, Variant, scenarios};
 use super::chaos;
 use super::folder::Folder;
 use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused, to_json};
-use crate::engine::RAPIER_VERSION;
 use crate::scenario::{Problem, Problems, Scenario};
+use crate::simulate::Provenance;
 use claims::{CLAIMS, judge};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::fs;
@@ -101,11 +101,7 @@ pub fn paper(
         over_variants: Moves::of(variants.iter().map(|variant| &variant.claims[i])),
     });
     let mut paper = Paper {
-        program: env!("CARGO_PKG_NAME"),
-        version: env!("CARGO_PKG_VERSION"),
-        rapier_version: RAPIER_VERSION,
-        scenario_name: base.name.clone(),
-        scenario_hash: base.hash(),
+        provenance: Provenance::of(base),
         seed: base.seed,
         duration_s: base.simulation.duration,
         settle_s: base.simulation.settle(),

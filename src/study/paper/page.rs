@@ -5,6 +5,7 @@ use super::estimate::Estimate;
 use super::items::QUANTITIES;
 use super::result::Paper;
 use crate::report::{Part, Picture, Table, document, length, number};
+use crate::study::run::SCENARIO_FILE;
 
 /// The page as HTML.
 pub fn page(paper: &Paper, pictures: &[Picture]) -> String {
@@ -231,13 +232,10 @@ fn quantities(p: &Paper) -> Table {
 }
 
 fn provenance(p: &Paper) -> Vec<(String, String)> {
-    let entries = [
-        ("Program", format!("{} {}, on rapier2d-f64 {}", p.program, p.version, p.rapier_version)),
-        ("Scenario", format!("{} (scenario.toml beside this page)", p.scenario_name)),
-        ("SHA-256 of the scenario", p.scenario_hash.clone()),
+    let more = [
         ("Seed", p.seed.to_string()),
         ("Figures", "paper.json beside this page".to_owned()),
         ("Time of computing", format!("{} s", number(p.wall_s))),
     ];
-    entries.map(|(label, value)| (label.to_owned(), value)).into()
+    p.provenance.lines("scenario", Some(SCENARIO_FILE), more)
 }

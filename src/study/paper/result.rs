@@ -5,22 +5,16 @@ use super::estimate::RunMean;
 use super::items::{COUNT, Item, QUANTITIES};
 use super::parameters::Parameter;
 use super::probe::Values;
+use crate::simulate::Provenance;
 use crate::study::compare::Quantity;
 use serde::{Serialize, Serializer};
 
 /// The result of the study. Figures leave out the first `settle_s` seconds of each run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Paper {
-    /// The program that wrote this: how a result is told from other files.
-    pub program: &'static str,
-    /// Its version.
-    pub version: &'static str,
-    /// Version of the physics engine underneath.
-    pub rapier_version: &'static str,
-    /// Name of the scenario.
-    pub scenario_name: String,
-    /// SHA-256 of the effective scenario.
-    pub scenario_hash: String,
+    /// Program, versions, scenario.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// Seed of all random numbers.
     pub seed: u64,
     /// Simulated time of each run in s.

@@ -4,10 +4,11 @@ use super::Record;
 use super::journal::Rows;
 use super::row::{FIGURES, Status, status};
 use crate::report::{self, Fact, Picture, number};
+use crate::study::run::SCENARIO_FILE;
 
 /// The page as HTML.
 pub(super) fn page(record: &Record, rows: &Rows, pictures: &[Picture]) -> String {
-    let title = format!("Sweep: {}", record.identity.scenario_name);
+    let title = format!("Sweep: {}", record.identity.provenance.scenario_name);
     report::page(&title, &lead(record, rows), &facts(record, rows), pictures, &provenance(record))
 }
 
@@ -60,20 +61,11 @@ fn facts(record: &Record, rows: &Rows) -> Vec<Fact> {
 
 fn provenance(record: &Record) -> Vec<(String, String)> {
     let identity = &record.identity;
-    let program = format!(
-        "{} {}, on rapier2d-f64 {}",
-        identity.program, identity.version, identity.rapier_version
-    );
-    let mut entries = vec![
-        ("Program".to_owned(), program),
-        (
-            "Scenario".to_owned(),
-            format!("{} (scenario.toml beside this page)", identity.scenario_name),
-        ),
-        ("SHA-256 of the scenario".to_owned(), identity.scenario_hash.clone()),
-        ("SHA-256 of all runs' scenarios".to_owned(), identity.runs_hash.clone()),
-        ("Seed".to_owned(), identity.seed.to_string()),
+    let more = [
+        ("SHA-256 of all runs' scenarios", identity.runs_hash.clone()),
+        ("Seed", identity.seed.to_string()),
     ];
+    let mut entries = identity.provenance.lines("scenario", Some(SCENARIO_FILE), more);
     entries.extend(identity.vary.iter().map(|vary| ("Varied".to_owned(), vary.clone())));
     entries
 }

@@ -2,9 +2,8 @@
 
 use super::record::{hexadecimal, sha256};
 use super::{Design, Identity, Shard, SweepError, Vary, row};
-use crate::engine::RAPIER_VERSION;
 use crate::scenario::{Location, Motion, Problem, Scenario, Source};
-use crate::simulate::{Machine, Severity, assemble, findings};
+use crate::simulate::{Machine, Provenance, Severity, assemble, findings};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
@@ -47,11 +46,7 @@ impl Plan {
         let varied = vary.iter().map(|text| Vary::parse(text)).collect::<Result<Vec<_>, _>>()?;
         let design = Design::new(varied, base.seed)?;
         let identity = Identity {
-            program: env!("CARGO_PKG_NAME").to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            rapier_version: RAPIER_VERSION.to_owned(),
-            scenario_name: base.name.clone(),
-            scenario_hash: base.hash(),
+            provenance: Provenance::of(&base),
             seed: base.seed,
             vary: design.varied().iter().map(Vary::to_string).collect(),
             runs: design.runs(),

@@ -1,6 +1,7 @@
 //! `sweep.json`: what sweep a folder belongs to, and how far it has come.
 
 use super::{Shard, SweepError};
+use crate::simulate::Provenance;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Display;
@@ -13,16 +14,9 @@ pub const RECORD_FILE: &str = "sweep.json";
 /// What makes two sweeps the same: then their rows agree to the last digit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
-    /// The program that wrote this: how a result is told from other files.
-    pub program: String,
-    /// Its version.
-    pub version: String,
-    /// Version of the physics engine underneath.
-    pub rapier_version: String,
-    /// Name of the scenario that is varied.
-    pub scenario_name: String,
-    /// SHA-256 of that scenario, nothing varied.
-    pub scenario_hash: String,
+    /// Program, versions, scenario that is varied.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// Seed of the random sample.
     pub seed: u64,
     /// What is varied, in the order of the columns.
@@ -79,11 +73,12 @@ impl Identity {
                 found.push(format!("{what} {there} there, {here} here"));
             }
         };
-        compare("freeplay", &self.version, &here.version);
-        compare("rapier", &self.rapier_version, &here.rapier_version);
+        let (from, to) = (&self.provenance, &here.provenance);
+        compare("freeplay", &from.version, &to.version);
+        compare("rapier", &from.rapier_version, &to.rapier_version);
         compare("--vary", &self.vary.join(" --vary "), &here.vary.join(" --vary "));
-        compare("scenario", &self.scenario_name, &here.scenario_name);
-        compare("scenario hash", &short(&self.scenario_hash), &short(&here.scenario_hash));
+        compare("scenario", &from.scenario_name, &to.scenario_name);
+        compare("scenario hash", &short(&from.scenario_hash), &short(&to.scenario_hash));
         compare("seed", &self.seed, &here.seed);
         if found.is_empty() && self != here {
             found.push(

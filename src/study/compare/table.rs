@@ -1,0 +1,98 @@
+//! The tables of a comparison as files.
+
+use super::law_key;
+use super::quantities::{QUANTITIES, index};
+use super::result::{Comparison, RowResult};
+use super::verdict::in_words;
+use crate::report::number;
+use crate::scenario::Law;
+use std::fmt::Write as _;
+
+/// `compare.csv`: a row per law and step.
+pub fn csv(comparison: &Comparison) -> String {
+    let mut table = "law,step_s,tolerance_m_s,resolved,starts,halted,steps_per_s,\
+                     wall_s_per_simulated_s"
+        .to_owned();
+    for quantity in &QUANTITIES {
+        // Writing to a string cannot fail, here and below.
+        let _ = write!(table, ",{},{}_sem", quantity.key, quantity.key);
+    }
+    table.push('\n');
+    let number =
+        |value: f64| if value.is_finite() { format!("{value:.6e}") } else { String::new() };
+    for row in &comparison.rows {
+        let (law, resolved) = (law_key(row.law), row.resolved);
+        let [step, tolerance] = [row.step_s, row.tolerance_m_s]
+            .map(|v| v.map_or_else(String::new, |v| format!("{v:e}")));
+        let runs = format!("{},{}", row.starts, row.halted);
+        let _ = write!(table, "{law},{step},{tolerance},{resolved},{runs}");
+        for value in [row.steps_per_s, row.wall_s_per_simulated_s] {
+            let _ = write!(table, ",{}", number(value));
+        }
+        for mean in &row.quantities {
+            let _ = write!(table, ",{},{}", number(mean.mean), number(mean.sem));
+        }
+        table.push('\n');
+    }
+    table
+}
+
+/// Columns of `table.md`: key of the quantity, heading. Of each kind of quantity the one that says most:
+/// where the machine is, what its joints and its platform feel, how often.
+const SHOWN: [(&str, &str); 4] = [
+    ("rms_path_error_m", "rms path error"),
+    ("peak_contact_force_N", "peak contact force"),
+    ("peak_platform_acceleration_m_s2", "peak acceleration"),
+    ("impacts_per_s", "impacts"),
+];
+
+/// `table.md`: what the README shows. The law at its tolerance, then native contacts at each step; the
+/// first hit at the right, with the power of the step that its error (law) or itself (native) follows.
+pub fn markdown(comparison: &Comparison) -> String {
+    let headings: Vec<&str> = SHOWN.iter().map(|(_, heading)| *heading).collect();
+    let mut table = format!(
+        "| law, step | {} | first hit's peak force |\n|{}\n",
+        headings.join(" | "),
+        "---|".repeat(headings.len() + 2)
+    );
+    let law = comparison.best(Law::HertzStep);
+    for row in law.into_iter().chain(comparison.rows_of(Law::Native)) {
+        let cells = SHOWN.iter().filter_map(|(key, _)| {
+            let i = index(key)?;
+            Some(in_words(&QUANTITIES[i], row.quantities[i].mean))
+        });
+        let cells: Vec<String> = cells.collect();
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            table,
+            "| {} | {} | {} |",
+            name(row),
+            cells.join(" | "),
+            first_hit(comparison, row).unwrap_or_default()
+        );
+    }
+    table
+}
+
+fn name(row: &RowResult) -> String {
+    let law = if row.law == Law::Native { "rapier's contacts" } else { "law" };
+    let step = row.step_s.map_or("by tolerance".to_owned(), |step| format!("{step:e} s"));
+    format!("{law}, {step}")
+}
+
+/// The first hit of a row; none where journals do not hit.
+fn first_hit(comparison: &Comparison, row: &RowResult) -> Option<String> {
+    let hits = comparison.first_hits.as_ref()?;
+    if row.law == Law::HertzStep {
+        let exact = number(hits.exact.mean);
+        let order = hits.law_order.map(|[order, _]| format!(", error ∝ step^{order:.1}"));
+        return Some(format!("{exact} N{}", order.unwrap_or_default()));
+    }
+    let native = || hits.rows.iter().filter(|hit| hit.law == row.law);
+    let hit = native().find(|hit| Some(hit.step_s) == row.step_s)?;
+    let peak = number(hit.peak.mean);
+    // The power belongs to all steps: said once, at the last.
+    let last = native().next_back().is_some_and(|last| last.step_s == hit.step_s);
+    let power = hits.native_power.filter(|_| last).map(|[power, _]| format!(", ∝ step^{power:.1}"));
+    Some(format!("{peak} N{}", power.unwrap_or_default()))
+}
