@@ -17,7 +17,8 @@ use std::time::Instant as Clock;
 ///
 /// The results go into a folder: index.html (look at this first), sweep.csv (one row a run: the varied
 /// values, the figures of `freeplay run`'s summary.json, and `status`: ok, or halted or refused with
-/// the reason), sweep.json, and pictures. A sweep that was interrupted, in whatever way, goes on where
+/// the reason), sweep.parquet (the same with types, if this program was built with the feature
+/// `parquet`), sweep.json, and pictures. A sweep that was interrupted, in whatever way, goes on where
 /// it was when the same command is given again.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

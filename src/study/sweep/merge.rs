@@ -61,7 +61,7 @@ pub fn merge(
 
     let folder = Folder::prepare(target, RECORD_FILE, force).map_err(RunError::from)?;
     let place = folder.path();
-    put(place, JOURNAL_FILE, &journal::text(identity, &rows))?;
+    put(place, JOURNAL_FILE, journal::text(identity, &rows))?;
     if let Ok(scenario) = fs::read_to_string(first_part.join(SCENARIO_FILE)) {
         put(place, SCENARIO_FILE, &scenario)?;
     }

@@ -12,6 +12,8 @@ mod design;
 mod journal;
 mod merge;
 mod page;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod pictures;
 mod plan;
 mod record;

@@ -12,6 +12,10 @@ use std::path::{Path, PathBuf};
 /// The table.
 pub(super) const TABLE_FILE: &str = "sweep.csv";
 
+/// The table with types, of a program that was built with the feature `parquet`. Every record names it:
+/// a folder may pass from one such program to another that cannot write it.
+pub(super) const PARQUET_FILE: &str = "sweep.parquet";
+
 /// Where a file is written before it gets its name.
 const UNFINISHED_FILE: &str = "unfinished.tmp";
 
@@ -30,8 +34,15 @@ impl Record {
     /// The record of part `shard` of a sweep that has come as far as `rows`, its table not written.
     pub(super) fn new(identity: Identity, shard: Shard, rows: &Rows, folder: &Path) -> Record {
         let count = |wanted| rows.values().filter(|row| status(row) == wanted).count();
-        let texts =
-            [RECORD_FILE, JOURNAL_FILE, TABLE_FILE, SCENARIO_FILE, PAGE_FILE, UNFINISHED_FILE];
+        let texts = [
+            RECORD_FILE,
+            JOURNAL_FILE,
+            TABLE_FILE,
+            PARQUET_FILE,
+            SCENARIO_FILE,
+            PAGE_FILE,
+            UNFINISHED_FILE,
+        ];
         let files = texts.map(str::to_owned).into_iter().chain(pictures::files(&identity));
         Record {
             shard,
@@ -66,17 +77,22 @@ pub(super) fn write(
     // The record first: a table that it does not vouch for would pass for one edited by hand.
     put(place, RECORD_FILE, &json)?;
     put(place, TABLE_FILE, &table)?;
+    #[cfg(feature = "parquet")]
+    {
+        let table = super::parquet::table(identity, rows).map_err(refused(PARQUET_FILE))?;
+        put(place, PARQUET_FILE, &table)?;
+    }
     for picture in &pictures {
         put(place, &picture.file, &picture.svg)?;
     }
-    put(place, PAGE_FILE, &page::page(&record, rows, &pictures))?;
+    put(place, PAGE_FILE, page::page(&record, rows, &pictures))?;
     Ok(Outcome { record, json, folder: folder.to_owned() })
 }
 
 /// Writes a file that is never seen half written.
-pub(super) fn put(place: &Path, name: &str, text: &str) -> Result<(), RunError> {
+pub(super) fn put(place: &Path, name: &str, content: impl AsRef<[u8]>) -> Result<(), RunError> {
     let unfinished = place.join(UNFINISHED_FILE);
-    fs::write(&unfinished, text)
+    fs::write(&unfinished, content)
         .and_then(|()| fs::rename(&unfinished, place.join(name)))
         .map_err(refused(name))
 }

@@ -27,6 +27,10 @@ pub(super) const FIGURES: [&str; 18] = [
     "simulated_s",
 ];
 
+/// Those of them that are whole numbers.
+#[cfg(feature = "parquet")]
+pub(super) const COUNTS: [&str; 2] = ["impacts", "steps"];
+
 /// The last column: `ok`, or `halted: …` or `refused: …` with the reason.
 const STATUS: &str = "status";
 

@@ -1,7 +1,7 @@
 //! A sweep at work: what is not in the journal yet is run, on all threads.
 
 use super::journal::{JOURNAL_FILE, Journal, Rows, lock};
-use super::result::{Outcome, TABLE_FILE, put, refuse_edited_table, write};
+use super::result::{Outcome, PARQUET_FILE, TABLE_FILE, put, refuse_edited_table, write};
 use super::row;
 use super::{Plan, RECORD_FILE, Record, SweepError};
 use crate::engine;
@@ -49,14 +49,17 @@ pub fn sweep(
         plan.shard().runs(plan.identity().runs).filter(|run| !rows.contains_key(run)).collect();
     progress(rows.len(), record.runs_of_shard);
     if !pending.is_empty() {
-        // The table of a sweep that is not complete (as merge leaves one) does not outlive this: it
-        // goes before the record that vouches for it.
-        match fs::remove_file(target.join(TABLE_FILE)) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                return Err(refused(TABLE_FILE)(error).into());
+        // The tables of a sweep that is not complete (as merge leaves one) do not outlive this: they go
+        // before the record that vouches for them.
+        for table in [TABLE_FILE, PARQUET_FILE] {
+            match fs::remove_file(target.join(table)) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                    return Err(refused(table)(error).into());
+                }
+                _ => {}
             }
-            _ => put(target, RECORD_FILE, &record.to_json())?,
         }
+        put(target, RECORD_FILE, record.to_json())?;
     }
     let state = Mutex::new((journal, rows));
     // One by one: runs differ in cost, and threads that are done take from those that are not.
