@@ -8,7 +8,7 @@ use crate::scenario::Sensors;
 use nalgebra::Vector2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution, StandardNormal, StandardUniform};
 use std::f64::consts::{PI, TAU};
 
 /// Longest time between two samples of a simulated force in s: a fine grid for the sensors'
@@ -99,11 +99,17 @@ pub fn with_noise(clean: &Log, sensors: &Sensors, seed: u64) -> Log {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let channels = clean.channels().map(|channel| {
         let values = clean.get(channel).unwrap_or_default();
+        // Nobody knows where an encoder's steps lie: each draw rounds in its own places.
+        let step = sensors.length_resolution;
+        let offset = if matches!(channel, Channel::Length(_)) && step > 0.0 {
+            let share: f64 = StandardUniform.sample(&mut random);
+            share * step
+        } else {
+            0.0
+        };
         let noisy = values.iter().map(|value| match channel {
             Channel::Command(_) | Channel::Added(_) => *value,
-            Channel::Length(_) if sensors.length_resolution > 0.0 => {
-                (value / sensors.length_resolution).round() * sensors.length_resolution
-            }
+            Channel::Length(_) if step > 0.0 => ((value + offset) / step).round() * step - offset,
             Channel::Length(_) => *value,
             Channel::Force(_) => value + sensors.force_std * sample(&mut random),
             Channel::Pose(2) => value + sensors.angle_std * sample(&mut random),
