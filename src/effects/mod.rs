@@ -8,6 +8,7 @@ mod actuator_scale;
 mod air_drag;
 mod anchor_offset;
 mod base_vibration;
+mod bristle_friction;
 mod command_delay;
 mod contact_damping;
 mod drag;
@@ -65,6 +66,7 @@ pub const ALL: &[&Kind] = &[
     &unnamed::KIND,
     &film_friction::KIND,
     &pivot_friction::KIND,
+    &bristle_friction::KIND,
     &air_drag::KIND,
 ];
 

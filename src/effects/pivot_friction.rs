@@ -2,14 +2,14 @@
 
 use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
-use crate::mechanism::{Attachment, Load, Mechanism, Situation};
+use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
 pub(super) const KIND: Kind = Kind {
     name: "pivot-friction",
     summary: "a torque against the turning of a revolute joint that does not ask for its load: a preloaded \
-              or sealed bearing",
+              or sealed bearing; an arm that stops creeps on (bristle-friction: stays)",
     equation: "torque -(T_c tanh(w/w_s) + k w) between the two bodies, w the rate at which the joint turns",
     source: "Coulomb, with tanh as a smooth sign; viscous friction",
     trace: "free swings: the amplitude falls by the same angle each time (T_c) or by the same share (k)",
@@ -71,15 +71,8 @@ impl Load for Friction {
 
     /// A torque `c ω` on the inertia J that the lighter side has about the joint: `h ≤ J/c`.
     fn longest_step(&self, mechanism: &Mechanism) -> Option<f64> {
-        let joint = &mechanism.revolutes[self.joint];
-        let lightness = |attachment: &Attachment| {
-            attachment.body.map_or(0.0, |i| {
-                let body = &mechanism.bodies[i];
-                1.0 / (body.inertia + body.mass * attachment.point.norm_squared())
-            })
-        };
         let steepest = self.coulomb / self.velocity + self.viscous;
-        let rate = steepest * (lightness(&joint.ring) + lightness(&joint.journal));
+        let rate = steepest * mechanism.joint_lightness(self.joint);
         (rate > 0.0).then(|| 1.0 / rate)
     }
 }

@@ -218,6 +218,7 @@ impl Stepper for Adaptive {
     }
 
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
+        self.dynamics.remember(mechanism, t, &self.states);
         let hp = self.previous_step;
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {
             *sum = *sum * (hp / 12.0) - forward;

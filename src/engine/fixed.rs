@@ -150,6 +150,7 @@ impl Stepper for Fixed {
     }
 
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
+        self.dynamics.remember(mechanism, t, &self.states);
         let (dt, reached) = equal_step(self.step, t, until);
         // The first step is a half kick: v_½ = v_0 + (h/2) a_0.
         let first = self.previous_step == 0.0;

@@ -91,6 +91,7 @@ impl Stepper for Native {
     }
 
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
+        self.dynamics.remember(mechanism, t, &self.states);
         let (dt, reached) = equal_step(self.step, t, until);
         mechanism.true_commands(reached, &mut self.targets);
         let before: Vec<Vector3<f64>> = self.states.iter().map(|s| s.twist).collect();

@@ -10,7 +10,7 @@
 
 use super::rows::{Row, prismatic_rows, revolute_rows};
 use super::telescope::Telescope;
-use super::{Bearing, BodyState, Command, Drive, Held, Mechanism, Prismatic, Situation};
+use super::{Bearing, BodyState, Command, Drive, Held, Mechanism, Memory, Prismatic, Situation};
 use crate::contact::{Contact, circle_in_ring};
 use nalgebra::Vector3;
 
@@ -29,6 +29,8 @@ pub struct Dynamics {
     prismatics: Vec<Telescope>,
     /// What each prismatic joint's sampled controller holds.
     held: Vec<Held>,
+    /// What each load remembers of the end of the last step.
+    memories: Vec<Memory>,
     rows: Vec<Row>,
     /// J M⁻¹ of each row.
     weighted: Vec<[Vector3<f64>; 2]>,
@@ -139,6 +141,13 @@ impl Dynamics {
                 .map(|joint| Telescope::new(joint, &starts))
                 .collect(),
             held: vec![Held::default(); mechanism.prismatics.len()],
+            memories: mechanism
+                .loads
+                .iter()
+                .map(|load| {
+                    load.begin(Situation { t: mechanism.epoch, mechanism, states: &starts })
+                })
+                .collect(),
             rows: Vec::new(),
             weighted: Vec::new(),
             matrix: Vec::new(),
@@ -234,9 +243,18 @@ impl Dynamics {
                 add(&mut out.wrenches, joint.rod.body, on_rod);
             }
         }
-        for load in &mechanism.loads {
-            let t = mechanism.epoch + t;
-            load.add(Situation { t, mechanism, states }, &mut out.wrenches);
+        let at = Situation { t: mechanism.epoch + t, mechanism, states };
+        for (load, memory) in mechanism.loads.iter().zip(&self.memories) {
+            load.add_after(at, *memory, &mut out.wrenches);
+        }
+    }
+
+    /// Lets the loads remember time `t` (s) and these states: what is looked at from now on comes after
+    /// them.
+    pub fn remember(&mut self, mechanism: &Mechanism, t: f64, states: &[BodyState]) {
+        let at = Situation { t: mechanism.epoch + t, mechanism, states };
+        for (load, memory) in mechanism.loads.iter().zip(&mut self.memories) {
+            *memory = load.remember(at, *memory);
         }
     }
 

@@ -1,6 +1,6 @@
 //! What acts on a mechanism beside gravity, contacts and drives.
 
-use super::{BodyState, Drive, Mechanism};
+use super::{Attachment, BodyState, Drive, Mechanism};
 use nalgebra::{Vector2, Vector3};
 use std::fmt::Debug;
 
@@ -15,10 +15,31 @@ pub struct Situation<'a> {
     pub states: &'a [BodyState],
 }
 
-/// A load on the bodies that follows from time and their states.
+/// What a load remembers of the end of the last step, where its wrenches depend on the way there: two
+/// numbers of its own.
+pub type Memory = [f64; 2];
+
+/// A load on the bodies that follows from time and their states, and, of a load with a memory, from what
+/// it remembers.
 pub trait Load: Debug + Send + Sync {
-    /// Adds the load's wrenches (N, N, N·m about each centre of mass) to those of the bodies.
+    /// Adds the load's wrenches (N, N, N·m about each centre of mass) to those of the bodies. A load with
+    /// a memory adds what it would if all had moved as now for long.
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]);
+
+    /// What the load remembers at the start of a run.
+    fn begin(&self, _at: Situation) -> Memory {
+        Memory::default()
+    }
+
+    /// What it remembers from the end of a step on, with the memory of the step's start.
+    fn remember(&self, _at: Situation, memory: Memory) -> Memory {
+        memory
+    }
+
+    /// Adds the load's wrenches at a state that lies within one step of the memory.
+    fn add_after(&self, at: Situation, _memory: Memory, wrenches: &mut [Vector3<f64>]) {
+        self.add(at, wrenches);
+    }
 
     /// The longest step in s (fixed step, explicit) that the load stands on this mechanism, or `None`
     /// where it sets no limit: a damper c on a mass m needs `h c/m ≤ 1` (unstable from 2).
@@ -54,6 +75,19 @@ impl Situation<'_> {
 }
 
 impl Mechanism {
+    /// What one N·m in revolute joint `index` accelerates the joint by in rad/s², each body turning about
+    /// the joint by itself: `Σ 1/(I + m r²)`, r the distance of the joint from the centre of mass.
+    pub fn joint_lightness(&self, index: usize) -> f64 {
+        let joint = &self.revolutes[index];
+        let lightness = |attachment: &Attachment| {
+            attachment.body.map_or(0.0, |i| {
+                let body = &self.bodies[i];
+                1.0 / (body.inertia + body.mass * attachment.point.norm_squared())
+            })
+        };
+        lightness(&joint.ring) + lightness(&joint.journal)
+    }
+
     /// The longest step in s that a damper of at most `damping` N·s/m along prismatic joint `index`
     /// stands, or `None` where there is none; a prescribed length does not heed it.
     pub fn rod_damper_step(&self, index: usize, damping: f64) -> Option<f64> {

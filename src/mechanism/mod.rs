@@ -21,7 +21,7 @@ mod transmission;
 
 pub use cascade::{Cascade, Held};
 pub use dynamics::{Dynamics, Evaluation};
-pub use load::{Load, Situation};
+pub use load::{Load, Memory, Situation};
 pub use reading::ReadingError;
 pub use transmission::Transmission;
 
