@@ -5,6 +5,7 @@ mod cli_common;
 
 use cli_common::Place;
 use freeplay::engine::{self, Schedule, StepControl};
+use freeplay::identify::arm::Swinger;
 use freeplay::identify::inverse::Term;
 use freeplay::mechanism::pendulum as arm;
 use freeplay::scenario::Scenario;
@@ -33,8 +34,8 @@ fn present<T>(read: Result<T, Missing>) -> Option<T> {
 
 #[test]
 fn the_drive_stage_is_found_and_predicts_another_recording() {
-    let train = emps::Recording::read(&place("emps/emps_train.csv"), &rig(emps::RIG), false);
-    let pulses = emps::Recording::read(&place("emps/emps_pulses.csv"), &rig(emps::RIG), true);
+    let train = emps::Recording::read(&place("emps/emps_train.csv"), &rig(emps::RIG));
+    let pulses = emps::Recording::read(&place("emps/emps_pulses.csv"), &rig(emps::RIG));
     let (Some(train), Some(pulses)) = (present(train), present(pulses)) else { return };
     let found = emps::study(&train, &pulses).expect("usable");
     println!("{}\n{}", found.table().text(), found.parameters().text());
@@ -75,18 +76,18 @@ fn the_pendulum_is_found_and_predicts_what_follows() {
     let found = pendulum::study(&recording);
     println!("{}\ndeclared {}\n{:?}", found.table().text(), found.declared, found.carried);
     for step in &found.steps {
-        println!("{} {:?}", step.name, step.windows);
+        println!("{} {:?}", step.tried.name, step.windows);
     }
     let (viscous, chosen) = (&found.steps[0], &found.steps[found.chosen]);
-    assert!(chosen.swinger.dry > 0.0 && chosen.swinger.air > 0.0);
+    assert!(chosen.tried.swinger.dry > 0.0 && chosen.tried.swinger.air > 0.0);
     assert!(chosen.val <= 0.55 * viscous.val, "{} of {}", chosen.val, viscous.val);
     assert!(viscous.val <= found.declared * 1.2);
 }
 
 /// A recording like the pendulum's, simulated: time and angle.
 fn swings() -> Vec<[f64; 2]> {
-    let swinger = pendulum::Swinger { dry: 0.15, air: 4e-3, ..pendulum::Swinger::declared() };
-    let mechanism = swinger.released([1.6, 0.0], 2e-2);
+    let swinger = Swinger { dry: 0.15, air: 4e-3, ..Swinger::declared(pendulum::DECLARED) };
+    let mechanism = swinger.released([1.6, 0.0]);
     let schedule = Schedule { duration: 6.0, interval: 1e-3 };
     let mut rows: Vec<[f64; 2]> = Vec::new();
     engine::run(&mechanism, StepControl::Fixed(1e-3), schedule, &mut |instant| {

@@ -25,6 +25,7 @@ pub mod screen;
 pub mod search;
 pub mod self_test;
 pub mod settle;
+pub mod single;
 pub mod spectrum;
 pub mod unnamed;
 

@@ -30,7 +30,8 @@ use std::time::Instant as Clock;
 /// The JSON file by which a prediction is known.
 pub const ERRORS_FILE: &str = "errors.json";
 
-const PREDICTED_FILE: &str = "predicted.csv";
+/// The predicted recording.
+pub(super) const PREDICTED_FILE: &str = "predicted.csv";
 
 /// `errors.json`.
 #[derive(Clone, Debug, Serialize)]

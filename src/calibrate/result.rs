@@ -18,7 +18,8 @@ use std::time::Instant as Clock;
 /// The JSON file by which a calibration is known.
 pub const REPORT_FILE: &str = "report.json";
 
-const CALIBRATED_FILE: &str = "calibrated.toml";
+/// The rig with what was found.
+pub(super) const CALIBRATED_FILE: &str = "calibrated.toml";
 
 /// Velocity error in m/s of a step where a rig asks for fixed steps: a calibration compares simulations
 /// whose hits fall anywhere, and no fixed step suits them all. The default of scenarios.

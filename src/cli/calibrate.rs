@@ -4,7 +4,10 @@ use super::failure::Failure;
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::output;
 use super::progress::Spinner;
-use crate::calibrate::result::{CalibrateError, Calibrated, REPORT_FILE, into_folder, prepare};
+use crate::calibrate::errors::ChannelError;
+use crate::calibrate::report::{EffectReport, Report};
+use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare};
+use crate::calibrate::single::{self, Adjusted, Machine};
 use crate::calibrate::{quantity, recording};
 use crate::effects::{ALL, named};
 use crate::measure::spelling::nearest;
@@ -76,6 +79,9 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let rig = Scenario::load(Some(rig), &arguments.sets.sets)?;
     let paths: Vec<&Path> =
         std::iter::once(data).chain(&arguments.validate).map(PathBuf::as_path).collect();
+    if let Some(machine) = Machine::of(&rig) {
+        return single_joint(arguments, rig, machine, &paths, &without);
+    }
     let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
     let name = default_name("calibrate", &rig.name);
     let prepared = prepare(rig, recordings)?;
@@ -89,9 +95,72 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.print.json {
         output::print(&calibrated.json)?;
     } else if !arguments.print.quiet {
-        output::print(&text(&calibrated))?;
+        let report = &calibrated.report;
+        let simulated = format!("{} simulations in ", report.simulations);
+        let Report { scenario_name, summary, effects, errors, wall_s, .. } = report;
+        let folder = &calibrated.folder;
+        let seconds = *wall_s;
+        let parameters = &[];
+        let shown = Shown {
+            scenario_name,
+            summary,
+            effects,
+            parameters,
+            errors,
+            simulated,
+            seconds,
+            folder,
+        };
+        output::print(&text(&shown))?;
     }
     Ok(())
+}
+
+/// The same of a drive stage or a pendulum, whose recordings have the columns that `[columns]` names.
+fn single_joint(
+    arguments: &Arguments,
+    rig: Scenario,
+    machine: Machine,
+    paths: &[&Path],
+    without: &[&'static str],
+) -> Result<(), Failure> {
+    let name = default_name("calibrate", &rig.name);
+    let prepared = single::prepare(rig, machine, paths)?;
+    let out = arguments.folder.out.clone().unwrap_or(name);
+    let folder = Folder::prepare(&out, REPORT_FILE, arguments.folder.force)?;
+    let spinner = Spinner::new(arguments.print.quiet);
+    let calibrated = single::into_folder(&prepared, without, folder, &|what| spinner.tell(what));
+    spinner.clear();
+    let calibrated = calibrated?;
+    if arguments.print.json {
+        output::print(&calibrated.json)?;
+    } else if !arguments.print.quiet {
+        let report = &calibrated.report;
+        let shown = Shown {
+            scenario_name: &report.scenario_name,
+            summary: &report.summary,
+            effects: &report.effects,
+            parameters: &report.parameters,
+            errors: &report.errors,
+            simulated: String::new(),
+            seconds: report.wall_s,
+            folder: &calibrated.folder,
+        };
+        output::print(&text(&shown))?;
+    }
+    Ok(())
+}
+
+/// What is printed of a calibration.
+struct Shown<'a> {
+    scenario_name: &'a str,
+    summary: &'a str,
+    effects: &'a [EffectReport],
+    parameters: &'a [Adjusted],
+    errors: &'a [ChannelError],
+    simulated: String,
+    seconds: f64,
+    folder: &'a Path,
 }
 
 impl From<CalibrateError> for Failure {
@@ -124,11 +193,10 @@ fn without(names: &[String]) -> Result<Vec<&'static str>, Failure> {
 }
 
 /// The result for people.
-fn text(calibrated: &Calibrated) -> String {
-    let report = &calibrated.report;
-    let mut text = format!("{}: {}\n", report.provenance.scenario_name, report.summary);
+fn text(report: &Shown) -> String {
+    let mut text = format!("{}: {}\n", report.scenario_name, report.summary);
     // Writing to a string cannot fail, here and below.
-    for effect in &report.effects {
+    for effect in report.effects {
         let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
         let _ = writeln!(text, "\n  {}{joint}", effect.kind);
         for (name, fitted) in &effect.params {
@@ -140,12 +208,21 @@ fn text(calibrated: &Calibrated) -> String {
             let _ = writeln!(text, "    {}", effect.evidence);
         }
     }
+    for p in report.parameters {
+        let [low, high] = p.ci95.map(number);
+        let (declared, value) = (number(p.declared), number(p.value));
+        let _ = writeln!(
+            text,
+            "\n  {} in {}: {value} (95 %: {low} to {high}), declared {declared}",
+            p.path, p.unit
+        );
+    }
     let _ = writeln!(
         text,
         "\n  {:<20}{:<13}{:<9}{:>14}{:>14}{:>14}",
         "run", "role", "channel", "before", "after", "floor"
     );
-    for e in &report.errors {
+    for e in report.errors {
         let cell = |value: f64| quantity(value, e.unit);
         let _ = writeln!(
             text,
@@ -158,13 +235,13 @@ fn text(calibrated: &Calibrated) -> String {
             cell(e.floor)
         );
     }
-    let page = calibrated.folder.join("index.html");
+    let page = report.folder.join("index.html");
     let _ = writeln!(
         text,
-        "\n{} simulations in {} s. Written to {}; open {}",
-        report.simulations,
-        number(report.wall_s),
-        calibrated.folder.display(),
+        "\n{}{} s. Written to {}; open {}",
+        report.simulated,
+        number(report.seconds),
+        report.folder.display(),
         page.display()
     );
     text

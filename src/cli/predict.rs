@@ -4,20 +4,26 @@ use super::failure::Failure;
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::output;
 use super::progress::Spinner;
-use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder};
+use crate::calibrate::errors::ChannelError;
+use crate::calibrate::predict::{ERRORS_FILE, check, into_folder};
 use crate::calibrate::result::CalibrateError;
+use crate::calibrate::single::{self, Machine};
 use crate::calibrate::{quantity, recording};
 use crate::scenario::Scenario;
 use crate::study::{Folder, default_name};
 use clap::Args;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Drive a model by a recorded log's commands and report how far it is off
 ///
 /// The model, declared or calibrated, is simulated along the commands of the log (q1_cmd q2_cmd q3_cmd);
 /// errors are reported for whatever else was measured. Where joints rattle by more than sensors see,
 /// the prediction is a mean over several simulations.
+///
+/// A drive stage is driven by the recorded reference, its own controller closing the loop; a pendulum
+/// swings from an angle and a rate that are fitted to the first 0.25 s. Their recordings keep their own
+/// columns and units: the model's [columns] says which is which.
 ///
 /// The results go into a new folder: index.html, predicted.csv (the log's rows and columns; what was not
 /// measured is added) and errors.json.
@@ -43,10 +49,14 @@ Examples:
   freeplay predict rig.toml --data run-b.csv                  the declared model
   freeplay predict calibrated.toml --data run-c.csv           the calibrated one, on another run
   freeplay predict rig.toml --data run-b.csv --set joints.clearance=2e-4
+  freeplay predict assets/pendulum-calibrated.toml --data swings.csv
   freeplay predict rig.toml --data run-b.csv --json --quiet | jq '.errors[] | [.channel, .after]'";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let model = Scenario::load(Some(&arguments.model), &arguments.sets.sets)?;
+    if let Some(machine) = Machine::of(&model) {
+        return single_joint(arguments, &model, machine);
+    }
     let read = recording::read_one(&arguments.data);
     let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
     check(&model, &recording)?;
@@ -61,35 +71,65 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.print.json {
         output::print(&predicted.json)?;
     } else if !arguments.print.quiet {
-        output::print(&text(&predicted))?;
+        let p = &predicted.prediction;
+        output::print(&text(&p.scenario_name, &p.run, &p.effects, &p.errors, &predicted.folder))?;
+    }
+    Ok(())
+}
+
+/// The same of a drive stage or a pendulum, whose recordings have the columns that `[columns]` names.
+fn single_joint(arguments: &Arguments, model: &Scenario, machine: Machine) -> Result<(), Failure> {
+    let recorded = single::read(&arguments.data, model, machine, false)?;
+    let out = arguments.folder.out.clone();
+    let out = out.unwrap_or_else(|| default_name("predict", &model.name));
+    let folder = Folder::prepare(&out, ERRORS_FILE, arguments.folder.force)?;
+    let spinner = Spinner::new(arguments.print.quiet);
+    let predicted = single::predict(model, machine, &recorded, folder, &|what| spinner.tell(what));
+    spinner.clear();
+    let predicted = predicted?;
+    if arguments.print.json {
+        output::print(&predicted.json)?;
+    } else if !arguments.print.quiet {
+        let p = &predicted.prediction;
+        output::print(&text(&p.scenario_name, &p.run, &p.effects, &p.errors, &predicted.folder))?;
+        if !p.carried_columns.is_empty() {
+            let carried = p.carried_columns.join(", ");
+            output::print(&format!(
+                "Columns that nothing asks for, left as they are: {carried}\n"
+            ))?;
+        }
     }
     Ok(())
 }
 
 /// The result for people.
-fn text(predicted: &Predicted) -> String {
-    let p = &predicted.prediction;
-    let effects = if p.effects.is_empty() { "none".to_owned() } else { p.effects.join(", ") };
-    let mut text =
-        format!("{} along {}; effects: {effects}\n\n", p.provenance.scenario_name, p.run);
+fn text(
+    name: &str,
+    run: &str,
+    effects: &[String],
+    errors: &[ChannelError],
+    folder: &Path,
+) -> String {
+    let effects = if effects.is_empty() { "none".to_owned() } else { effects.join(", ") };
+    let mut text = format!("{name} along {run}; effects: {effects}\n\n");
     // Writing to a string cannot fail, here and below.
     let _ = writeln!(
         text,
-        "  {:<9}{:>16}{:>12}{:>12}",
+        "  {:<9}{:>17}{:>14}{:>14}",
         "channel", "without effects", "predicted", "floor"
     );
-    for e in &p.errors {
+    for e in errors {
         let cell = |value: f64| quantity(value, e.unit);
         let _ = writeln!(
             text,
-            "  {:<9}{:>16}{:>12}{:>12}",
+            "  {:<9}{:>17}{:>14}{:>14}",
             e.channel,
             cell(e.before),
             cell(e.after),
             cell(e.floor)
         );
     }
-    let page = predicted.folder.join("index.html");
-    let _ = writeln!(text, "\nWritten to {}; open {}", predicted.folder.display(), page.display());
+    let page = folder.join("index.html");
+    let _ = writeln!(text, "\nWritten to {}; open {}", folder.display(), page.display());
     text
 }

@@ -73,12 +73,11 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     };
     let (lead, tables, folder) = match arguments.which {
         Which::Emps => {
-            let read = |file: &str, added| emps::Recording::read(&data.join(file), &rig, added);
-            let (train, pulses) =
-                match (read("emps_train.csv", false), read("emps_pulses.csv", true)) {
-                    (Ok(train), Ok(pulses)) => (train, pulses),
-                    (Err(missing), _) | (_, Err(missing)) => return absent(missing),
-                };
+            let read = |file: &str| emps::Recording::read(&data.join(file), &rig);
+            let (train, pulses) = match (read("emps_train.csv"), read("emps_pulses.csv")) {
+                (Ok(train), Ok(pulses)) => (train, pulses),
+                (Err(missing), _) | (_, Err(missing)) => return absent(missing),
+            };
             let folder = prepare()?;
             let found = emps::study(&train, &pulses)?;
             let (lead, folder) = emps_page(&found, &train, folder)?;

@@ -26,6 +26,7 @@ pub struct Motion {
     states: Vec<[f64; 4]>,
     force: Vec<f64>,
     trimmed: usize,
+    interval: f64,
 }
 
 impl Motion {
@@ -39,13 +40,22 @@ impl Motion {
         let j = derivative(&a, interval);
         let states = (0..q.len()).map(|i| [q[i], v[i], a[i], j[i]]).collect();
         let force = filter.apply(forces);
-        Self { filter, states, force, trimmed: (TRIMMED / interval).round() as usize }
+        Self { filter, states, force, trimmed: (TRIMMED / interval).round() as usize, interval }
     }
 
     /// Samples that count: all but the ends.
     pub fn rows(&self) -> Range<usize> {
         let n = self.force.len();
         self.trimmed.min(n / 2)..n - self.trimmed.min(n / 2)
+    }
+
+    /// The rows that count, cut into blocks of about `length` s.
+    pub fn blocks(&self, length: f64) -> Vec<Range<usize>> {
+        let rows = self.rows();
+        let size = (length / self.interval).round().max(1.0) as usize;
+        let count = (rows.len() / size).max(1);
+        let edge = |k: usize| rows.start + rows.len() * k / count;
+        (0..count).map(|k| edge(k)..edge(k + 1)).collect()
     }
 
     /// The filtered force in N.
@@ -96,6 +106,10 @@ pub enum Term {
     CoulombWay(bool),
     /// `sign q̇ (1 − exp(−|q̇|/v_f))`, v_f in m/s; N.
     Film(f64),
+    /// `sign q̇ exp(−(q̇/v_s)²)`, v_s in m/s; N.
+    Stribeck(f64),
+    /// `|q̇| q̇`; N·s²/m².
+    Drag,
     /// `sin` (`true`) or `cos` of `2π q/pitch`, in m; N.
     Ripple(f64, bool),
 }
@@ -113,6 +127,8 @@ impl Term {
             Term::Coulomb => sign,
             Term::CoulombWay(outward) => sign * way(outward),
             Term::Film(speed) => -sign * (-v.abs() / speed).exp_m1(),
+            Term::Stribeck(speed) => sign * (-(v / speed).powi(2)).exp(),
+            Term::Drag => v.abs() * v,
             Term::Ripple(pitch, true) => (TAU * q / pitch).sin(),
             Term::Ripple(pitch, false) => (TAU * q / pitch).cos(),
         }
@@ -175,6 +191,41 @@ impl Model {
             }
         }
         sum
+    }
+
+    /// Root mean square of what the model leaves of the force in N, over each of `blocks`.
+    pub fn left(&self, motion: &Motion, blocks: &[Range<usize>]) -> Vec<f64> {
+        let force = self.force(motion);
+        let square = |i: usize| (motion.force[i] - force[i]).powi(2);
+        let rms = |rows: &Range<usize>| {
+            (rows.clone().map(square).sum::<f64>() / rows.len().max(1) as f64).sqrt()
+        };
+        blocks.iter().map(rms).collect()
+    }
+
+    /// Standard deviations of the factors that were fitted over `rows`, in their order: the residual is
+    /// coloured, so it counts block by block, `(XᵀX)⁻¹ (Σ_b Xᵀ_b e_b eᵀ_b X_b) (XᵀX)⁻¹` (Liang, Zeger,
+    /// Biometrika 73 (1986) 13–22).
+    pub fn deviations(&self, motion: &Motion, blocks: &[Range<usize>]) -> Vec<f64> {
+        let columns: Vec<Vec<f64>> = self.terms.iter().map(|(t, _)| motion.column(*t)).collect();
+        let force = self.force(motion);
+        let count = columns.len();
+        let norm = |column: &Vec<f64>| column.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let scales: Vec<f64> = columns.iter().map(norm).collect();
+        let mut normal = DMatrix::zeros(count, count);
+        let mut meat = DMatrix::zeros(count, count);
+        for rows in blocks {
+            let mut moment = DVector::zeros(count);
+            for i in rows.clone() {
+                let row = DVector::from_fn(count, |k, _| columns[k][i] / scales[k]);
+                normal += &row * row.transpose();
+                moment += &row * (motion.force[i] - force[i]);
+            }
+            meat += &moment * moment.transpose();
+        }
+        let Some(inverse) = normal.try_inverse() else { return vec![f64::NAN; count] };
+        let covariance = &inverse * meat * &inverse;
+        (0..count).map(|k| covariance[(k, k)].max(0.0).sqrt() / scales[k]).collect()
     }
 
     /// Relative error of the model's force over `rows`.

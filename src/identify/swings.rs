@@ -46,33 +46,61 @@ pub fn windows(angles: &[f64], interval: f64, plan: Plan) -> Vec<Window> {
 /// A pendulum by its start (rad, rad/s).
 pub type Build<'a> = &'a (dyn Fn([f64; 2]) -> Mechanism + Sync);
 
-/// Angles in rad at `looks` instants of a pendulum released so; NaN after a breakdown.
-fn swing(build: Build, start: [f64; 2], looks: usize) -> Vec<f64> {
-    let mechanism = build(start);
-    let schedule = Schedule { duration: LOOK * (looks - 1).max(1) as f64, interval: LOOK };
-    let mut angles = Vec::with_capacity(looks);
-    let mut near = start[0];
-    // A breakdown shows as a curve that is too short.
-    let _ = engine::run(&mechanism, StepControl::Fixed(STEP), schedule, &mut |instant| {
+/// How the windows of a fit are stepped.
+const CONTROL: StepControl = StepControl::Fixed(STEP);
+
+/// Angles in rad of a pendulum every `interval` s, the first of them near `near`.
+///
+/// # Errors
+/// A run that breaks down.
+pub fn angles(
+    mechanism: &Mechanism,
+    control: StepControl,
+    mut near: f64,
+    interval: f64,
+    samples: usize,
+) -> Result<Vec<f64>, engine::Halt> {
+    let schedule = Schedule { duration: interval * (samples - 1).max(1) as f64, interval };
+    let mut angles = Vec::with_capacity(samples);
+    engine::run(mechanism, control, schedule, &mut |instant| {
         [near, _] = pendulum::angle(&instant.states[0], near);
         angles.push(near);
-    });
-    angles.resize(looks, f64::NAN);
-    angles
+    })?;
+    angles.resize(samples, f64::NAN);
+    Ok(angles)
 }
 
-/// Predicted less recorded angle in rad over one window, and the start that was fitted.
-fn deviation(build: Build, window: &Window, plan: Plan) -> (Vec<f64>, [f64; 2]) {
-    let recorded = &window.angles;
-    let head = ((plan.start / LOOK).round() as usize + 1).min(recorded.len());
-    let mut start =
-        Vector2::new(recorded[0], (recorded[head / 4] - recorded[0]) / (LOOK * (head / 4) as f64));
+/// Angles in rad at `looks` instants of a pendulum released so; NaN after a breakdown.
+fn swing(build: Build, control: StepControl, start: [f64; 2], looks: usize) -> Vec<f64> {
+    angles(&build(start), control, start[0], LOOK, looks).unwrap_or_else(|_| vec![f64::NAN; looks])
+}
+
+/// The start (rad, rad/s) of a pendulum that fits its recorded angles (rad, one every `interval` s) best
+/// over the first part of a plan.
+pub fn start(
+    build: Build,
+    control: StepControl,
+    angles: &[f64],
+    interval: f64,
+    plan: Plan,
+) -> [f64; 2] {
+    let stride = (LOOK / interval).round().max(1.0) as usize;
+    let head = ((plan.start / interval).round() as usize + 1).min(angles.len());
+    let looks: Vec<f64> = angles[..head].iter().step_by(stride).copied().collect();
+    started(build, control, &looks)
+}
+
+/// The start that fits all of `recorded` best, by Newton's steps with finite differences.
+fn started(build: Build, control: StepControl, recorded: &[f64]) -> [f64; 2] {
+    let early = (recorded.len() / 4).max(1).min(recorded.len() - 1);
+    let rate = (recorded[early] - recorded[0]) / (LOOK * early.max(1) as f64);
+    let mut start = Vector2::new(recorded[0], rate);
     for _ in 0..CORRECTIONS {
-        let at = |start: Vector2<f64>| swing(build, start.into(), head);
+        let at = |start: Vector2<f64>| swing(build, control, start.into(), recorded.len());
         let now = at(start);
         let [by_angle, by_rate] = [Vector2::x(), Vector2::y()].map(|e| at(start + e * NUDGE));
         let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
-        for i in 0..head {
+        for i in 0..recorded.len() {
             let slope = Vector2::new(by_angle[i] - now[i], by_rate[i] - now[i]) / NUDGE;
             normal += slope * slope.transpose();
             right += slope * (recorded[i] - now[i]);
@@ -80,14 +108,21 @@ fn deviation(build: Build, window: &Window, plan: Plan) -> (Vec<f64>, [f64; 2]) 
         let Some(inverse) = normal.try_inverse() else { break };
         start += inverse * right;
     }
-    let predicted = swing(build, start.into(), recorded.len());
-    let deviations = predicted.iter().zip(recorded).map(|(p, r)| p - r).collect();
-    (deviations, start.into())
+    start.into()
+}
+
+/// Predicted less recorded angle in rad over one window.
+fn deviation(build: Build, window: &Window, plan: Plan) -> Vec<f64> {
+    let recorded = &window.angles;
+    let head = ((plan.start / LOOK).round() as usize + 1).min(recorded.len());
+    let start = started(build, CONTROL, &recorded[..head]);
+    let predicted = swing(build, CONTROL, start, recorded.len());
+    predicted.iter().zip(recorded).map(|(p, r)| p - r).collect()
 }
 
 /// Predicted less recorded angle in rad over one window, with the time in s from its start.
 pub fn deviations(build: Build, window: &Window, plan: Plan) -> Vec<(f64, f64)> {
-    let (deviations, _) = deviation(build, window, plan);
+    let deviations = deviation(build, window, plan);
     (0u32..).map(|k| f64::from(k) * LOOK).zip(deviations).collect()
 }
 
@@ -96,7 +131,7 @@ pub fn score(build: Build, windows: &[Window], plan: Plan) -> (f64, Vec<f64>) {
     let each: Vec<f64> = windows
         .par_iter()
         .map(|window| {
-            let (deviations, _) = deviation(build, window, plan);
+            let deviations = deviation(build, window, plan);
             (deviations.iter().map(|d| d * d).sum::<f64>() / deviations.len() as f64).sqrt()
         })
         .collect();
@@ -117,7 +152,7 @@ pub fn fit(
     let all = |values: &[f64]| -> DVector<f64> {
         let with = |start: [f64; 2]| build(values, start);
         let parts: Vec<Vec<f64>> =
-            windows.par_iter().map(|window| deviation(&with, window, plan).0).collect();
+            windows.par_iter().map(|window| deviation(&with, window, plan)).collect();
         DVector::from_vec(parts.concat())
     };
     let mut values = start.to_vec();
@@ -157,6 +192,45 @@ pub fn fit(
         }
     }
     values
+}
+
+/// Standard deviations of fitted values: what is left of a window belongs together, so it counts window by
+/// window, `(JᵀJ)⁻¹ (Σ_w Jᵀ_w e_w eᵀ_w J_w) (JᵀJ)⁻¹` (Liang, Zeger, Biometrika 73 (1986) 13–22).
+pub fn spread(
+    build: &(dyn Fn(&[f64], [f64; 2]) -> Mechanism + Sync),
+    values: &[f64],
+    steps: &[f64],
+    windows: &[Window],
+    plan: Plan,
+) -> Vec<f64> {
+    let count = values.len();
+    let each: Vec<(DMatrix<f64>, DVector<f64>)> = windows
+        .par_iter()
+        .map(|window| {
+            let at = |values: &[f64]| {
+                let with = |start: [f64; 2]| build(values, start);
+                DVector::from_vec(deviation(&with, window, plan))
+            };
+            let now = at(values);
+            let columns: Vec<DVector<f64>> = (0..count)
+                .map(|k| {
+                    let mut other = values.to_vec();
+                    other[k] += steps[k];
+                    (at(&other) - &now) / steps[k]
+                })
+                .collect();
+            (DMatrix::from_columns(&columns), now)
+        })
+        .collect();
+    let (mut normal, mut meat) = (DMatrix::zeros(count, count), DMatrix::zeros(count, count));
+    for (jacobian, left) in &each {
+        normal += jacobian.tr_mul(jacobian);
+        let moment = jacobian.tr_mul(left);
+        meat += &moment * moment.transpose();
+    }
+    let Some(inverse) = normal.try_inverse() else { return vec![f64::NAN; count] };
+    let covariance = &inverse * meat * &inverse;
+    (0..count).map(|k| covariance[(k, k)].max(0.0).sqrt()).collect()
 }
 
 /// Iterations of a fit: from declared values it takes four to six.

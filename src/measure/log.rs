@@ -186,6 +186,22 @@ impl Log {
         })
     }
 
+    /// Heads of the columns of a CSV file.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn heads(path: &Path) -> Result<Vec<String>, LogError> {
+        let read = || -> Result<Vec<String>, csv::Error> {
+            let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path)?;
+            Ok(reader.headers()?.iter().map(str::to_owned).collect())
+        };
+        read().map_err(|error| LogError {
+            place: path.display().to_string(),
+            message: format!("cannot be read: {error}"),
+            help: "is this the right file?".to_owned(),
+        })
+    }
+
     /// Samples of a channel, if the log has it.
     pub fn get(&self, channel: Channel) -> Option<&[f64]> {
         self.channels.iter().find(|(c, _)| *c == channel).map(|(_, values)| values.as_slice())

@@ -6,3 +6,4 @@ pub mod frames;
 pub mod log;
 pub mod spelling;
 pub mod spline;
+pub mod student;

@@ -6,7 +6,9 @@ use super::{drive_stage, motion, native, pendulum, three_rpr};
 use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
 use crate::effects::Wrong;
 use crate::engine::{Schedule, StepControl};
+use crate::mechanism::drive_stage::build as build_stage;
 use crate::mechanism::motion::{Line, Motion};
+use crate::mechanism::pendulum::build as build_pendulum;
 use crate::mechanism::{Bearing, Cascade, Commands, Drive, Mechanism};
 use crate::scenario::{self, DriveMode, Law, Problem, Scenario};
 use nalgebra::{Vector2, Vector3};
@@ -86,6 +88,33 @@ pub fn driven(
     Ok(mechanism)
 }
 
+/// A machine of one joint with its effects, somewhere on its way: a drive stage at a length (m) with a
+/// rate (m/s) under `commands`, a pendulum at an angle (rad) with a rate (rad/s).
+///
+/// # Errors
+/// A scenario that is none of these, an effect that the machine cannot take.
+pub fn started(
+    scenario: &Scenario,
+    start: [f64; 2],
+    commands: Arc<dyn Commands>,
+) -> Result<Mechanism, Problem> {
+    let gravity: Vector2<f64> = scenario.environment.gravity.into();
+    let mut mechanism = match &scenario.mechanism {
+        scenario::Mechanism::ThreeRpr(_) => {
+            let help = "this takes a drive-stage or a pendulum";
+            return Err(scenario.problem("mechanism.kind", "is \"3rpr\"", help));
+        }
+        scenario::Mechanism::DriveStage(stage) => {
+            build_stage(stage.mass, drive(scenario), start, commands, gravity)
+        }
+        scenario::Mechanism::Pendulum(arm) => {
+            build_pendulum(pendulum::arm(arm), bearing(scenario, 0), start, gravity)
+        }
+    };
+    add_effects(scenario, &mut mechanism)?;
+    Ok(mechanism)
+}
+
 /// Gives the mechanism the scenario's effects.
 fn add_effects(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Problem> {
     for (i, effect) in scenario.effects.iter().enumerate() {
@@ -111,7 +140,7 @@ fn open(scenario: &Scenario, gap: f64) -> Problem {
 }
 
 /// The drive that a scenario asks for.
-pub(super) fn drive(scenario: &Scenario) -> Drive {
+pub fn drive(scenario: &Scenario) -> Drive {
     let drive = &scenario.drive;
     match drive.mode {
         DriveMode::Prescribed => Drive::Prescribed,

@@ -17,7 +17,7 @@ mod summary;
 mod three_rpr;
 mod timeseries;
 
-pub use assemble::{Machine, assemble, close, driven, radial_clearance};
+pub use assemble::{Machine, assemble, close, drive, driven, radial_clearance, started};
 pub use checks::{Finding, Severity, findings};
 pub use ideal::{Ideal, IdealInstant};
 pub use native::FIT_SPEED;

@@ -13,7 +13,8 @@ use std::sync::Arc;
 /// Fixed step in s of the ideal swing: an arm of 10 cm has an error of 1e-6 of its period then.
 const IDEAL_STEP: f64 = 5e-4;
 
-fn arm(kind: &Pendulum) -> Arm {
+/// The arm of a scenario.
+pub(super) fn arm(kind: &Pendulum) -> Arm {
     Arm { mass: kind.mass, inertia: kind.inertia, length: kind.length }
 }
 

@@ -1,20 +1,13 @@
 //! The drive stage of the EMPS recordings: what its declared model lacks, found one effect after another
 //! on one recording and judged on another.
 
-use super::{Missing, Table};
-use crate::effects::{Setting, named};
-use crate::engine::{self, Schedule, StepControl};
+use super::Table;
+use crate::identify::Missing;
 use crate::identify::inverse::{Model, Motion, Term};
-use crate::identify::plausible;
-use crate::measure::log::{Channel, Log, Source};
-use crate::mechanism::{Cascade, Command, Commands, Drive, Held, Mechanism, drive_stage};
-use crate::scenario::Scenario;
-use crate::simulate::assemble;
-use nalgebra::Vector2;
-use std::f64::consts::PI;
+use crate::identify::stage::{PITCH, closed_loop, controller_force, halves};
 use std::ops::Range;
-use std::path::Path;
-use std::sync::Arc;
+
+pub use crate::identify::stage::Recording;
 
 /// The machine, its drive and the columns of its recordings, as a scenario.
 pub const RIG: &str = include_str!("../../../assets/drive-stage.toml");
@@ -22,214 +15,8 @@ pub const RIG: &str = include_str!("../../../assets/drive-stage.toml");
 /// Declared: moved mass in kg and viscous friction in N·s/m, as published.
 pub const DECLARED: [f64; 2] = [95.1089, 203.50];
 
-/// Pitch of the ball screw in m (README of the data).
-const PITCH: f64 = 2.5e-3;
-
 /// Speeds v_f in m/s that are tried for friction which builds up.
 const FILM_SPEEDS: [f64; 8] = [2e-3, 4e-3, 6e-3, 8e-3, 1e-2, 1.4e-2, 2e-2, 3e-2];
-
-/// Speed in m/s at which dry friction is near its full value: a 200th of the slowest working speed.
-const SIGN_SPEED: f64 = 1e-4;
-
-/// Fixed step in s of the closed loop: a fifth of its sampling, half of what dry friction stands.
-const STEP: f64 = 2e-4;
-
-/// A recording of the stage.
-#[derive(Clone, Debug)]
-pub struct Recording {
-    /// Name of its file.
-    pub name: String,
-    /// Its samples.
-    pub log: Log,
-    /// The same for the regression.
-    pub motion: Motion,
-    /// The controller that made it.
-    pub cascade: Cascade,
-}
-
-impl Recording {
-    /// Reads a recording of a rig; `added` where it has a recorded voltage on top of the controller's.
-    ///
-    /// # Errors
-    /// Files that are not there or not what they should be.
-    pub fn read(path: &Path, rig: &Scenario, added: bool) -> Result<Recording, Missing> {
-        let mut known = vec![Channel::Command(0), Channel::Length(0), Channel::Force(0)];
-        let (time, mut sources) =
-            super::sources(rig, &[&known[..], &[Channel::Added(0)]].concat())?;
-        if added {
-            known.push(Channel::Added(0));
-        }
-        sources.retain(|(channel, _)| known.contains(channel));
-        let log = super::read(path, &time, &sources, &known)?;
-        for (channel, source) in &sources {
-            if matches!(channel, Channel::Length(_)) {
-                plausible::one_run(&log, *channel, source)?;
-            }
-        }
-        let machine = assemble(rig).map_err(|problem| Missing::Wrong(problem.to_string()))?;
-        let Some(Drive::Sampled(cascade)) = machine.mechanism.prismatics.first().map(|j| j.drive)
-        else {
-            let help =
-                "the rig needs mechanism.kind = \"drive-stage\" and drive.mode = \"sampled\"";
-            return Err(Missing::Wrong(help.to_owned()));
-        };
-        let recording = Recording::of(log, cascade);
-        recording.fits_its_controller(&sources)?;
-        Ok(recording)
-    }
-
-    fn of(log: Log, cascade: Cascade) -> Recording {
-        let column = |channel| log.get(channel).unwrap_or_default();
-        let motion =
-            Motion::new(column(Channel::Length(0)), column(Channel::Force(0)), log.interval);
-        Recording { name: log.name.clone(), motion, log, cascade }
-    }
-
-    /// The controller's law says the force from the lengths: a unit that is not what it is said to be
-    /// shows.
-    fn fits_its_controller(&self, sources: &[(Channel, Source)]) -> Result<(), Missing> {
-        let [q, command, force] = [Channel::Length(0), Channel::Command(0), Channel::Force(0)];
-        let disagreement = |channels: &[Channel], factor: f64| {
-            let scaled = |channel: Channel| -> Vec<f64> {
-                let factor = if channels.contains(&channel) { factor } else { 1.0 };
-                self.column(channel).iter().map(|value| value * factor).collect()
-            };
-            let told = self.told(&scaled(command), &scaled(q));
-            let recorded = scaled(force);
-            let square = |sum: f64, x: f64| sum + x * x;
-            let error = told.iter().zip(&recorded).map(|(a, b)| a - b).fold(0.0, square);
-            (error / told.iter().copied().fold(0.0, square)).sqrt()
-        };
-        let law = "the controller of [drive.sampled] says the force from the lengths";
-        let suspects: [&[Channel]; 4] = [&[force], &[q], &[command], &[q, command]];
-        Ok(plausible::scale(&self.log, law, sources, &suspects, disagreement)?)
-    }
-
-    /// What the controller tells the drive when it sees these lengths under these commands (m): `G u`
-    /// in N.
-    fn told(&self, commands: &[f64], lengths: &[f64]) -> Vec<f64> {
-        let (added, drive) = (self.column(Channel::Added(0)), self.cascade);
-        let mut held = Held::default();
-        (commands.iter().zip(lengths).enumerate())
-            .map(|(k, (length, q))| {
-                let command = Command { length: *length, ..Command::default() };
-                let added = added.get(k).copied().unwrap_or(0.0);
-                let t = k as f64 * drive.interval;
-                drive.force_gain * drive.sample(&mut held, t, &command, *q, added)
-            })
-            .collect()
-    }
-
-    fn column(&self, channel: Channel) -> &[f64] {
-        self.log.get(channel).unwrap_or_default()
-    }
-}
-
-/// The recorded reference and the recorded added voltage.
-#[derive(Debug)]
-struct Recorded {
-    interval: f64,
-    lengths: Vec<f64>,
-    added: Vec<f64>,
-}
-
-impl Recorded {
-    fn at(&self, samples: &[f64], t: f64) -> f64 {
-        let last = samples.len().saturating_sub(1);
-        samples.get(((t / self.interval).round() as usize).min(last)).copied().unwrap_or(0.0)
-    }
-}
-
-impl Commands for Recorded {
-    fn at(&self, t: f64, commands: &mut [Command]) {
-        for command in commands {
-            *command = Command { length: self.at(&self.lengths, t), ..Command::default() };
-        }
-    }
-
-    fn added(&self, _: usize, t: f64) -> f64 {
-        self.at(&self.added, t)
-    }
-}
-
-/// The stage that a model describes: what is linear in its force as effects, and a lag beyond half a
-/// sample, which holding takes by itself.
-///
-/// # Errors
-/// An effect that the stage cannot take.
-pub fn stage(model: &Model, recording: &Recording) -> Result<Mechanism, Missing> {
-    let mass = model.factor(Term::Mass);
-    let lag = (model.factor(Term::Lag) / mass - 0.5 * recording.cascade.interval).max(0.0);
-    let commands = Recorded {
-        interval: recording.log.interval,
-        lengths: recording.column(Channel::Command(0)).to_vec(),
-        added: recording.column(Channel::Added(0)).to_vec(),
-    };
-    let start = recording.column(Channel::Length(0)).first().copied().unwrap_or(0.0);
-    let drive = Drive::Sampled(Cascade { lag, ..recording.cascade });
-    let mut mechanism =
-        drive_stage::build(mass, drive, [start, 0.0], Arc::new(commands), Vector2::zeros());
-    for effect in effects(model) {
-        effect.apply(&mut mechanism).map_err(|wrong| Missing::Wrong(wrong.message))?;
-    }
-    Ok(mechanism)
-}
-
-/// A model's terms as effects of a scenario.
-pub fn effects(model: &Model) -> Vec<Setting> {
-    let effect = |name: &str, values: &[(&'static str, f64)]| {
-        named(name).map(|kind| Setting::new(kind, Some("P1"), values))
-    };
-    let sum = |both: Term, way: Term| model.factor(both) + model.factor(way);
-    let mut found = Vec::new();
-    found.extend(effect(
-        "actuator-friction",
-        &[
-            ("coulomb_pos_N", sum(Term::Coulomb, Term::CoulombWay(true))),
-            ("coulomb_neg_N", sum(Term::Coulomb, Term::CoulombWay(false))),
-            ("viscous_pos_Ns_m", sum(Term::Viscous, Term::ViscousWay(true))),
-            ("viscous_neg_Ns_m", sum(Term::Viscous, Term::ViscousWay(false))),
-            // On the rod, where the regression has the force that the drive gives against it.
-            ("offset_N", -model.factor(Term::Offset)),
-            ("velocity_m_s", SIGN_SPEED),
-        ],
-    ));
-    for (term, factor) in &model.terms {
-        if let Term::Film(speed) = term {
-            let values = [("force_N", *factor), ("speed_m_s", *speed)];
-            found.extend(effect("film-friction", &values));
-        }
-    }
-    let [sin, cos] = [true, false].map(|sine| model.factor(Term::Ripple(PITCH, sine)));
-    if sin != 0.0 || cos != 0.0 {
-        let phase = cos.atan2(sin) + PI;
-        let values = [("amplitude_N", sin.hypot(cos)), ("pitch_m", PITCH), ("phase_rad", phase)];
-        found.extend(effect("screw-ripple", &values));
-    }
-    found
-}
-
-/// What the controller tells the drive when it sees other lengths (m) than the recorded: `G u` in N.
-pub fn controller_force(recording: &Recording, lengths: &[f64]) -> Vec<f64> {
-    recording.told(recording.column(Channel::Command(0)), lengths)
-}
-
-/// Simulates the closed loop of a model on a recording's reference: lengths in m at its samples.
-///
-/// # Errors
-/// A run that breaks down.
-pub fn closed_loop(model: &Model, recording: &Recording) -> Result<Vec<f64>, Missing> {
-    let mechanism = stage(model, recording)?;
-    let interval = recording.log.interval;
-    let schedule = Schedule { duration: recording.log.duration(), interval };
-    let mut lengths = Vec::with_capacity(recording.log.samples);
-    engine::run(&mechanism, StepControl::Fixed(STEP), schedule, &mut |instant| {
-        lengths.push(instant.evaluation.lengths[0]);
-    })
-    .map_err(|halt| Missing::Wrong(halt.to_string()))?;
-    lengths.resize(recording.log.samples, f64::NAN);
-    Ok(lengths)
-}
 
 /// A model and how far off it is: shares of the norm of the recorded force.
 #[derive(Clone, Debug)]
@@ -270,11 +57,6 @@ pub struct Outcome {
     pub carried: Carried,
 }
 
-fn halves(rows: &Range<usize>) -> [Range<usize>; 2] {
-    let middle = (rows.start + rows.end) / 2;
-    [rows.start..middle, middle..rows.end]
-}
-
 fn unfit() -> Missing {
     Missing::Wrong("the recording does not tell the model's terms apart: does it move?".to_owned())
 }
@@ -313,7 +95,11 @@ pub fn study(train: &Recording, pulses: &Recording) -> Result<Outcome, Missing> 
     let step = |name, trace, model: Model, halves| -> Result<Step, Missing> {
         let mut simulated = [0.0; 2];
         for (error, recording) in simulated.iter_mut().zip([train, pulses]) {
-            let force = controller_force(recording, &closed_loop(&model, recording)?);
+            let force = controller_force(
+                &recording.cascade,
+                &recording.log,
+                &closed_loop(&model, recording)?,
+            );
             *error = recording.motion.relative_error(&force, recording.motion.rows());
         }
         let (train, pulses) =
@@ -356,7 +142,7 @@ fn carry(model: &Model, pulses: &Recording) -> Result<Carried, Missing> {
     let mut carried = Carried { model: again.clone(), inverse: [0.0; 2], simulated: [0.0; 2] };
     for (k, model) in [model, &again].into_iter().enumerate() {
         carried.inverse[k] = model.error(&pulses.motion, second.clone());
-        let force = controller_force(pulses, &closed_loop(model, pulses)?);
+        let force = controller_force(&pulses.cascade, &pulses.log, &closed_loop(model, pulses)?);
         carried.simulated[k] = pulses.motion.relative_error(&force, second.clone());
     }
     Ok(carried)
@@ -474,6 +260,10 @@ fn named_term(term: Term, mass: f64) -> (String, &'static str, f64) {
         Term::Film(speed) => {
             (format!("friction that builds up over {} mm/s", 1e3 * speed), "N", 1.0)
         }
+        Term::Stribeck(speed) => {
+            (format!("friction that falls over {} mm/s", 1e3 * speed), "N", 1.0)
+        }
+        Term::Drag => ("drag".to_owned(), "N s²/m²", 1.0),
         Term::Ripple(_, sine) => {
             (format!("ripple of the screw, {}", if sine { "sine" } else { "cosine" }), "N", 1.0)
         }

@@ -8,8 +8,8 @@ pub mod pendulum;
 
 pub use page::{STUDY_FILE, StudyError, emps_page, pendulum_page};
 
-use crate::measure::log::{Channel, Log, LogError, Source};
-use crate::scenario::{Scenario, Sources};
+pub use crate::identify::Missing;
+
 use std::path::{Path, PathBuf};
 
 /// Environment variable that says where the recordings are.
@@ -17,20 +17,6 @@ pub const VARIABLE: &str = "FREEPLAY_MEASURED";
 
 /// Where they are sought without it.
 const DEFAULT_FOLDER: &str = "../shared/measured";
-
-/// Why a study has no result.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Missing {
-    /// The recording is not there.
-    #[error("{0} is not there")]
-    Absent(PathBuf),
-    /// It is there, and not what it should be.
-    #[error(transparent)]
-    Log(#[from] LogError),
-    /// Anything else.
-    #[error("{0}")]
-    Wrong(String),
-}
 
 /// The folder of the recordings: as given, as the environment says, or the default.
 pub fn folder(given: Option<&Path>) -> PathBuf {
@@ -47,34 +33,6 @@ pub fn skipped(what: &str, missing: &Path) -> String {
          {VARIABLE} where it is.",
         missing.display()
     )
-}
-
-/// The columns of a rig's recordings.
-fn sources(rig: &Scenario, known: &[Channel]) -> Result<Sources, Missing> {
-    let columns = rig.columns.clone().unwrap_or_default();
-    columns.sources(known).map_err(|name| {
-        let names: Vec<String> = known.iter().map(Channel::to_string).collect();
-        let message = "is not a quantity of this machine's recordings";
-        let help = format!("known here: t, {}", names.join(", "));
-        Missing::Wrong(rig.problem(&format!("columns.{name}"), message, help).to_string())
-    })
-}
-
-/// Reads the columns of a recording that has to have all of `needed`.
-fn read(
-    path: &Path,
-    time: &Source,
-    columns: &[(Channel, Source)],
-    needed: &[Channel],
-) -> Result<Log, Missing> {
-    if let Some(channel) = needed.iter().find(|n| !columns.iter().any(|(c, _)| c == *n)) {
-        let help = format!("write {channel} = \"…\" under [columns]: the name of its column");
-        return Err(Missing::Wrong(format!("columns.{channel} is missing; {help}")));
-    }
-    if !path.is_file() {
-        return Err(Missing::Absent(path.to_owned()));
-    }
-    Ok(Log::read_columns(path, time, columns)?)
 }
 
 /// A table of results.

@@ -1,6 +1,8 @@
 //! The pages of the hardware studies.
 
-use super::{Missing, Table, emps, pendulum};
+use super::{Table, emps, pendulum};
+use crate::identify::Missing;
+use crate::identify::stage::Recording;
 use crate::report::{self, Curve, Panel, Part, Picture, Style, panels_svg};
 use crate::study::folder::Folder;
 use crate::study::run::{PAGE_FILE, RunError, refused, to_json};
@@ -101,7 +103,7 @@ const DRAWN: std::ops::Range<usize> = 2000..6000;
 /// Files that cannot be written.
 pub fn emps_page(
     found: &emps::Outcome,
-    train: &emps::Recording,
+    train: &Recording,
     folder: Folder,
 ) -> Result<(String, PathBuf), RunError> {
     let residual = |step: &emps::Step| -> Vec<(f64, f64)> {
@@ -172,7 +174,7 @@ pub fn pendulum_page(
     let lead = found.lead();
     let panels: Vec<Panel> = (recording.val.iter().enumerate())
         .map(|(i, window)| {
-            let curve = |k: usize| pendulum::deviation(&found.steps[k].swinger, window);
+            let curve = |k: usize| pendulum::deviation(&found.steps[k].tried.swinger, window);
             let title = format!("Window {} of val", i + 1);
             let curves = vec![("viscous", curve(0)), ("chosen", curve(found.chosen))];
             panel(&title, "error (mrad)", curves)

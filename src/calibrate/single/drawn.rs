@@ -1,0 +1,143 @@
+//! The pages of machines of one joint.
+
+use super::calibration::Report;
+use super::prediction::Prediction;
+use super::simulated::Machine;
+use crate::calibrate::page::{errors_table, verdict};
+use crate::report::{Part, Picture, Table, document, number};
+
+const NOTE: &str = "Root mean square of measured less predicted, both through a zero-phase low-pass of \
+                    fourth order at 25 Hz, first and last 60 ms left out. Floor: what the recording's own \
+                    white noise leaves to any model.";
+
+/// How a machine is sent along its recording.
+fn along(machine: Machine) -> &'static str {
+    match machine {
+        Machine::Stage => "driven by the recorded reference, its own controller closing the loop",
+        Machine::Pendulum => {
+            "swinging by itself from an angle and a rate that are fitted to the first 0.25 s"
+        }
+    }
+}
+
+/// The page of a prediction.
+pub(super) fn prediction(p: &Prediction, machine: Machine, pictures: &[Picture]) -> String {
+    let effects = if p.effects.is_empty() {
+        "as declared, without effects".to_owned()
+    } else {
+        format!("with {}", p.effects.join(", "))
+    };
+    let carried = if p.carried_columns.is_empty() {
+        String::new()
+    } else {
+        format!(" Columns left as they are: {}.", p.carried_columns.join(", "))
+    };
+    let lead = format!(
+        "{}, a {} {effects}, {}, against {}.{carried}",
+        p.scenario_name,
+        machine.words(),
+        along(machine),
+        p.run
+    );
+    let note = format!("{NOTE} After: the model; before: the model without its effects.");
+    let provenance = [
+        ("Program", format!("{} {}, on rapier2d-f64 {}", p.program, p.version, p.rapier_version)),
+        ("Model", p.scenario_name.clone()),
+        ("SHA-256 of the model", p.scenario_hash.clone()),
+        ("Run", p.run.clone()),
+        ("Figures", "errors.json, predicted.csv beside this page".to_owned()),
+        ("Time of computing", format!("{} s", number(p.wall_s))),
+    ]
+    .map(|(label, value)| (label.to_owned(), value));
+    let parts = [
+        Part::Table(errors_table(&p.errors, &note)),
+        Part::Pictures(pictures),
+        Part::Provenance(&provenance),
+    ];
+    document(&format!("Prediction of {}", p.run), &lead, &parts)
+}
+
+/// The page of a calibration.
+pub(super) fn calibration(r: &Report, machine: Machine, pictures: &[Picture]) -> String {
+    let mut rows = Vec::new();
+    for effect in &r.effects {
+        for (name, fitted) in &effect.params {
+            let [low, high] = fitted.ci95.map(number);
+            let joint = effect.joint.as_ref().map_or(String::new(), |j| format!(" at {j}"));
+            rows.push(vec![
+                format!("{}{joint}", effect.kind),
+                (*name).to_owned(),
+                number(fitted.value),
+                number(fitted.std),
+                format!("{low} to {high}"),
+            ]);
+        }
+    }
+    for p in &r.parameters {
+        let [low, high] = p.ci95.map(number);
+        rows.push(vec![
+            format!("{} (declared: {})", p.path, number(p.declared)),
+            p.unit.to_owned(),
+            number(p.value),
+            number(p.std),
+            format!("{low} to {high}"),
+        ]);
+    }
+    let head = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    let values = Table {
+        id: "effects",
+        title: "What the model was given".into(),
+        header: head(&["effect", "parameter", "value", "± standard deviation", "95 % interval"]),
+        rows,
+        note: "SI units. Standard deviations count what is left stretch by stretch, since it is not white. \
+               calibrated.toml holds the rig with all of this."
+            .into(),
+    };
+    let ranking = Table {
+        id: "candidates",
+        title: "Candidates, round by round".into(),
+        header: head(&["round", "candidate", "removes", "error after over before", "95 %", ""]),
+        rows: r
+            .ranking
+            .iter()
+            .map(|t| {
+                vec![
+                    t.round.to_string(),
+                    t.what.clone(),
+                    format!("{:.1} %", 100.0 * t.validation_score),
+                    format!("{:.3}", t.ratio),
+                    format!("{:.3} to {:.3}", t.ratio_ci95[0], t.ratio_ci95[1]),
+                    if t.kept { "kept" } else { "" }.to_owned(),
+                ]
+            })
+            .collect(),
+        note: "On data that a candidate was not fitted to, stretch by stretch: the geometric mean of the \
+               ratios of the errors, with its interval."
+            .into(),
+    };
+    let equations: Vec<String> = r
+        .effects
+        .iter()
+        .map(|effect| format!("{}: {}. It {}.", effect.kind, effect.equation, effect.evidence))
+        .collect();
+    let provenance = [
+        ("Program", format!("{} {}, on rapier2d-f64 {}", r.program, r.version, r.rapier_version)),
+        ("Rig", r.scenario_name.clone()),
+        ("SHA-256 of the rig", r.scenario_hash.clone()),
+        ("Figures", "report.json beside this page".to_owned()),
+        ("Time of computing", format!("{} s", number(r.wall_s))),
+    ]
+    .map(|(label, value)| (label.to_owned(), value));
+    let note =
+        format!("{NOTE} Before: the rig as declared; after: calibrated; {}.", along(machine));
+    let mut parts = vec![Part::Table(values)];
+    if !equations.is_empty() {
+        parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });
+    }
+    parts.push(Part::Table(errors_table(&r.errors, &note)));
+    parts.push(Part::Pictures(pictures));
+    parts.push(Part::Table(ranking));
+    parts.push(Part::Provenance(&provenance));
+    let title = format!("Calibration of {}: {}", r.scenario_name, verdict(r.verdict));
+    document(&title, &r.summary, &parts)
+}

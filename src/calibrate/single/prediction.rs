@@ -1,0 +1,146 @@
+//! A machine of one joint along a recording: what a model predicts, and by how much it misses.
+
+use super::drawn;
+use super::noise::floors;
+use super::rows::{measured, predicted};
+use super::simulated::{Machine, along};
+use crate::calibrate::charts;
+use crate::calibrate::errors::{ChannelError, rms};
+use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
+use crate::calibrate::result::{CalibrateError, to_json};
+use crate::calibrate::search::name;
+use crate::engine::RAPIER_VERSION;
+use crate::identify::Recorded;
+use crate::identify::arm::PLAN;
+use crate::measure::log::Log;
+use crate::report::Style;
+use crate::scenario::Scenario;
+use crate::study::{Folder, PAGE_FILE, RunError, refused};
+use serde::Serialize;
+use std::fs;
+use std::path::PathBuf;
+use std::time::Instant as Clock;
+
+/// `errors.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Prediction {
+    /// The program that wrote this: how a result is told from other files.
+    pub program: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// Version of the physics engine underneath.
+    pub rapier_version: &'static str,
+    /// Name of the model.
+    pub scenario_name: String,
+    /// SHA-256 of the model, overrides included.
+    pub scenario_hash: String,
+    /// The recording.
+    pub run: String,
+    /// Names of the model's effects.
+    pub effects: Vec<String>,
+    /// Errors by channel: `after` of the model, `before` of the model without its effects (null where it
+    /// has none).
+    pub errors: Vec<ChannelError>,
+    /// Length in s of the first part of the recording that the start of a pendulum was fitted to; null
+    /// of a stage, which starts where its length does.
+    pub start_fitted_to_s: Option<f64>,
+    /// Columns of the recording that nothing asks for: in `predicted.csv` as they were.
+    pub carried_columns: Vec<String>,
+    /// Time of computing in s.
+    pub wall_s: f64,
+    /// What stands beside this file.
+    pub files: Vec<String>,
+}
+
+/// A finished prediction.
+#[derive(Debug)]
+pub struct Predicted {
+    /// What it came to.
+    pub prediction: Prediction,
+    /// The text of `errors.json`.
+    pub json: String,
+    /// Where all files are.
+    pub folder: PathBuf,
+}
+
+/// Errors of all measured channels of a recording under a declared model and one with more.
+pub(super) fn errors(
+    recorded: &Recorded,
+    role: &'static str,
+    [before, after]: [Option<&Log>; 2],
+    floors: &[(crate::measure::log::Channel, f64)],
+) -> Vec<ChannelError> {
+    let log = &recorded.log;
+    let of = |model: Option<&Log>, channel| model.and_then(|m| rms(log, m, channel));
+    measured(log)
+        .map(|channel| ChannelError {
+            run: log.name.clone(),
+            role,
+            channel: channel.to_string(),
+            unit: channel.unit(),
+            before: of(before, channel).unwrap_or(f64::NAN),
+            after: of(after, channel).unwrap_or(f64::NAN),
+            floor: floors.iter().find(|(c, _)| *c == channel).map_or(f64::NAN, |(_, floor)| *floor),
+        })
+        .collect()
+}
+
+/// Drives a model along a recording and writes what it predicts into `folder`. `tell` hears what is being
+/// done.
+///
+/// # Errors
+/// A model that cannot be simulated, files that cannot be written.
+pub fn predict(
+    model: &Scenario,
+    machine: Machine,
+    recorded: &Recorded,
+    folder: Folder,
+    tell: &dyn Fn(&str),
+) -> Result<Predicted, CalibrateError> {
+    let started = Clock::now();
+    let log = &recorded.log;
+    tell("predicting the run");
+    let after = along(model, machine, log)?;
+    let before = if model.effects.is_empty() {
+        None
+    } else {
+        let mut declared = model.clone();
+        declared.effects.clear();
+        Some(along(&declared, machine, log)?)
+    };
+    tell("what noise leaves to any model");
+    let floors = floors(model, machine, log, &after)?;
+    let errors = errors(recorded, "prediction", [before.as_ref(), Some(&after)], &floors);
+    tell("drawing and writing");
+    let mut models = Vec::new();
+    if let Some(before) = &before {
+        models.push(("without effects", before, Style::Reference));
+    }
+    models.push(("predicted", &after, Style::Solid));
+    let pictures = charts::of_run(log, "prediction", &models).map_err(RunError::from)?;
+    let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
+    let prediction = Prediction {
+        program: env!("CARGO_PKG_NAME"),
+        version: env!("CARGO_PKG_VERSION"),
+        rapier_version: RAPIER_VERSION,
+        scenario_name: model.name.clone(),
+        scenario_hash: model.hash(),
+        run: log.name.clone(),
+        effects: model.effects.iter().map(name).collect(),
+        errors,
+        start_fitted_to_s: (machine == Machine::Pendulum).then_some(PLAN.start),
+        carried_columns: recorded.others.clone(),
+        wall_s: started.elapsed().as_secs_f64(),
+        files: texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect(),
+    };
+    let json = to_json(&prediction);
+    let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
+    write(ERRORS_FILE, &json)?;
+    write(PREDICTED_FILE, &predicted(recorded, &after).map_err(refused(PREDICTED_FILE))?)?;
+    for picture in &pictures {
+        write(&picture.file, &picture.svg)?;
+    }
+    write(PAGE_FILE, &drawn::prediction(&prediction, machine, &pictures))?;
+    let folder = folder.finish().map_err(RunError::from)?;
+    Ok(Predicted { prediction, json, folder })
+}
