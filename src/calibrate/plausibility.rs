@@ -78,8 +78,7 @@ pub fn rig(rig: &Scenario) -> Vec<Problem> {
         found.push(rig.problem(path, message, help));
     };
     if !matches!(rig.mechanism, Mechanism::ThreeRpr(_)) {
-        let help = "calibrate and predict know the 3rpr; `freeplay study` identifies drive stages and \
-                    pendulums";
+        let help = "machines of one joint have a calibration of their own (calibrate::single)";
         complain("mechanism.kind", "is not \"3rpr\"".to_owned(), help);
     }
     if !rig.effects.is_empty() {

@@ -75,7 +75,7 @@ pub fn check(model: &Scenario, recording: &Recording) -> Result<(), CalibrateErr
         .map(ToString::to_string)
         .collect();
     if !matches!(model.mechanism, scenario::Mechanism::ThreeRpr(_)) {
-        let help = "predict knows the 3rpr; `freeplay study` simulates recorded drive stages and pendulums";
+        let help = "machines of one joint have a prediction of their own (calibrate::single)";
         found.push(model.problem("mechanism.kind", "is not \"3rpr\"", help).to_string());
     }
     if model.contact.law == Law::Native {

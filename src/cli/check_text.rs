@@ -124,7 +124,7 @@ fn drives(text: &mut Text, m: &CheckedMachine) {
                 text.entry(&format!("  actuator {i}"), &value);
             }
             let peak = format!("up to {} m/s²", number(ideal.peak_platform_acceleration_m_s2));
-            text.entry("  platform", &peak);
+            text.entry("  acceleration", &peak);
         }
         None => text.line("  at a singularity no finite forces carry the motion"),
     }

@@ -102,7 +102,7 @@ fn figures(s: &Summary) -> Vec<(&'static str, String, String)> {
     let mut figures = vec![
         ("peak contact force", newton(s.peak_contact_force), String::new()),
         (
-            "peak platform acceleration",
+            "peak acceleration",
             acceleration(s.peak_platform_acceleration_m_s2),
             format!("ideal: {}", acceleration(s.ideal_peak_platform_acceleration_m_s2)),
         ),

@@ -73,6 +73,20 @@ impl Motion {
         self.filter.apply(&raw)
     }
 
+    /// Root mean square in N of the recorded force less a filtered one, over each of `blocks`.
+    fn left(&self, filtered: &[f64], blocks: &[Range<usize>]) -> Vec<f64> {
+        let square = |i: usize| (self.force[i] - filtered[i]).powi(2);
+        let rms = |rows: &Range<usize>| {
+            (rows.clone().map(square).sum::<f64>() / rows.len().max(1) as f64).sqrt()
+        };
+        blocks.iter().map(rms).collect()
+    }
+
+    /// The same of another force, which is filtered alike first.
+    pub fn missed(&self, force: &[f64], blocks: &[Range<usize>]) -> Vec<f64> {
+        self.left(&self.filter.apply(force), blocks)
+    }
+
     /// Norm of the difference of a force from the recorded one over norm of the recorded one, over
     /// `rows`; the other force in N is filtered alike first.
     pub fn relative_error(&self, force: &[f64], rows: Range<usize>) -> f64 {
@@ -195,12 +209,7 @@ impl Model {
 
     /// Root mean square of what the model leaves of the force in N, over each of `blocks`.
     pub fn left(&self, motion: &Motion, blocks: &[Range<usize>]) -> Vec<f64> {
-        let force = self.force(motion);
-        let square = |i: usize| (motion.force[i] - force[i]).powi(2);
-        let rms = |rows: &Range<usize>| {
-            (rows.clone().map(square).sum::<f64>() / rows.len().max(1) as f64).sqrt()
-        };
-        blocks.iter().map(rms).collect()
+        motion.left(&self.force(motion), blocks)
     }
 
     /// Standard deviations of the factors that were fitted over `rows`, in their order: the residual is

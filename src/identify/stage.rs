@@ -283,14 +283,14 @@ pub fn ripple(model: &Model) -> Option<(f64, f64, f64)> {
     Some((pitch, sin.hypot(cos), cos.atan2(sin) + PI))
 }
 
-/// Simulates the closed loop of a model on a recording's reference: lengths in m at its samples.
+/// Force in N that the controller of a recording asks for when its reference drives a mechanism.
 ///
 /// # Errors
 /// A run that breaks down.
-pub fn closed_loop(model: &Model, recording: &Recording) -> Result<Vec<f64>, Missing> {
-    let mechanism = stage(model, recording)?;
-    let rows = simulate(&mechanism, StepControl::Fixed(STEP), &recording.log)?;
-    Ok(rows.into_iter().map(|[length, _]| length).collect())
+pub fn simulated_force(mechanism: &Mechanism, recording: &Recording) -> Result<Vec<f64>, Missing> {
+    let rows = simulate(mechanism, StepControl::Fixed(STEP), &recording.log)?;
+    let lengths: Vec<f64> = rows.into_iter().map(|[length, _]| length).collect();
+    Ok(controller_force(&recording.cascade, &recording.log, &lengths))
 }
 
 /// Simulates a stage at the samples of a log: read length in m and force of the drive in N.

@@ -60,9 +60,9 @@ impl Film {
 
         let forces = instant.tallies.iter().map(|tally| tally.peak);
         let drives = now.drive_forces.iter().chain(ideal.drive_forces).copied();
-        let platform =
+        let output =
             [instant.peaks.acceleration, ideal.acceleration.xy().norm(), 1e3 * deviation.norm()];
-        let signals = forces.chain(drives).chain(platform);
+        let signals = forces.chain(drives).chain(output);
         let extremes = signals.map(|value| [value as f32; 2]).collect();
         let frame = Frame { t: instant.t, values, extremes };
         if instant.t <= ANIMATED {
@@ -157,7 +157,8 @@ fn charts(mechanism: &Mechanism) -> Vec<SceneChart> {
         let ideal = format!("{}, ideal", drive.name);
         [curve(&drive.name, joints + i, false), curve(&ideal, joints + drives + i, true)]
     });
-    let platform = joints + 2 * drives;
+    let output = joints + 2 * drives;
+    let body = &mechanism.bodies[mechanism.output].name;
     let chart = |title: &str, unit: &str, curves: Vec<SceneCurve>| SceneChart {
         title: title.into(),
         unit: unit.into(),
@@ -171,11 +172,11 @@ fn charts(mechanism: &Mechanism) -> Vec<SceneChart> {
         ),
         chart("Actuator forces", "N", actuators.collect()),
         chart(
-            "Platform acceleration, peaks",
+            &format!("Acceleration of the {body}, peaks"),
             "m/s²",
-            vec![curve("platform", platform, false), curve("ideal", platform + 1, true)],
+            vec![curve(body, output, false), curve("ideal", output + 1, true)],
         ),
-        chart("Path error", "mm", vec![curve("platform", platform + 2, false)]),
+        chart("Path error", "mm", vec![curve(body, output + 2, false)]),
     ];
     charts.retain(|chart| !chart.curves.is_empty());
     charts

@@ -25,11 +25,13 @@ const ORBIT_ROWS: usize = 4000;
 /// What the pictures show.
 #[derive(Debug)]
 pub(super) struct Gallery {
+    /// Name of the output body.
+    body: String,
     interval: f64,
     path: Recent,
     ideal_path: Recent,
     path_error: Envelope,
-    /// a_x, a_y, α of the platform.
+    /// a_x, a_y, α of the output body.
     accelerations: [Envelope; 3],
     /// |(a_x, a_y)|, peak since the row before.
     peak_acceleration: Envelope,
@@ -71,6 +73,7 @@ impl Gallery {
             orbit: Recent::new(ORBIT_ROWS),
         });
         Self {
+            body: mechanism.bodies[mechanism.output].name.clone(),
             interval: schedule.interval,
             path: path(),
             ideal_path: path(),
@@ -123,18 +126,19 @@ impl Gallery {
 
     fn path(&self) -> Result<Picture, ReportError> {
         let curves = [
-            Curve { name: "platform".into(), points: pairs(&self.path), style: Style::Solid },
+            Curve { name: self.body.clone(), points: pairs(&self.path), style: Style::Solid },
             ideal(pairs(&self.ideal_path)),
         ];
         Ok(Picture {
             file: "path.svg".into(),
-            title: "Path of the platform".into(),
-            caption: "Where the platform's centre went (blue), and where it would have gone without \
-                      clearance (dashed). Both axes have the same scale; what the clearance does to \
-                      the path is often too small to see here and stands in the next figure."
-                .to_owned()
-                + &self.only_the_end(&self.path, PATH_ROWS),
-            svg: path_svg("Path of the platform's centre", &curves)?,
+            title: format!("Path of the {}", self.body),
+            caption: format!(
+                "Where the {}'s centre went (blue), and where the ideal machine's would have gone \
+                 (dashed). Both axes have the same scale; what clearance does to the path is often too \
+                 small to see here and stands in the next figure.",
+                self.body
+            ) + &self.only_the_end(&self.path, PATH_ROWS),
+            svg: path_svg(&format!("Path of the {}'s centre", self.body), &curves)?,
         })
     }
 
@@ -148,7 +152,7 @@ impl Gallery {
 
     fn path_error(&self) -> Result<Picture, ReportError> {
         let panel = Panel {
-            title: "Distance of the platform from its ideal position".into(),
+            title: format!("Distance of the {} from its ideal position", self.body),
             x_label: TIME.into(),
             y_label: "distance (mm)".into(),
             curves: vec![solid("distance", &self.path_error)],
@@ -156,11 +160,12 @@ impl Gallery {
         Ok(Picture {
             file: "path-error.svg".into(),
             title: "Path error".into(),
-            caption:
-                "How far the platform's centre is from where it would be without clearance, at \
-                      the same time. Free play lets it lag, lead and wander, within what the \
-                      clearances of all joints together leave it."
-                    .into(),
+            caption: format!(
+                "How far the {}'s centre is from where the ideal machine's would be at the same time. \
+                 Free play lets it lag, lead and wander, within what the clearances of all joints \
+                 together leave it.",
+                self.body
+            ),
             svg: panels_svg(&[panel])?,
         })
     }
@@ -178,22 +183,23 @@ impl Gallery {
                 title: (*title).into(),
                 x_label: TIME.into(),
                 y_label: (*label).into(),
-                curves: vec![solid("platform", envelope), ideal(ideal_envelope.points())],
+                curves: vec![solid(&self.body, envelope), ideal(ideal_envelope.points())],
             })
             .collect();
         panels.push(Panel {
             title: "Peaks: largest |(a_x, a_y)| since the row before".into(),
             x_label: TIME.into(),
             y_label: "|a| (m/s²)".into(),
-            curves: vec![solid("platform", &self.peak_acceleration)],
+            curves: vec![solid(&self.body, &self.peak_acceleration)],
         });
         Ok(Picture {
             file: "acceleration.svg".into(),
-            title: "Acceleration of the platform".into(),
+            title: format!("Acceleration of the {}", self.body),
             caption: format!(
-                "Acceleration of the platform's centre and angle, and of the ideal machine \
+                "Acceleration of the {}'s centre and angle, and of the ideal machine \
                  (dashed). A spike is a journal that hits its bearing. The first three curves are sampled every {} ms, longer than many \
                  hits, and miss the tips of spikes; the last one misses none.",
+                self.body,
                 number(1e3 * self.interval)
             ),
             svg: panels_svg(&panels)?,

@@ -155,7 +155,7 @@ fn run_into(
     for picture in &pictures {
         write(&picture.file, &picture.svg)?;
     }
-    write(PAGE_FILE, &page(&summary, &pictures))?;
+    write(PAGE_FILE, &page(&summary, &mechanism.bodies[mechanism.output].name, &pictures))?;
     write(PLAYER_FILE, &film.player())?;
     write(ANIMATION_FILE, &film.animation())?;
     Ok((summary, json))

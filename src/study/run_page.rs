@@ -6,18 +6,19 @@ use crate::scenario::{DriveMode, Law};
 use crate::simulate::Summary;
 
 /// The page as HTML.
-pub(super) fn page(summary: &Summary, pictures: &[Picture]) -> String {
+/// `body` is the name of the output body.
+pub(super) fn page(summary: &Summary, body: &str, pictures: &[Picture]) -> String {
     let title = format!("Run: {}", summary.provenance.scenario_name);
-    let (facts, provenance) = (facts(summary), provenance(summary));
+    let (facts, provenance) = (facts(summary, body), provenance(summary));
     let player =
         Part::Link { file: PLAYER_FILE, text: "▶ Watch the machine and its joints move" };
     let parts =
         [player, Part::Facts(&facts), Part::Pictures(pictures), Part::Provenance(&provenance)];
-    report::document(&title, &lead(summary), &parts)
+    report::document(&title, &lead(summary, body), &parts)
 }
 
 /// The main result in words.
-fn lead(s: &Summary) -> String {
+fn lead(s: &Summary, body: &str) -> String {
     if let Some(reason) = &s.halted {
         return format!(
             "The run did not reach its end: {reason}. What follows holds up to {} s.",
@@ -26,15 +27,18 @@ fn lead(s: &Summary) -> String {
     }
     if s.law == Law::Ideal {
         return format!(
-            "Without clearance, the actuators need up to {} N, and the platform accelerates at up \
-             to {} m/s² ({} s simulated).",
-            number(s.peak_actuator_force),
+            "Without clearance, {}the {body} accelerates at up to {} m/s² ({} s simulated).",
+            if s.peak_actuator_force > 0.0 {
+                format!("the actuators need up to {} N, and ", number(s.peak_actuator_force))
+            } else {
+                String::new()
+            },
             number(s.peak_platform_acceleration_m_s2),
             number(s.simulated_s)
         );
     }
     format!(
-        "With {} in its joints, the platform strays from its ideal path by up to {} and accelerates \
+        "With {} in its joints, the {body} strays from its ideal path by up to {} and accelerates \
          at up to {} m/s², where the machine without clearance needs {} m/s². The journals hit \
          their bearings {} times a second, with up to {} N; the actuators feel up to {} N instead \
          of {} N.{}",
@@ -74,7 +78,7 @@ fn clearance(s: &Summary) -> String {
     }
 }
 
-fn facts(s: &Summary) -> Vec<Fact> {
+fn facts(s: &Summary, body: &str) -> Vec<Fact> {
     let fact = |label: &str, value: String, note: String| Fact { label: label.into(), value, note };
     let unit = |value: f64, unit: &str| format!("{} {unit}", number(value));
     let ideal = |value: f64, unit: &str| format!("ideal machine: {} {unit}", number(value));
@@ -82,7 +86,7 @@ fn facts(s: &Summary) -> Vec<Fact> {
     if s.has_figures() {
         facts.extend([
             fact(
-                "Peak platform acceleration",
+                &format!("Peak {body} acceleration"),
                 unit(s.peak_platform_acceleration_m_s2, "m/s²"),
                 ideal(s.ideal_peak_platform_acceleration_m_s2, "m/s²"),
             ),

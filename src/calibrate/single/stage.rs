@@ -5,12 +5,17 @@ use super::calibration::{Adjusted, Found, Ranked};
 use crate::calibrate::report::{EffectReport, Fitted};
 use crate::calibrate::result::CalibrateError;
 use crate::effects::{Range as Tried, Setting, named};
-use crate::identify::Recorded;
 use crate::identify::inverse::{Model, Term};
 use crate::identify::paired::Ratio;
-use crate::identify::stage::{Recording, cascade, effects, halves, lag, ripple, scenario};
-use crate::scenario::{Mechanism, Scenario};
+use crate::identify::stage::{
+    Recording, Samples, cascade, effects, first_length, halves, lag, ripple, simulated_force, stage,
+};
+use crate::identify::{self, Missing, Recorded};
+use crate::mechanism::Mechanism;
+use crate::scenario::{self, Scenario};
+use crate::simulate::started;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Stretches in s over which errors are compared: longer than what is left remembers, a tenth of a
 /// second at most, with some to spare.
@@ -27,6 +32,9 @@ const WORTH: f64 = 0.01;
 /// Speeds in m/s that are tried for friction that builds up or falls: from a hundredth of working speeds
 /// to a good share of them.
 const SPEEDS: [f64; 9] = [2e-3, 4e-3, 6e-3, 8e-3, 1e-2, 1.4e-2, 2e-2, 3e-2, 5e-2];
+
+/// What is lacking where the drive is later than declared.
+const LAG: &str = "lag of the drive (drive.sampled.lag)";
 
 /// What may be added to a model: the effect, its form in words, and the terms.
 struct Candidate {
@@ -90,12 +98,10 @@ const WAYS: [Term; 4] = [
     Term::CoulombWay(false),
 ];
 
-/// What the rig declares, as terms: mass and viscous friction at least.
+/// What the rig declares, as terms: mass and viscous friction at least. The lag always: a force that is
+/// held from sample to sample comes half a sample late.
 fn declared(rig: &Scenario) -> Vec<Term> {
-    let mut terms = vec![Term::Mass];
-    if cascade(rig).is_some_and(|cascade| cascade.lag > 0.0) {
-        terms.push(Term::Lag);
-    }
+    let mut terms = vec![Term::Mass, Term::Lag];
     for term in rig.effects.iter().filter_map(terms_of).flatten() {
         if !terms.contains(&term) {
             terms.push(term);
@@ -129,9 +135,6 @@ fn candidates(terms: &[Term], without: &[&str]) -> Vec<Candidate> {
         let others: Vec<Term> = terms.iter().filter(symmetric).copied().collect();
         let what = "friction that differs with direction".to_owned();
         add("actuator-friction", what, [&others[..], &WAYS].concat());
-    }
-    if !has(|t| *t == Term::Lag) {
-        add("drive-lag", "lag of the drive".to_owned(), with(&[Term::Lag]));
     }
     for speed in SPEEDS {
         let mm = 1e3 * speed;
@@ -197,6 +200,72 @@ impl Judge {
         let model = self.fit(motion.rows(), terms)?;
         let each = self.held.iter().map(|r| model.left(&r.motion, &r.motion.blocks(BLOCK)));
         Some(each.collect::<Vec<_>>().concat())
+    }
+}
+
+/// Kinds of effects by the terms that they add to what is declared.
+fn kind_of(term: &Term) -> Option<&'static str> {
+    match term {
+        Term::Coulomb | Term::Offset | Term::CoulombWay(_) => Some("actuator-friction"),
+        Term::Film(_) => Some("film-friction"),
+        Term::Stribeck(_) => Some("stribeck-friction"),
+        Term::Drag => Some("air-drag"),
+        Term::Ripple(..) => Some("screw-ripple"),
+        Term::Mass | Term::Lag | Term::Viscous | Term::ViscousWay(_) => None,
+    }
+}
+
+impl Judge {
+    /// What closed loops miss of the force in N, stretch by stretch, on runs that were not fitted to (on
+    /// the data where there are no others).
+    fn simulated(
+        &self,
+        build: impl Fn(&Recording) -> Result<Mechanism, Missing>,
+    ) -> Result<Vec<f64>, CalibrateError> {
+        let runs =
+            if self.held.is_empty() { std::slice::from_ref(&self.data) } else { &self.held[..] };
+        let mut left = Vec::new();
+        for run in runs {
+            let force = simulated_force(&build(run)?, run)?;
+            left.extend(run.motion.missed(&force, &run.motion.blocks(BLOCK)));
+        }
+        Ok(left)
+    }
+
+    /// Takes out, latest first, the kinds of effects without which the simulated closed loop is not
+    /// certainly worse: the regression knows the sign of the speed, the simulation what the machine
+    /// does around it. Those of the declared terms stay. Returns the kinds that went.
+    fn drop_idle(
+        &self,
+        terms: &mut Vec<Term>,
+        declared: &[Term],
+    ) -> Result<Vec<&'static str>, CalibrateError> {
+        let mut dropped = Vec::new();
+        let ours = |term: &Term| kind_of(term).filter(|_| !declared.contains(term));
+        let mut kinds: Vec<&'static str> = Vec::new();
+        for kind in terms.iter().rev().filter_map(ours) {
+            if !kinds.contains(&kind) {
+                kinds.push(kind);
+            }
+        }
+        for kind in kinds {
+            let without: Vec<Term> =
+                terms.iter().filter(|term| ours(term) != Some(kind)).copied().collect();
+            let rows = self.data.motion.rows();
+            let (Some(with), Some(less)) =
+                (self.fit(rows.clone(), terms), self.fit(rows, &without))
+            else {
+                continue;
+            };
+            let with = self.simulated(|run| stage(&with, run))?;
+            let less = self.simulated(|run| stage(&less, run))?;
+            let ratio = Ratio::of(&less, &with);
+            if ratio.ci95[0] <= 1.0 || ratio.mean < 1.0 + WORTH {
+                *terms = without;
+                dropped.push(kind);
+            }
+        }
+        Ok(dropped)
     }
 }
 
@@ -285,8 +354,27 @@ pub(super) fn search(
         added.push((candidate.kind, evidence));
         (terms, left) = (candidate.terms, after);
     }
+    tell("simulating the closed loop without each");
+    let dropped = judge.drop_idle(&mut terms, &declared(rig))?;
+    added.retain(|(kind, _)| !dropped.contains(kind));
+    for ranked in &mut ranking {
+        ranked.kept &= !dropped.contains(&ranked.kind);
+    }
     let model = judge.fit(judge.data.motion.rows(), &terms).ok_or_else(unfit)?;
-    Ok(found(rig, &judge, &model, ranking, added))
+    let mut found = found(rig, &judge, &model, ranking, added);
+    // Numbers that are not certainly better than the declared ones stay as declared.
+    let fitted = judge.simulated(|run| stage(&model, run))?;
+    let as_declared = judge.simulated(|run| {
+        let start = [first_length(&run.log), 0.0];
+        started(rig, start, Arc::new(Samples::of(&run.log)))
+            .map_err(|problem| Missing::Wrong(problem.to_string()))
+    })?;
+    let effects = found.added.iter().any(|name| name != LAG);
+    if !effects && Ratio::of(&as_declared, &fitted).ci95[0] <= 1.0 {
+        found.scenario = rig.clone();
+        found.added.clear();
+    }
+    Ok(found)
 }
 
 fn found(
@@ -327,29 +415,31 @@ fn found(
         Adjusted { path, unit, declared, value, std, ci95 }
     };
     let mass = match &rig.mechanism {
-        Mechanism::DriveStage(stage) => stage.mass,
-        Mechanism::ThreeRpr(_) | Mechanism::Pendulum(_) => f64::NAN,
+        scenario::Mechanism::DriveStage(stage) => stage.mass,
+        scenario::Mechanism::ThreeRpr(_) | scenario::Mechanism::Pendulum(_) => f64::NAN,
     };
     let whole = model.factor(Term::Mass);
     let mut parameters = vec![adjusted("mechanism.mass", "kg", mass, whole, std(Term::Mass))];
-    if model.factor(Term::Lag) != 0.0 {
-        let cascade = judge.data.cascade;
-        let spread = std(Term::Lag) / whole;
-        let value = lag(model, &cascade);
-        parameters.push(adjusted("drive.sampled.lag", "s", cascade.lag, value, spread));
-    }
     let mut names: Vec<String> = Vec::new();
     for (kind, _) in added {
-        let name = if kind == "drive-lag" {
-            "lag of the drive (drive.sampled.lag)".to_owned()
-        } else {
-            kind.to_owned()
-        };
-        if !names.contains(&name) {
-            names.push(name);
+        if !names.iter().any(|name| name == kind) {
+            names.push(kind.to_owned());
         }
     }
-    Found { scenario: scenario(rig, model), effects, parameters, ranking, added: names }
+    let cascade = judge.data.cascade;
+    let slow = lag(model, &cascade);
+    let late = adjusted("drive.sampled.lag", "s", cascade.lag, slow, std(Term::Lag) / whole);
+    if (slow - cascade.lag).abs() > CERTAIN * 1.96 * late.std {
+        names.push(LAG.to_owned());
+    }
+    parameters.push(late);
+    Found {
+        scenario: identify::stage::scenario(rig, model),
+        effects,
+        parameters,
+        ranking,
+        added: names,
+    }
 }
 
 /// A value with its standard deviation.

@@ -4,7 +4,7 @@
 use super::Table;
 use crate::identify::Missing;
 use crate::identify::inverse::{Model, Motion, Term};
-use crate::identify::stage::{PITCH, closed_loop, controller_force, halves};
+use crate::identify::stage::{PITCH, halves, simulated_force, stage};
 use std::ops::Range;
 
 pub use crate::identify::stage::Recording;
@@ -95,11 +95,7 @@ pub fn study(train: &Recording, pulses: &Recording) -> Result<Outcome, Missing> 
     let step = |name, trace, model: Model, halves| -> Result<Step, Missing> {
         let mut simulated = [0.0; 2];
         for (error, recording) in simulated.iter_mut().zip([train, pulses]) {
-            let force = controller_force(
-                &recording.cascade,
-                &recording.log,
-                &closed_loop(&model, recording)?,
-            );
+            let force = simulated_force(&stage(&model, recording)?, recording)?;
             *error = recording.motion.relative_error(&force, recording.motion.rows());
         }
         let (train, pulses) =
@@ -142,7 +138,7 @@ fn carry(model: &Model, pulses: &Recording) -> Result<Carried, Missing> {
     let mut carried = Carried { model: again.clone(), inverse: [0.0; 2], simulated: [0.0; 2] };
     for (k, model) in [model, &again].into_iter().enumerate() {
         carried.inverse[k] = model.error(&pulses.motion, second.clone());
-        let force = controller_force(&pulses.cascade, &pulses.log, &closed_loop(model, pulses)?);
+        let force = simulated_force(&stage(model, pulses)?, pulses)?;
         carried.simulated[k] = pulses.motion.relative_error(&force, second.clone());
     }
     Ok(carried)

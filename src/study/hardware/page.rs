@@ -189,9 +189,9 @@ pub fn pendulum_page(
                 "Errors of the angle, model by model",
                 found.table(),
                 "Root mean square over windows of 2.5 s side by side, in each of which angle and speed at \
-                 the start are fitted to the first 0.25 s. All models are fitted to id; every other window of \
-                 id by the rest is what a model is chosen by, fewer parameters first where that \
-                 makes less than a tenth of difference. That rule was settled with val known: choosing \
+                 the start are fitted to the first 0.25 s. All models are fitted to id; of those that are not \
+                 certainly worse than the best (95 %, every other window of id by a model of the rest), the \
+                 one with fewest numbers is chosen. That rule was settled with val known: choosing \
                  by the last third of id instead takes viscous friction alone, so that the choice of \
                  model, unlike its numbers, is not independent of val.",
             ),
