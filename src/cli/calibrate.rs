@@ -97,12 +97,12 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     } else if !arguments.print.quiet {
         let report = &calibrated.report;
         let simulated = format!("{} simulations in ", report.simulations);
-        let Report { scenario_name, summary, effects, errors, wall_s, .. } = report;
+        let Report { provenance, summary, effects, errors, wall_s, .. } = report;
         let folder = &calibrated.folder;
         let seconds = *wall_s;
         let parameters = &[];
         let shown = Shown {
-            scenario_name,
+            scenario_name: &provenance.scenario_name,
             summary,
             effects,
             parameters,
@@ -137,7 +137,7 @@ fn single_joint(
     } else if !arguments.print.quiet {
         let report = &calibrated.report;
         let shown = Shown {
-            scenario_name: &report.scenario_name,
+            scenario_name: &report.provenance.scenario_name,
             summary: &report.summary,
             effects: &report.effects,
             parameters: &report.parameters,

@@ -72,7 +72,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         output::print(&predicted.json)?;
     } else if !arguments.print.quiet {
         let p = &predicted.prediction;
-        output::print(&text(&p.scenario_name, &p.run, &p.effects, &p.errors, &predicted.folder))?;
+        output::print(&text(
+            &p.provenance.scenario_name,
+            &p.run,
+            &p.effects,
+            &p.errors,
+            &predicted.folder,
+        ))?;
     }
     Ok(())
 }
@@ -91,7 +97,13 @@ fn single_joint(arguments: &Arguments, model: &Scenario, machine: Machine) -> Re
         output::print(&predicted.json)?;
     } else if !arguments.print.quiet {
         let p = &predicted.prediction;
-        output::print(&text(&p.scenario_name, &p.run, &p.effects, &p.errors, &predicted.folder))?;
+        output::print(&text(
+            &p.provenance.scenario_name,
+            &p.run,
+            &p.effects,
+            &p.errors,
+            &predicted.folder,
+        ))?;
         if !p.carried_columns.is_empty() {
             let carried = p.carried_columns.join(", ");
             output::print(&format!(

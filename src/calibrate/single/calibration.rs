@@ -12,10 +12,10 @@ use crate::calibrate::outcome::Verdict;
 use crate::calibrate::recording::stem;
 use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CALIBRATED_FILE, CalibrateError, REPORT_FILE, to_json};
-use crate::engine::RAPIER_VERSION;
 use crate::identify::Recorded;
 use crate::report::Style;
 use crate::scenario::Scenario;
+use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use serde::Serialize;
 use std::fs;
@@ -25,16 +25,9 @@ use std::time::Instant as Clock;
 /// `report.json`; keys as those of other machines, where they have a meaning here.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// The program that wrote this: how a result is told from other files.
-    pub program: &'static str,
-    /// Its version.
-    pub version: &'static str,
-    /// Version of the physics engine underneath.
-    pub rapier_version: &'static str,
-    /// Name of the rig.
-    pub scenario_name: String,
-    /// SHA-256 of the rig as declared, overrides included.
-    pub scenario_hash: String,
+    /// Which program made this of which rig.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// What the calibration comes to.
     pub verdict: Verdict,
     /// The same in a sentence or two.
@@ -203,11 +196,7 @@ pub fn into_folder(
     let written = files.iter().map(|(name, _)| name.clone());
     let drawn = pictures.iter().map(|picture| picture.file.clone());
     let report = Report {
-        program: env!("CARGO_PKG_NAME"),
-        version: env!("CARGO_PKG_VERSION"),
-        rapier_version: RAPIER_VERSION,
-        scenario_name: rig.name.clone(),
-        scenario_hash: rig.hash(),
+        provenance: Provenance::of(&rig),
         verdict,
         summary: summary(verdict, &found.added),
         effects: found.effects,

@@ -34,21 +34,18 @@ pub(super) fn prediction(p: &Prediction, machine: Machine, pictures: &[Picture])
     };
     let lead = format!(
         "{}, a {} {effects}, {}, against {}.{carried}",
-        p.scenario_name,
+        p.provenance.scenario_name,
         machine.words(),
         along(machine),
         p.run
     );
     let note = format!("{NOTE} After: the model; before: the model without its effects.");
-    let provenance = [
-        ("Program", format!("{} {}, on rapier2d-f64 {}", p.program, p.version, p.rapier_version)),
-        ("Model", p.scenario_name.clone()),
-        ("SHA-256 of the model", p.scenario_hash.clone()),
+    let more = [
         ("Run", p.run.clone()),
         ("Figures", "errors.json, predicted.csv beside this page".to_owned()),
         ("Time of computing", format!("{} s", number(p.wall_s))),
-    ]
-    .map(|(label, value)| (label.to_owned(), value));
+    ];
+    let provenance = p.provenance.lines("model", None, more);
     let parts = [
         Part::Table(errors_table(&p.errors, &note)),
         Part::Pictures(pictures),
@@ -120,14 +117,11 @@ pub(super) fn calibration(r: &Report, machine: Machine, pictures: &[Picture]) ->
         .iter()
         .map(|effect| format!("{}: {}. It {}.", effect.kind, effect.equation, effect.evidence))
         .collect();
-    let provenance = [
-        ("Program", format!("{} {}, on rapier2d-f64 {}", r.program, r.version, r.rapier_version)),
-        ("Rig", r.scenario_name.clone()),
-        ("SHA-256 of the rig", r.scenario_hash.clone()),
+    let more = [
         ("Figures", "report.json beside this page".to_owned()),
         ("Time of computing", format!("{} s", number(r.wall_s))),
-    ]
-    .map(|(label, value)| (label.to_owned(), value));
+    ];
+    let provenance = r.provenance.lines("rig", None, more);
     let note =
         format!("{NOTE} Before: the rig as declared; after: calibrated; {}.", along(machine));
     let mut parts = vec![Part::Table(values)];
@@ -138,6 +132,6 @@ pub(super) fn calibration(r: &Report, machine: Machine, pictures: &[Picture]) ->
     parts.push(Part::Pictures(pictures));
     parts.push(Part::Table(ranking));
     parts.push(Part::Provenance(&provenance));
-    let title = format!("Calibration of {}: {}", r.scenario_name, verdict(r.verdict));
+    let title = format!("Calibration of {}: {}", r.provenance.scenario_name, verdict(r.verdict));
     document(&title, &r.summary, &parts)
 }

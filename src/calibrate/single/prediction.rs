@@ -9,12 +9,12 @@ use crate::calibrate::errors::{ChannelError, rms};
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
 use crate::calibrate::result::{CalibrateError, to_json};
 use crate::calibrate::search::name;
-use crate::engine::RAPIER_VERSION;
 use crate::identify::Recorded;
 use crate::identify::arm::PLAN;
 use crate::measure::log::Log;
 use crate::report::Style;
 use crate::scenario::Scenario;
+use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use serde::Serialize;
 use std::fs;
@@ -24,16 +24,9 @@ use std::time::Instant as Clock;
 /// `errors.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Prediction {
-    /// The program that wrote this: how a result is told from other files.
-    pub program: &'static str,
-    /// Its version.
-    pub version: &'static str,
-    /// Version of the physics engine underneath.
-    pub rapier_version: &'static str,
-    /// Name of the model.
-    pub scenario_name: String,
-    /// SHA-256 of the model, overrides included.
-    pub scenario_hash: String,
+    /// Which program made this of which model.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// The recording.
     pub run: String,
     /// Names of the model's effects.
@@ -120,11 +113,7 @@ pub fn predict(
     let pictures = charts::of_run(log, "prediction", &models).map_err(RunError::from)?;
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let prediction = Prediction {
-        program: env!("CARGO_PKG_NAME"),
-        version: env!("CARGO_PKG_VERSION"),
-        rapier_version: RAPIER_VERSION,
-        scenario_name: model.name.clone(),
-        scenario_hash: model.hash(),
+        provenance: Provenance::of(model),
         run: log.name.clone(),
         effects: model.effects.iter().map(name).collect(),
         errors,
