@@ -136,9 +136,7 @@ fn rig_1() {
     check(1);
 }
 
-/// Steep friction makes simulations slow, and six rivals are simulated.
 #[test]
-#[ignore = "slow: several minutes"]
 fn rig_2() {
     check(2);
 }
@@ -153,18 +151,31 @@ fn rig_4() {
     check(4);
 }
 
-/// Two things are missing there; the search names the first and takes a second from others that swing
-/// the platform alike, so that pose errors stay at several floors.
+/// Two things are missing there. Both are found, but one leg is all but unloaded where the machine turns
+/// back: its journal crosses over at times that hang on the last digits of gravity, known to a hundredth.
 #[test]
-#[ignore = "not reached: pose errors stay at several floors"]
+#[ignore = "not reached: phi of the validation run stays at 1.6 floors, all else within 1.3"]
 fn rig_5() {
     check(5);
 }
 
+/// Its two effects are found although the first is first mistaken for a rival, and although the swing that
+/// its recordings begin with is not that of any release that we know.
 #[test]
-#[ignore = "not shown to hold: its search takes several minutes"]
+fn rig_5_lacks_two_things() {
+    let Done { outcome, .. } = done(5);
+    assert_eq!(outcome.verdict, Verdict::Explained);
+    assert_eq!(outcome.effects.len(), 2, "{:?}", outcome.effects);
+    for error in outcome.errors.iter().filter(|error| error.role == "validation") {
+        assert!(error.after < 2.0 * error.floor, "{error:?}");
+    }
+}
+
+/// What it lacks has no name here: a table of forces stands in for it.
+#[test]
 fn rig_6() {
     check(6);
+    assert_eq!(done(6).outcome.verdict, Verdict::Unexplained);
 }
 
 /// A method that always finds something finds nothing.

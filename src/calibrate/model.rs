@@ -126,10 +126,15 @@ struct Part {
     segment: Segment,
     bias: Vec<Vec<f64>>,
     noise: Noise,
+    /// Whether the start was guided by the log.
+    guided: bool,
 }
 
-/// Draws of sensor noise from which a mean and a covariance are taken, at least.
+/// Draws of sensor noise from which a covariance is taken.
 const DRAWS: usize = 16;
+
+/// Draws of the swing that a guided start may be wrong by.
+const SWINGS: u64 = 2;
 
 impl Case {
     /// Coefficients of the residuals of a log under a mechanism.
@@ -171,9 +176,9 @@ impl Case {
         Ok(self.runs.iter().map(|_| logs.by_ref().take(count).collect()).collect())
     }
 
-    /// Simulations that a baseline takes.
+    /// Simulations that a baseline takes, at most.
     pub fn simulations(&self) -> usize {
-        self.runs.len() * (self.replicas + usize::from(!self.chaotic))
+        self.runs.len() * if self.chaotic { self.replicas } else { self.replicas + SWINGS as usize }
     }
 
     /// The machine of each run, with these effects, let go.
@@ -198,14 +203,20 @@ impl Case {
         segments: &[Segment],
     ) -> Result<Baseline, SearchError> {
         let mut machines = self.released(effects)?;
-        let mut swinging: Vec<Option<Log>> = vec![None; self.runs.len()];
+        let mut swinging: Vec<Vec<Log>> = vec![Vec::new(); self.runs.len()];
         if !self.chaotic {
             for ((machine, run), swinging) in machines.iter_mut().zip(&self.runs).zip(&mut swinging)
             {
                 let (log, sensors, control) = (&run.log, &self.sensors, self.control);
                 if swings_otherwise(machine, log, sensors, control)? {
-                    let noisy = guided(machine, &replica::with_noise(log, sensors, 3000));
-                    *swinging = Some(replica::simulate(&noisy, sensors, control, log, 0)?);
+                    let otherwise = |seed| {
+                        let noisy = guided(machine, &replica::with_noise(log, sensors, seed));
+                        replica::simulate(&noisy, sensors, control, log, 0)
+                    };
+                    *swinging = (3000..3000 + SWINGS)
+                        .into_par_iter()
+                        .map(otherwise)
+                        .collect::<Result<_, Halt>>()?;
                     *machine = guided(machine, log);
                 }
             }
@@ -217,42 +228,23 @@ impl Case {
                 let lens = Lens::new(log).expect("the channels of the recorded log");
                 self.coefficients(&lens, machine, segment)
             };
-            // Residuals are seen through noise: where they are bent, as friction is by the noise of a
-            // slow speed, so is their mean.
             let logs = &logs[segment.run];
-            let each = DRAWS.div_ceil(logs.len());
-            let noisy: Vec<Vec<Vec<f64>>> = (0..each * logs.len())
+            let clean: Vec<Vec<Vec<f64>>> = logs.par_iter().map(look).collect();
+            let bias = mean(&clean);
+            // A replica stands for the data, the mean of the others for the bias: sensor noise, the
+            // rattle of one run, and what is left of it in a mean.
+            let draws: Vec<Vec<Vec<f64>>> = (0..DRAWS)
                 .into_par_iter()
                 .map(|draw| {
-                    let log = &logs[draw / each];
-                    look(&replica::with_noise(log, &self.sensors, draw as u64 + 1000))
+                    let index = draw % clean.len();
+                    let log = replica::with_noise(&logs[index], &self.sensors, draw as u64 + 1000);
+                    difference(&look(&log), &without(&bias, &clean[index], clean.len()))
                 })
                 .collect();
-            let bias = mean(&noisy);
-            // A draw stands for the data, the mean of the others for the bias, those of its own replica
-            // aside where there are several: sensor noise, the rattle of one run, and what is left of both
-            // in a mean.
-            let own = if logs.len() > 1 { each } else { 1 };
-            let draws: Vec<Vec<Vec<f64>>> = noisy
-                .par_chunks(own)
-                .flat_map_iter(|same| {
-                    let (count, same_mean) = (noisy.len() as f64, mean(same));
-                    let part = same.len() as f64 / count;
-                    let others: Vec<Vec<f64>> = bias
-                        .iter()
-                        .zip(&same_mean)
-                        .map(|(all, own)| {
-                            let both = all.iter().zip(own);
-                            both.map(|(all, own)| (all - part * own) / (1.0 - part)).collect()
-                        })
-                        .collect();
-                    same.iter().map(move |draw| difference(draw, &others))
-                })
-                .collect();
-            let other = swinging[segment.run].as_ref();
-            let swing = other.map(|log| difference(&look(log), &look(&logs[0])));
-            let noise = Noise::from_draws(&draws, swing.as_deref());
-            Part { segment: segment.clone(), bias, noise }
+            let others = swinging[segment.run].iter();
+            let swings: Vec<_> = others.map(|log| difference(&look(log), &clean[0])).collect();
+            let noise = Noise::from_draws(&draws, &swings);
+            Part { segment: segment.clone(), bias, noise, guided: !swings.is_empty() }
         };
         Ok(Baseline { parts: segments.iter().map(part).collect() })
     }
@@ -305,6 +297,11 @@ impl Baseline {
         parts.map(|part| part.noise.log_determinant()).sum()
     }
 
+    /// Whether the start of any run was guided by its log.
+    pub fn guided(&self) -> bool {
+        self.parts.iter().any(|part| part.guided)
+    }
+
     /// Channel (servo, closure, dynamics of each leg) and frequency in Hz of each number of
     /// [`Case::white`] for these segments.
     pub fn places(&self, case: &Case, segments: &[Segment]) -> Vec<(usize, f64)> {
@@ -322,6 +319,17 @@ impl Baseline {
 fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let channels = a.iter().zip(b);
     channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
+}
+
+/// The mean of `count` draws with one of them left out, if that leaves any.
+fn without(mean: &[Vec<f64>], own: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
+    if count < 2 {
+        return own.to_vec();
+    }
+    let part = 1.0 / count as f64;
+    let left = |(all, own): (&f64, &f64)| (all - part * own) / (1.0 - part);
+    let channels = mean.iter().zip(own);
+    channels.map(|(all, own)| all.iter().zip(own).map(left).collect()).collect()
 }
 
 fn mean(draws: &[Vec<Vec<f64>>]) -> Vec<Vec<f64>> {

@@ -104,6 +104,12 @@ pub fn search(
     let mut ways = vec![best.clone()];
     let mut certain = Vec::new();
     while best.model.fit.effects.len() < EFFECTS {
+        // What is noise already is not explained any better, only looked through for the record.
+        if is_noise(&left(case, question, &best.model)) {
+            let ranking = screen(case, question, &best.model).into_iter().map(|(scored, _)| scored);
+            best.rounds.push(Round { ranking: ranking.collect(), added: None });
+            break;
+        }
         let mut next: Vec<Way> = Vec::new();
         let mut searched = Vec::new();
         let mut tried: Vec<Vec<String>> = Vec::new();
@@ -124,17 +130,20 @@ pub fn search(
         tell(&format!("settling {}", names(&winner.model.fit.effects)));
         let model = settle(case, question, &winner.model.fit.effects, SETTLES)?;
         simulations += model.times * case.simulations();
-        let model = simplified(case, question, model);
+        let mut model = simplified(case, question, model);
+        if Way::key(&model.fit.effects) != Way::key(&winner.model.fit.effects) {
+            // What a lens is wrong by depends on all values.
+            model = settle(case, question, &model.fit.effects, SETTLES)?;
+            simulations += model.times * case.simulations();
+        }
         let before = best.cost();
         best = Way { model, ..winner };
         let drop = before - best.cost();
         ways = vec![best.clone()];
         certain.extend(next.iter().chain([&best]).filter(|way| way.certain).cloned());
-        if !is_noise(&left(case, question, &best.model)) {
-            next.retain(|way| before - way.cost() > WAY_SHARE * drop);
-            next.truncate(WAYS - 1);
-            ways.append(&mut next);
-        }
+        next.retain(|way| before - way.cost() > WAY_SHARE * drop);
+        next.truncate(WAYS - 1);
+        ways.append(&mut next);
     }
     let (kept, count) = needed(case, question, best.model, threshold, tell)?;
     best.model = kept;

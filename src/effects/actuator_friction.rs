@@ -51,7 +51,6 @@ pub(super) const KIND: Kind = Kind {
         &["coulomb_N", "viscous_Ns_m"],
         &["offset_N"],
         &["coulomb_N", "viscous_Ns_m", "offset_N"],
-        &["coulomb_N", "viscous_Ns_m", "velocity_m_s"],
         &["coulomb_pos_N", "coulomb_neg_N", "viscous_pos_Ns_m", "viscous_neg_Ns_m"],
         &["coulomb_pos_N", "coulomb_neg_N", "viscous_pos_Ns_m", "viscous_neg_Ns_m", "velocity_m_s"],
     ],
