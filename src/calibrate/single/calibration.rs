@@ -196,7 +196,7 @@ pub fn into_folder(
     let written = files.iter().map(|(name, _)| name.clone());
     let drawn = pictures.iter().map(|picture| picture.file.clone());
     let report = Report {
-        provenance: Provenance::of(&rig),
+        provenance: Provenance::of(rig),
         verdict,
         summary: summary(verdict, &found.added),
         effects: found.effects,
