@@ -7,7 +7,7 @@ use super::model::{Case, Run, SearchError, Segment};
 use super::search::{Found, Round, Way, name, search};
 use super::settle::{Question, Settled};
 use super::unnamed::{Described, describe};
-use crate::effects::Setting;
+use crate::effects::{Setting, UNNAMED};
 use crate::measure::log::Log;
 use serde::Serialize;
 
@@ -135,7 +135,12 @@ fn remaining(
     certain.truncate(BASES);
     let mut best: Option<(Way, Option<Described>)> = None;
     for way in [declared].into_iter().chain(certain) {
-        let (described, model) = match describe(case, question, &way.model, WORTH_A_MAP)? {
+        let described = if question.without.contains(&UNNAMED) {
+            None
+        } else {
+            describe(case, question, &way.model, WORTH_A_MAP)?
+        };
+        let (described, model) = match described {
             Some((described, model)) => (Some(described), model),
             None => (None, way.model),
         };

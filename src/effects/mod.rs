@@ -36,7 +36,7 @@ mod unnamed;
 
 pub use kind::{Joints, Kind, Parameter, Range, Scan};
 pub use setting::{Setting, Wrong};
-pub use unnamed::{DependsOn, Map, Motion};
+pub use unnamed::{DependsOn, Map, Motion, UNNAMED};
 
 /// Every effect there is, in the order in which they are listed.
 pub const ALL: &[&Kind] = &[

@@ -7,8 +7,11 @@ use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// Its name.
+pub const UNNAMED: &str = "unnamed";
+
 pub(super) const KIND: Kind = Kind {
-    name: "unnamed",
+    name: UNNAMED,
     summary: "forces as a map of what they depend on, fitted to data: what has no name here",
     equation: "f_i = sum_k coefficients[i][k] feature_k(depends_on); i: force along x, along y and torque \
                at the platform's centre, or the force on each rod",
