@@ -151,24 +151,13 @@ fn rig_4() {
     check(4);
 }
 
-/// Two things are missing there. Both are found, but one leg is all but unloaded where the machine turns
-/// back: its journal crosses over at times that hang on the last digits of gravity, known to a hundredth.
+/// Two things are missing there, the first of which is mistaken for a rival as long as the second is
+/// unknown, and its recordings begin with a swing that no release gives which we know.
 #[test]
-#[ignore = "not reached: phi of the validation run stays at 1.6 floors, all else within 1.3"]
 fn rig_5() {
     check(5);
-}
-
-/// Its two effects are found although the first is first mistaken for a rival, and although the swing that
-/// its recordings begin with is not that of any release that we know.
-#[test]
-fn rig_5_lacks_two_things() {
-    let Done { outcome, .. } = done(5);
-    assert_eq!(outcome.verdict, Verdict::Explained);
-    assert_eq!(outcome.effects.len(), 2, "{:?}", outcome.effects);
-    for error in outcome.errors.iter().filter(|error| error.role == "validation") {
-        assert!(error.after < 2.0 * error.floor, "{error:?}");
-    }
+    assert_eq!(done(5).outcome.verdict, Verdict::Explained);
+    assert_eq!(done(5).outcome.effects.len(), 2);
 }
 
 /// What it lacks has no name here: a table of forces stands in for it.

@@ -1,5 +1,6 @@
-//! Gauss–Newton with bounds, on residuals in units of noise.
+//! Values of effects fitted to residuals in units of noise.
 
+use super::least_squares::{self, Free, least_squares};
 use super::model::{Baseline, Case, Segment};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
@@ -36,11 +37,11 @@ pub fn with_values(effects: &[Setting], values: &[f64]) -> Vec<Setting> {
 }
 
 /// Step and bounds of each parameter.
-fn scales(effects: &[Setting]) -> Vec<(f64, [f64; 2])> {
+pub fn free(effects: &[Setting]) -> Vec<Free> {
     let parameters = effects
         .iter()
         .flat_map(|effect| effect.values().filter_map(|(name, _)| effect.kind.parameter(name)));
-    parameters.map(|parameter| (parameter.step, parameter.bounds)).collect()
+    parameters.map(|parameter| Free { step: parameter.step, bounds: parameter.bounds }).collect()
 }
 
 /// What is fitted to what.
@@ -72,84 +73,21 @@ impl Target<'_> {
     }
 }
 
-/// Derivative of the residual by each parameter, by forward differences of a parameter's own step,
-/// away from its nearest bound.
+/// Derivative of the residual by each parameter.
 pub fn jacobian(target: &Target, fit: &Fit) -> Option<DMatrix<f64>> {
-    let now = values(&fit.effects);
-    let mut matrix = DMatrix::zeros(fit.white.len(), now.len());
-    for (i, (step, [_, high])) in scales(&fit.effects).into_iter().enumerate() {
-        let step = if now[i] + step > high { -step } else { step };
-        let mut beside = now.clone();
-        beside[i] += step;
-        let there = target.look(&with_values(&fit.effects, &beside))?;
-        matrix.set_column(i, &((there.white - &fit.white) / step));
-    }
-    Some(matrix)
+    let look = |values: &[f64]| Some(target.look(&with_values(&fit.effects, values))?.white);
+    least_squares::jacobian(&look, &free(&fit.effects), &values(&fit.effects), &fit.white)
 }
 
-/// Least squares from the given values on, at most `iterations` of Levenberg and Marquardt's steps;
-/// none where the model cannot be built at its start.
+/// Least squares from the given values on, at most `iterations` steps; none where the model cannot be
+/// built at its start.
 pub fn fit(target: &Target, effects: &[Setting], iterations: usize) -> Option<Fit> {
-    let mut best = target.look(effects)?;
-    let scales = scales(effects);
-    let mut damping = 1e-6;
-    for _ in 0..iterations {
-        let Some(jacobian) = jacobian(target, &best) else { break };
-        let now = values(&best.effects);
-        let scaled = DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |r, c| {
-            jacobian[(r, c)] * scales[c].0
-        });
-        let normal = scaled.transpose() * &scaled;
-        let gradient = scaled.transpose() * &best.white;
-        let before = best.chi2;
-        best.jacobian = Some(jacobian);
-        for _ in 0..6 {
-            // Parameters that lie on a bound and would leave it are held.
-            let mut held = vec![false; now.len()];
-            let mut step = DVector::zeros(now.len());
-            for _ in 0..=now.len() {
-                let free: Vec<usize> = (0..now.len()).filter(|&i| !held[i]).collect();
-                let small = DMatrix::from_fn(free.len(), free.len(), |r, c| {
-                    let diagonal =
-                        if r == c { damping * (normal[(free[r], free[r])] + 1e-9) } else { 0.0 };
-                    normal[(free[r], free[c])] + diagonal
-                });
-                let rhs = DVector::from_fn(free.len(), |r, _| -gradient[free[r]]);
-                let Some(solved) = small.cholesky().map(|c| c.solve(&rhs)) else { break };
-                step.fill(0.0);
-                for (r, &i) in free.iter().enumerate() {
-                    step[i] = solved[r];
-                }
-                let leaving = free.iter().copied().find(|&i| {
-                    let [low, high] = scales[i].1;
-                    (now[i] <= low && step[i] < 0.0) || (now[i] >= high && step[i] > 0.0)
-                });
-                match leaving {
-                    Some(i) => held[i] = true,
-                    None => break,
-                }
-            }
-            let trial: Vec<f64> = now
-                .iter()
-                .zip(step.iter())
-                .zip(&scales)
-                .map(|((value, step), (scale, [low, high]))| {
-                    (value + step * scale).clamp(*low, *high)
-                })
-                .collect();
-            let there = target.look(&with_values(&best.effects, &trial));
-            match there {
-                Some(there) if there.chi2 < best.chi2 => {
-                    best = Fit { jacobian: best.jacobian.take(), ..there };
-                    damping = (damping * 0.1).max(1e-9);
-                    break;
-                }
-                _ => damping = (damping * 10.0).max(1e-4),
-            }
-        }
-        if before - best.chi2 < 1e-3 * (1.0 + 1e-3 * before) {
-            break;
-        }
-    }
-    Some(best)
+    let look = |values: &[f64]| Some(target.look(&with_values(effects, values))?.white);
+    let best = least_squares(&look, &free(effects), values(effects), iterations)?;
+    Some(Fit {
+        effects: with_values(effects, &best.values),
+        chi2: best.residual.norm_squared(),
+        white: best.residual,
+        jacobian: best.jacobian,
+    })
 }

@@ -22,9 +22,6 @@ pub struct Left {
 /// gravity, where nothing is chaotic, and without. Replicas of models that lack nothing stay well
 /// below.
 const LIMITS: [([f64; 2], f64); 3] = [([1.5, 2.0], 7.0), ([1.25, 1.8], 6.5), ([1.2, 1.45], 6.0)];
-/// By how much more a mean square may be where a start was guided by a log: it shows the platform's
-/// swing, not the legs' own.
-const UNSEEN: f64 = 0.2;
 
 const NAMES: [&str; 3] = ["servo", "closure", "dynamics"];
 
@@ -44,11 +41,7 @@ pub fn left(case: &Case, question: &Question, model: &Settled) -> Vec<Left> {
                 largest = largest.max(value.abs());
             }
             let limits = LIMITS[group].0;
-            let limit = match (case.chaotic, baseline.guided()) {
-                (true, _) => limits[1],
-                (false, true) => limits[0] + UNSEEN,
-                (false, false) => limits[0],
-            };
+            let limit = limits[usize::from(case.chaotic)];
             Left { residual: NAMES[group], mean_square: sum / f64::max(count, 1.0), largest, limit }
         })
         .collect()

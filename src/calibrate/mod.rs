@@ -7,7 +7,7 @@ mod charts;
 pub mod commands;
 pub mod errors;
 pub mod fit;
-mod guide;
+pub mod least_squares;
 pub mod left;
 pub mod lens;
 pub mod model;
@@ -27,7 +27,9 @@ pub mod self_test;
 pub mod settle;
 pub mod single;
 pub mod spectrum;
+pub mod start;
 pub mod unnamed;
+pub mod whole;
 
 pub use commands::LoggedCommands;
 pub use page::quantity;

@@ -1,10 +1,10 @@
 //! A model and the runs it is held against.
 
 use super::commands::LoggedCommands;
-use super::guide::{guided, start_as_seen, swings_otherwise};
 use super::lens::Lens;
 use super::replica;
 use super::spectrum::{Noise, Signal, transform};
+use super::start::{Start, as_seen};
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
 use crate::measure::log::{Channel, Log};
@@ -50,6 +50,14 @@ impl Run {
         let mut scenario = rig.clone();
         scenario.effects = effects.to_vec();
         driven(&scenario, self.pose, Arc::clone(&self.commands) as _, -LEAD)
+    }
+
+    /// The machine of a scenario with these effects as this run begins, let go.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, commands that no pose meets.
+    pub fn released(&self, rig: &Scenario, effects: &[Setting]) -> Result<Mechanism, Problem> {
+        released(rig, self.pose, &self.commands, effects)
     }
 
     /// Rows that residuals can be had of.
@@ -119,6 +127,8 @@ pub struct Case {
 pub struct Baseline {
     /// One per segment.
     parts: Vec<Part>,
+    /// How each run's machine starts.
+    pub starts: Vec<Start>,
 }
 
 #[derive(Clone, Debug)]
@@ -126,15 +136,14 @@ struct Part {
     segment: Segment,
     bias: Vec<Vec<f64>>,
     noise: Noise,
-    /// Whether the start was guided by the log.
-    guided: bool,
 }
 
 /// Draws of sensor noise from which a covariance is taken.
 const DRAWS: usize = 16;
 
-/// Draws of the swing that a guided start may be wrong by.
-const SWINGS: u64 = 2;
+/// Share of a platform's swing that a model may be wrong by before its values are settled: a frequency
+/// that is off by a thousandth has lost the phase after some seconds.
+const SWING: f64 = 0.3;
 
 impl Case {
     /// Coefficients of the residuals of a log under a mechanism.
@@ -150,12 +159,8 @@ impl Case {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn simulate(&self, effects: &[Setting]) -> Result<Vec<Vec<Log>>, SearchError> {
-        let mut machines = self.released(effects)?;
-        if !self.chaotic {
-            for (machine, run) in machines.iter_mut().zip(&self.runs) {
-                *machine = start_as_seen(machine.clone(), &run.log, &self.sensors, self.control)?;
-            }
-        }
+        let starts = self.starts(effects, &[])?;
+        let machines: Vec<Mechanism> = starts.into_iter().map(|start| start.machine).collect();
         let count = if self.chaotic { 2 } else { 1 } * self.replicas;
         Ok(self.replicas(&machines, count)?)
     }
@@ -178,7 +183,7 @@ impl Case {
 
     /// Simulations that a baseline takes, at most.
     pub fn simulations(&self) -> usize {
-        self.runs.len() * if self.chaotic { self.replicas } else { self.replicas + SWINGS as usize }
+        self.runs.len() * if self.chaotic { self.replicas } else { self.replicas + 1 }
     }
 
     /// The machine of each run, with these effects, let go.
@@ -186,14 +191,27 @@ impl Case {
     /// # Errors
     /// An effect that the machine cannot take.
     pub fn released(&self, effects: &[Setting]) -> Result<Vec<Mechanism>, Problem> {
-        self.runs.iter().map(|run| released(&self.rig, run.pose, &run.commands, effects)).collect()
+        self.runs.iter().map(|run| run.released(&self.rig, effects)).collect()
+    }
+
+    /// How each run's machine with these effects starts: as let go where joints rattle, else as its log
+    /// shows, which is soon found from the starts of a model that is `like` this one.
+    fn starts(&self, effects: &[Setting], like: &[Start]) -> Result<Vec<Start>, SearchError> {
+        let machines = self.released(effects)?.into_par_iter().zip(&self.runs).enumerate();
+        let start = |(i, (machine, run)): (usize, (Mechanism, &Run))| {
+            if self.chaotic {
+                return Ok(Start::let_go(machine));
+            }
+            as_seen(machine, &run.log, &self.sensors, self.control, like.get(i))
+        };
+        Ok(machines.map(start).collect::<Result<_, Halt>>()?)
     }
 
     /// The baseline of a model with these effects, from simulations of it.
     ///
-    /// Where joints stay loaded, a run may show another swing than that of the release: then the model is
-    /// guided by the log, and knows its swing as well as the sensors are good. The same model, guided by
-    /// a log of more noise, swings otherwise by as much.
+    /// Where joints stay loaded the platform swings in their play, and a lens's fault is to see that
+    /// swing: what the same machine does without a swing tells where. The starts of a model that is
+    /// `like` this one save time.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -201,27 +219,14 @@ impl Case {
         &self,
         effects: &[Setting],
         segments: &[Segment],
+        like: &[Start],
     ) -> Result<Baseline, SearchError> {
-        let mut machines = self.released(effects)?;
-        let mut swinging: Vec<Vec<Log>> = vec![Vec::new(); self.runs.len()];
-        if !self.chaotic {
-            for ((machine, run), swinging) in machines.iter_mut().zip(&self.runs).zip(&mut swinging)
-            {
-                let (log, sensors, control) = (&run.log, &self.sensors, self.control);
-                if swings_otherwise(machine, log, sensors, control)? {
-                    let otherwise = |seed| {
-                        let noisy = guided(machine, &replica::with_noise(log, sensors, seed));
-                        replica::simulate(&noisy, sensors, control, log, 0)
-                    };
-                    *swinging = (3000..3000 + SWINGS)
-                        .into_par_iter()
-                        .map(otherwise)
-                        .collect::<Result<_, Halt>>()?;
-                    *machine = guided(machine, log);
-                }
-            }
-        }
+        let starts = self.starts(effects, like)?;
+        let [machines, still] =
+            [|start: &Start| start.machine.clone(), |start: &Start| start.still.clone()]
+                .map(|of| starts.iter().map(of).collect::<Vec<Mechanism>>());
         let logs = self.replicas(&machines, self.replicas)?;
+        let still = if self.chaotic { Vec::new() } else { self.replicas(&still, 1)? };
         let part = |segment: &Segment| {
             let machine = &machines[segment.run];
             let look = |log: &Log| {
@@ -241,12 +246,16 @@ impl Case {
                     difference(&look(&log), &without(&bias, &clean[index], clean.len()))
                 })
                 .collect();
-            let others = swinging[segment.run].iter();
-            let swings: Vec<_> = others.map(|log| difference(&look(log), &clean[0])).collect();
-            let noise = Noise::from_draws(&draws, &swings);
-            Part { segment: segment.clone(), bias, noise, guided: !swings.is_empty() }
+            let swing = still.get(segment.run).map(|logs| {
+                let mut swing = difference(&clean[0], &look(&logs[0]));
+                swing.iter_mut().flatten().for_each(|value| *value *= SWING);
+                swing
+            });
+            let noise = Noise::from_draws(&draws, swing.as_deref());
+            Part { segment: segment.clone(), bias, noise }
         };
-        Ok(Baseline { parts: segments.iter().map(part).collect() })
+        let parts = segments.iter().map(part).collect();
+        Ok(Baseline { parts, starts })
     }
 
     /// Residuals of the data on a segment as they are, with the measured lengths of the legs.
@@ -295,11 +304,6 @@ impl Baseline {
     pub fn log_determinant(&self, on: &[Segment]) -> f64 {
         let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
         parts.map(|part| part.noise.log_determinant()).sum()
-    }
-
-    /// Whether the start of any run was guided by its log.
-    pub fn guided(&self) -> bool {
-        self.parts.iter().any(|part| part.guided)
     }
 
     /// Channel (servo, closure, dynamics of each leg) and frequency in Hz of each number of

@@ -3,7 +3,6 @@
 use super::LoggedCommands;
 use super::charts;
 use super::errors::{self, ChannelError};
-use super::guide::start_as_seen;
 use super::model::{Case, released};
 use super::plausibility;
 use super::predict_page;
@@ -12,6 +11,7 @@ use super::recording::Recording;
 use super::replica;
 use super::report::RattleReport;
 use super::result::{CalibrateError, control, refuse, sensors, to_json};
+use super::start::as_seen;
 use crate::engine::Halt;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
@@ -107,7 +107,7 @@ pub fn into_folder(
     tell("predicting the run");
     let simulate = |mut machine: Mechanism| {
         if !rattle.chaotic {
-            machine = start_as_seen(machine, &recording.log, &sensors, control)?;
+            machine = as_seen(machine, &recording.log, &sensors, control, None)?.machine;
         }
         let replicas = (0..rattle.replicas as u64).into_par_iter();
         let logs = replicas.map(|r| replica::simulate(&machine, &sensors, control, &log, r));

@@ -62,7 +62,7 @@ pub fn look(
 
 /// Standard deviation of a channel's noise in its unit; none of commands, which are known. Rounding to
 /// steps of h is noise of `h/√12`.
-fn noise(sensors: &Sensors, channel: Channel) -> Option<f64> {
+pub fn noise(sensors: &Sensors, channel: Channel) -> Option<f64> {
     let (declared, exact) = match channel {
         Channel::Command(_) | Channel::Added(_) => return None,
         Channel::Length(_) => (sensors.length_resolution / 12f64.sqrt(), EXACT[0]),

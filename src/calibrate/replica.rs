@@ -38,12 +38,13 @@ pub fn simulate(
     let direction = Vector2::from_fn(|_, _| sample(&mut random));
     let output = mechanism.output;
     mechanism.bodies[output].start.twist += (direction * START_SPREAD).push(0.0);
-    let mechanism = &mechanism;
     let fine = (log.interval / FINE).ceil().max(1.0) as usize;
     let interval = log.interval / fine as f64;
     // The log's rows fall on rows of the simulation: the epoch is a whole number of them.
     let lead = (-mechanism.epoch / interval).round() as usize;
+    mechanism.epoch = -(lead as f64) * interval;
     let rows = lead + (log.samples - 1) * fine;
+    let mechanism = &mechanism;
     let schedule = Schedule { duration: rows as f64 * interval, interval };
     let drives = mechanism.prismatics.len();
     let mut forces = vec![Vec::with_capacity(rows + 1); drives];

@@ -4,7 +4,7 @@
 use super::left::{is_noise, left};
 use super::model::{Case, SearchError};
 use super::screen::{Scored, screen, share};
-use super::settle::{GAIN_PER_VALUE, Question, Settled, settle, simplified};
+use super::settle::{GAIN_PER_VALUE, Question, Settled, refined, settle, simplified};
 use crate::effects::Setting;
 
 /// Drop of Σ of squares on data not used for the fit that an effect has to bring, with loaded joints and
@@ -98,7 +98,7 @@ pub fn search(
 ) -> Result<Found, SearchError> {
     tell("simulating the model as declared");
     let mut simulations = case.simulations();
-    let declared = settle(case, question, &[], 1)?;
+    let declared = settle(case, question, &[], 1, &[])?;
     let threshold = GAIN[usize::from(case.chaotic)];
     let mut best = Way { model: declared.clone(), rounds: Vec::new(), certain: true };
     let mut ways = vec![best.clone()];
@@ -128,13 +128,18 @@ pub fn search(
         }
         let winner = next.remove(0);
         tell(&format!("settling {}", names(&winner.model.fit.effects)));
-        let model = settle(case, question, &winner.model.fit.effects, SETTLES)?;
+        let starts = &winner.model.baseline.starts;
+        let model = settle(case, question, &winner.model.fit.effects, SETTLES, starts)?;
         simulations += model.times * case.simulations();
         let mut model = simplified(case, question, model);
         if Way::key(&model.fit.effects) != Way::key(&winner.model.fit.effects) {
             // What a lens is wrong by depends on all values.
-            model = settle(case, question, &model.fit.effects, SETTLES)?;
+            model = settle(case, question, &model.fit.effects, SETTLES, starts)?;
             simulations += model.times * case.simulations();
+        }
+        if !case.chaotic {
+            tell(&format!("settling {} point by point", names(&model.fit.effects)));
+            model = refined(case, question, model)?;
         }
         let before = best.cost();
         best = Way { model, ..winner };
@@ -145,8 +150,10 @@ pub fn search(
         next.truncate(WAYS - 1);
         ways.append(&mut next);
     }
+    let count_before = best.model.fit.effects.len();
     let (kept, count) = needed(case, question, best.model, threshold, tell)?;
-    best.model = kept;
+    best.model =
+        if kept.fit.effects.len() < count_before { refined(case, question, kept)? } else { kept };
     simulations += count;
     Ok(Found { best, declared, certain, simulations })
 }
@@ -178,7 +185,8 @@ fn beside(
         let (scored, effects) = &ranking[i];
         tried.push(Way::key(effects));
         tell(&format!("simulating {}", names(effects)));
-        let Ok(rival) = settle(case, question, effects, 2) else { continue };
+        let starts = &model.baseline.starts;
+        let Ok(rival) = settle(case, question, effects, 2, starts) else { continue };
         simulations += rival.times * case.simulations();
         let values = scored.effect.values().count() as f64;
         let (scored, _) = &mut ranking[i];
@@ -222,7 +230,7 @@ fn needed(
         let mut fewer = best.fit.effects.clone();
         let dropped = fewer.remove(i);
         tell(&format!("doing without {}", name(&dropped)));
-        let without = settle(case, question, &fewer, 2)?;
+        let without = settle(case, question, &fewer, 2, &best.baseline.starts)?;
         simulations += without.times * case.simulations();
         let values = dropped.values().count() as f64;
         if without.misfit - best.misfit - GAIN_PER_VALUE * values < threshold {

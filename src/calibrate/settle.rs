@@ -2,6 +2,8 @@
 
 use super::fit::{self, Fit, Target};
 use super::model::{Baseline, Case, SearchError, Segment};
+use super::start::Start;
+use super::whole::whole;
 use crate::effects::Setting;
 
 /// How much more than nothing each value of an effect has to bring: Akaike's price of a parameter in
@@ -10,6 +12,9 @@ pub const GAIN_PER_VALUE: f64 = 2.0;
 
 /// The change of a value, in its standard deviations, that is no change.
 const SETTLED: f64 = 0.3;
+
+/// Mean square in units of noise beyond which a model lacks more than digits of its values.
+const HOPEFUL: f64 = 5.0;
 
 /// A model that simulations of itself have been held against.
 #[derive(Clone, Debug)]
@@ -47,6 +52,7 @@ impl Question<'_> {
 }
 
 /// Fits the values of a model, simulating it anew each time: the lens's own fault depends on them.
+/// The starts of a model that is `like` this one save time.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
@@ -55,12 +61,14 @@ pub fn settle(
     question: &Question,
     effects: &[Setting],
     times: usize,
+    like: &[Start],
 ) -> Result<Settled, SearchError> {
     let segments = question.segments();
     let mut effects = effects.to_vec();
-    let mut settled = None;
+    let mut settled: Option<Settled> = None;
     for time in 1..=times.max(1) {
-        let baseline = case.baseline(&effects, &segments)?;
+        let like = settled.as_ref().map_or(like, |settled| &settled.baseline.starts);
+        let baseline = case.baseline(&effects, &segments, like)?;
         let target = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
         let iterations = if effects.is_empty() { 0 } else { 6 };
         let Some(mut fit) = fit::fit(&target, &effects, iterations) else { break };
@@ -79,6 +87,22 @@ pub fn settle(
     settled.ok_or_else(|| {
         case.rig.problem("effect", "gives a machine that cannot be", "other values").into()
     })
+}
+
+/// The model with values from whole simulations, where the joints stay loaded and it is nearly complete.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn refined(case: &Case, question: &Question, model: Settled) -> Result<Settled, SearchError> {
+    if model.held > HOPEFUL * model.baseline.places(case, question.hold).len() as f64 {
+        return Ok(model);
+    }
+    let starts = &model.baseline.starts;
+    let Some(fit) = whole(case, question.on, &model.fit.effects, starts) else { return Ok(model) };
+    let baseline = case.baseline(&fit.effects, &question.segments(), starts)?;
+    let target = Target { case, baseline: &baseline, on: question.hold, fixed: &[], blind: None };
+    let held = target.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
+    Ok(Settled { fit, baseline, held, misfit: held, times: model.times + 1 })
 }
 
 /// Largest change of a value by a fit, in its standard deviations, each by itself.

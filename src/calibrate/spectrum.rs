@@ -75,14 +75,10 @@ fn factor(covariance: DMatrix<f64>) -> Cholesky<f64, Dyn> {
 const NEIGHBOURS: usize = 8;
 const SHARE: f64 = 0.12;
 
-/// Variance of a swing over the mean of those that it is known by: the legs swing too, and nobody
-/// measures them.
-const SWINGS: f64 = 3.0;
-
 impl Noise {
-    /// From coefficients of pure noise, several draws of it; and of `swings` that come on top, draws of
-    /// what is known by its size alone.
-    pub fn from_draws(draws: &[Vec<Vec<f64>>], swings: &[Vec<Vec<f64>>]) -> Self {
+    /// From coefficients of pure noise, several draws of it; and of a swing that comes on top, of which no
+    /// more is known than its size.
+    pub fn from_draws(draws: &[Vec<Vec<f64>>], swing: Option<&[Vec<f64>]>) -> Self {
         let channels = draws[0].len();
         let bins = draws[0].iter().map(Vec::len).max().unwrap_or(0);
         let mut factors = Vec::with_capacity(bins);
@@ -106,9 +102,9 @@ impl Noise {
                     count += 1.0;
                 }
                 // A swing is sharper than noise.
-                for swing in swings.iter().filter(|_| j.abs_diff(k) <= NEIGHBOURS) {
+                if let Some(swing) = swing.filter(|_| j.abs_diff(k) <= NEIGHBOURS) {
                     let vector = at(swing);
-                    swinging.ger(SWINGS, &vector, &vector, 1.0);
+                    swinging.ger(1.0, &vector, &vector, 1.0);
                     places += 1.0;
                 }
             }
@@ -119,9 +115,9 @@ impl Noise {
             }
             let alone = factor(covariance.clone());
             log_determinant += 2.0 * alone.l_dirty().diagonal().map(f64::ln).sum();
-            factors.push(match swings {
-                [] => alone,
-                _ => factor(covariance + swinging / f64::max(places, 1.0)),
+            factors.push(match swing {
+                None => alone,
+                Some(_) => factor(covariance + swinging / f64::max(places, 1.0)),
             });
             all_active.push(active);
         }

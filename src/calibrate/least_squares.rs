@@ -1,0 +1,123 @@
+//! Gauss–Newton with bounds, in the damping of Levenberg and Marquardt.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// A value that a fit may choose.
+#[derive(Clone, Copy, Debug)]
+pub struct Free {
+    /// Change by which derivatives are taken, and which all free values are counted in.
+    pub step: f64,
+    /// Least and largest value.
+    pub bounds: [f64; 2],
+}
+
+/// The best values that were found.
+#[derive(Clone, Debug)]
+pub struct Best {
+    /// The values.
+    pub values: Vec<f64>,
+    /// The residual there, in units of noise.
+    pub residual: DVector<f64>,
+    /// Its derivative by each value, from the last step but one, if the fit got so far.
+    pub jacobian: Option<DMatrix<f64>>,
+}
+
+/// Residual in units of noise at some values, or none where there is no such model.
+pub type Look<'a> = &'a (dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync);
+
+/// Derivative of the residual by each value, by forward differences, away from the nearest bound; none
+/// without values.
+pub fn jacobian(
+    look: Look,
+    free: &[Free],
+    values: &[f64],
+    residual: &DVector<f64>,
+) -> Option<DMatrix<f64>> {
+    let column = |(i, free): (usize, &Free)| {
+        let step = if values[i] + free.step > free.bounds[1] { -free.step } else { free.step };
+        let mut beside = values.to_vec();
+        beside[i] += step;
+        Some((look(&beside)? - residual) / step)
+    };
+    let columns = free.par_iter().enumerate().map(column).collect::<Option<Vec<_>>>()?;
+    (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
+}
+
+/// Least squares from the given values on, at most `iterations` steps; none where there is no model at
+/// its start.
+pub fn least_squares(
+    look: Look,
+    free: &[Free],
+    start: Vec<f64>,
+    iterations: usize,
+) -> Option<Best> {
+    let residual = look(&start)?;
+    let mut best = Best { values: start, residual, jacobian: None };
+    let mut damping = 1e-6;
+    for _ in 0..iterations {
+        let Some(jacobian) = jacobian(look, free, &best.values, &best.residual) else { break };
+        let scaled = DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |r, c| {
+            jacobian[(r, c)] * free[c].step
+        });
+        let normal = scaled.transpose() * &scaled;
+        let gradient = scaled.transpose() * &best.residual;
+        let before = best.residual.norm_squared();
+        best.jacobian = Some(jacobian);
+        let mut now = before;
+        for _ in 0..6 {
+            let trial = step(free, &best.values, &normal, &gradient, damping);
+            let there = look(&trial).filter(|there| there.norm_squared() < before);
+            if let Some(residual) = there {
+                now = residual.norm_squared();
+                best = Best { values: trial, residual, ..best };
+                damping = (damping * 0.1).max(1e-9);
+                break;
+            }
+            damping = (damping * 10.0).max(1e-4);
+        }
+        if before - now < 1e-3 * (1.0 + 1e-3 * before) {
+            break;
+        }
+    }
+    Some(best)
+}
+
+/// The values a damped step further. Those that lie on a bound and would leave it are held.
+fn step(
+    free: &[Free],
+    now: &[f64],
+    normal: &DMatrix<f64>,
+    gradient: &DVector<f64>,
+    damping: f64,
+) -> Vec<f64> {
+    let mut held = vec![false; now.len()];
+    let mut step = DVector::zeros(now.len());
+    for _ in 0..=now.len() {
+        let moving: Vec<usize> = (0..now.len()).filter(|&i| !held[i]).collect();
+        let small = DMatrix::from_fn(moving.len(), moving.len(), |r, c| {
+            let own = normal[(moving[r], moving[c])];
+            own + if r == c { damping * (own + 1e-9) } else { 0.0 }
+        });
+        let rhs = DVector::from_fn(moving.len(), |r, _| -gradient[moving[r]]);
+        let Some(solved) = small.cholesky().map(|c| c.solve(&rhs)) else { break };
+        step.fill(0.0);
+        for (r, &i) in moving.iter().enumerate() {
+            step[i] = solved[r];
+        }
+        let leaving = moving.iter().copied().find(|&i| {
+            let [low, high] = free[i].bounds;
+            (now[i] <= low && step[i] < 0.0) || (now[i] >= high && step[i] > 0.0)
+        });
+        match leaving {
+            Some(i) => held[i] = true,
+            None => break,
+        }
+    }
+    let values = now.iter().zip(step.iter()).zip(free);
+    values
+        .map(|((value, step), Free { step: scale, bounds: [low, high] })| {
+            (value + step * scale).clamp(*low, *high)
+        })
+        .collect()
+}

@@ -1,0 +1,265 @@
+//! A start that a recording shows: nobody knows how a machine was let go, but its swing is measured.
+//!
+//! Where loads keep the joints in contact, the platform swings in their play for seconds, and how far a
+//! journal leans, on average too, depends on that swing. A machine that has come to rest under its first
+//! command, and is kicked twice a quarter of a swing apart just before the log begins, swings with any
+//! amplitude and phase along x, y and φ: six numbers, found by Gauss and Newton from the measured pose.
+
+use super::model::LEAD;
+use super::rattle::noise;
+use super::replica;
+use crate::engine::{Halt, Schedule, StepControl, run};
+use crate::measure::filter::ZeroPhase;
+use crate::measure::log::{Channel, Log};
+use crate::mechanism::{Load, Mechanism, Situation};
+use crate::scenario::Sensors;
+use nalgebra::{DMatrix, DVector, SVector, Vector3};
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::Arc;
+
+/// Swing in Hz that dies fastest while a machine comes to rest, critically damped: light platforms in
+/// play of 0.1 mm swing at 30–60 Hz.
+const SWING: f64 = 40.0;
+
+/// Time in s from rest to the log's first row, and of each kick, a half sine; the last ends with it.
+const SHORT: f64 = 0.03;
+const PULSE: f64 = 0.012;
+const PULSES: usize = 2;
+const APART: f64 = 0.25 / SWING;
+
+/// Sizes of kicks, as velocities that the free platform would take up (m/s, m/s, rad/s): a tenth of a
+/// release's swing.
+const SIZES: [f64; 3] = [1e-3, 1e-3, 2e-2];
+
+/// Time in s from the first row over which a swing is seen, until most of it has died, and shorter times
+/// before: a swing's frequency hangs on its amplitude, which takes a few periods to be seen. Below the
+/// corner in Hz the model may be wrong for other reasons.
+const SEEN: f64 = 0.6;
+const FIRST: [f64; 2] = [0.1, 0.25];
+const CORNER: f64 = 25.0;
+
+/// Steps of Gauss and Newton over the whole time, at most, and the share of the squares that one has to
+/// bring for another to be worth it.
+const STEPS: usize = 3;
+const WORTH: f64 = 0.01;
+
+/// What keeps kicks that do nothing at nothing: far below what one size does.
+const RIDGE: f64 = 1e-3;
+
+/// Mean square in units of noise up to which a release shows the recorded swing, and the share of its
+/// squares that a kicked start has to leave to be the better one.
+const SHOWN: f64 = 1.1;
+const SLACK: f64 = 0.95;
+
+/// Numbers of kicks of one start.
+pub const KICKS: usize = 3 * PULSES;
+
+/// Kicks along x, y and φ, pulse by pulse, as multiples of their sizes.
+pub type Kicks = SVector<f64, KICKS>;
+
+/// How a recorded machine swings when its log begins.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// The kicks, or none where the machine was let go as it is said to have been.
+    pub kicks: Option<Kicks>,
+    /// The machine with that start.
+    pub machine: Mechanism,
+    /// The machine at rest, without a swing.
+    pub still: Mechanism,
+    /// What kicks change of what is seen: nearly the same for all models of a machine.
+    response: Option<DMatrix<f64>>,
+}
+
+impl Start {
+    /// A start that nothing is known of, but how the machine was let go.
+    pub fn let_go(machine: Mechanism) -> Self {
+        Self { kicks: None, still: machine.clone(), machine, response: None }
+    }
+}
+
+#[derive(Debug)]
+struct Kicked {
+    /// Impulses over their times, N, N, N·m, pulse by pulse.
+    forces: [Vector3<f64>; PULSES],
+}
+
+impl Load for Kicked {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        for (pulse, force) in self.forces.iter().enumerate() {
+            let phase = (at.t + PULSE + pulse as f64 * APART) / PULSE;
+            if (0.0..1.0).contains(&phase) {
+                let force = force * (PI * phase).sin();
+                at.push_output(force.xy(), force.z, wrenches);
+            }
+        }
+    }
+}
+
+/// `f = −D v` on the output.
+#[derive(Debug)]
+struct Calming {
+    damping: Vector3<f64>,
+}
+
+impl Load for Calming {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let force = -self.damping.component_mul(&at.mechanism.output_state(at.states).twist);
+        at.push_output(force.xy(), force.z, wrenches);
+    }
+
+    fn longest_step(&self, _mechanism: &Mechanism) -> Option<f64> {
+        Some(1.0 / (2.0 * TAU * SWING))
+    }
+}
+
+/// Mass and inertia of the output.
+fn inertia(machine: &Mechanism) -> Vector3<f64> {
+    let body = &machine.bodies[machine.output];
+    Vector3::new(body.mass, body.mass, body.inertia)
+}
+
+/// The machine at rest under its first command, shortly before the log begins: its swing is damped away.
+///
+/// # Errors
+/// A run that broke down.
+pub fn still(released: &Mechanism, control: StepControl) -> Result<Mechanism, Halt> {
+    let mut calmed = released.clone();
+    let damping = inertia(released) * (2.0 * TAU * SWING);
+    calmed.loads.push(Arc::new(Calming { damping }));
+    let duration = LEAD - SHORT;
+    let mut machine = released.clone();
+    run(&calmed, control, Schedule { duration, interval: duration }, &mut |instant| {
+        for (body, state) in machine.bodies.iter_mut().zip(instant.states) {
+            body.start = *state;
+        }
+    })?;
+    machine.epoch = -SHORT;
+    Ok(machine)
+}
+
+/// A machine at rest with these kicks.
+pub fn kicked(still: &Mechanism, kicks: &Kicks) -> Mechanism {
+    let mut machine = still.clone();
+    // A half sine of height 1 has the mean 2/π.
+    let unit = inertia(still).component_mul(&Vector3::from(SIZES)) * (FRAC_PI_2 / PULSE);
+    let forces = std::array::from_fn(|pulse| {
+        unit.component_mul(&kicks.fixed_rows::<3>(3 * (PULSES - 1 - pulse)).into_owned())
+    });
+    machine.loads.push(Arc::new(Kicked { forces }));
+    machine
+}
+
+/// How well starts meet the swing that a log shows.
+struct Judge<'a> {
+    log: Log,
+    sensors: &'a Sensors,
+    control: StepControl,
+}
+
+impl Judge<'_> {
+    /// What is not met, in units of noise.
+    fn look(&self, machine: &Mechanism) -> Result<DVector<f64>, Halt> {
+        let simulated = replica::simulate(machine, self.sensors, self.control, &self.log, 0)?;
+        Ok(swing(&self.log, &simulated, self.sensors))
+    }
+
+    /// What kicks change of what is not met.
+    fn response(
+        &self,
+        still: &Mechanism,
+        kicks: &Kicks,
+        base: &DVector<f64>,
+    ) -> Result<DMatrix<f64>, Halt> {
+        let unit = |i: usize| Kicks::from_fn(|k, _| f64::from(u8::from(k == i)));
+        let columns = (0..KICKS).into_par_iter().map(|i| {
+            let moved = self.look(&kicked(still, &(kicks + unit(i))))?;
+            Ok(moved - base)
+        });
+        Ok(DMatrix::from_columns(&columns.collect::<Result<Vec<_>, Halt>>()?))
+    }
+}
+
+/// The step of Gauss and Newton.
+fn step(response: &DMatrix<f64>, base: &DVector<f64>) -> Kicks {
+    let normal = response.transpose() * response + DMatrix::identity(KICKS, KICKS) * RIDGE;
+    let solved = normal.cholesky().map(|factor| -factor.solve(&(response.transpose() * base)));
+    solved.map_or_else(Kicks::zeros, |step| Kicks::from_iterator(step.iter().copied()))
+}
+
+/// The start that a log shows: as let go, if that shows the recorded swing, else kicked; the same log's
+/// start under a model that is `like` this one saves most of the search.
+///
+/// # Errors
+/// A run that broke down.
+pub fn as_seen(
+    released: Mechanism,
+    log: &Log,
+    sensors: &Sensors,
+    control: StepControl,
+    like: Option<&Start>,
+) -> Result<Start, Halt> {
+    let still = still(&released, control)?;
+    let judge = |seen: f64| {
+        let log = log.part(0..((seen / log.interval) as usize).min(log.samples));
+        Judge { log, sensors, control }
+    };
+    let whole = judge(SEEN);
+    let let_go = whole.look(&released)?;
+    let released = Start { kicks: None, machine: released, still, response: None };
+    if let_go.norm_squared() <= SHOWN * let_go.len() as f64 {
+        return Ok(released);
+    }
+    let still = &released.still;
+    let (mut kicks, mut response) = match like {
+        Some(Start { kicks: Some(kicks), response, .. }) => (*kicks, response.clone()),
+        _ => (Kicks::zeros(), None),
+    };
+    if response.is_none() {
+        for seen in FIRST {
+            let judge = judge(seen);
+            let base = judge.look(&kicked(still, &kicks))?;
+            let change = step(&judge.response(still, &kicks, &base)?, &base);
+            if judge.look(&kicked(still, &(kicks + change)))?.norm() < base.norm() {
+                kicks += change;
+            }
+        }
+    }
+    let mut left = whole.look(&kicked(still, &kicks))?;
+    for _ in 0..STEPS {
+        let known = match response.take() {
+            Some(known) => known,
+            None => whole.response(still, &kicks, &left)?,
+        };
+        let change = step(&known, &left);
+        response = Some(known);
+        let there = whole.look(&kicked(still, &(kicks + change)))?;
+        let gain = 1.0 - there.norm_squared() / left.norm_squared();
+        if gain > 0.0 {
+            (left, kicks) = (there, kicks + change);
+        }
+        if gain < WORTH {
+            break;
+        }
+    }
+    if left.norm_squared() > SLACK * let_go.norm_squared() {
+        return Ok(released);
+    }
+    let machine = kicked(still, &kicks);
+    Ok(Start { kicks: Some(kicks), machine, response, ..released })
+}
+
+/// What a log's pose shows of a swing that a simulated one does not, in units of its sensors' noise.
+fn swing(log: &Log, simulated: &Log, sensors: &Sensors) -> DVector<f64> {
+    let filter = ZeroPhase::butterworth(4, CORNER, log.interval);
+    let channels = (0..3).filter_map(|k| {
+        let channel = Channel::Pose(k);
+        let unit = noise(sensors, channel)?;
+        let difference: Vec<f64> =
+            log.get(channel)?.iter().zip(simulated.get(channel)?).map(|(a, b)| a - b).collect();
+        let slow = filter.apply(&difference);
+        let fast = difference.into_iter().zip(slow);
+        Some(fast.map(move |(whole, slow)| (whole - slow) / unit).collect::<Vec<_>>())
+    });
+    DVector::from_vec(channels.flatten().collect())
+}
