@@ -6,7 +6,7 @@ use super::model::Case;
 use super::outcome::{Outcome, Verdict};
 use super::report::Report;
 use super::search::name as in_words;
-use crate::effects::Setting;
+use crate::effects::{Map, Setting};
 use crate::report::{Fact, Part, Table, document, length, number};
 
 /// Candidates of a round that the page lists; the others are in `report.json`.
@@ -116,13 +116,15 @@ fn values(outcome: &Outcome, report: &Report) -> Table {
             ]);
         }
         if let Some(map) = effect.map() {
+            let [count, meaning] = coefficients(map);
+            let none = || "–".to_owned();
             rows.push(vec![
                 in_words(effect),
                 "coefficients".to_owned(),
-                format!("{} for each actuator", map.coefficients.first().map_or(0, Vec::len)),
-                "–".to_owned(),
-                "–".to_owned(),
-                format!("force on each rod over {}; in calibrated.toml", map.depends_on.words()),
+                count,
+                none(),
+                none(),
+                meaning,
             ]);
         }
     }
@@ -138,6 +140,18 @@ fn values(outcome: &Outcome, report: &Report) -> Table {
                it against another recording."
             .into(),
     }
+}
+
+/// How many coefficients a map has for each of its components, and what they are the forces of.
+fn coefficients(map: &Map) -> [String; 2] {
+    let (component, acts) = if map.depends_on.acts_on_output() {
+        ("component", "force along x, force along y and torque on the platform")
+    } else {
+        ("rod", "force on each rod")
+    };
+    let count = map.coefficients.first().map_or(0, Vec::len);
+    let over = map.depends_on.words();
+    [format!("{count} for each {component}"), format!("{acts}, over {over}; in calibrated.toml")]
 }
 
 fn equations(report: &Report) -> Vec<String> {
@@ -317,4 +331,28 @@ fn provenance(case: &Case, report: &Report) -> Vec<(String, String)> {
         ("Time of computing", format!("{} s", number(report.wall_s))),
     ];
     report.provenance.lines("rig", None, more)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::DependsOn;
+
+    fn map(depends_on: DependsOn, components: usize, features: usize) -> Map {
+        let coefficients = vec![vec![0.0; features]; components];
+        Map { depends_on, middle: [0.0; 3], reach: [1.0; 3], lengths: [0.0, 1.0], coefficients }
+    }
+
+    #[test]
+    fn a_map_is_said_to_act_where_it_acts() {
+        let [count, meaning] = coefficients(&map(DependsOn::Position, 3, 27));
+        assert_eq!(count, "27 for each component");
+        assert!(
+            meaning.contains("torque on the platform, over the platform's position"),
+            "{meaning}"
+        );
+        let [count, meaning] = coefficients(&map(DependsOn::ActuatorLength, 3, 10));
+        assert_eq!(count, "10 for each rod");
+        assert!(meaning.starts_with("force on each rod, over the length"), "{meaning}");
+    }
 }
