@@ -4,7 +4,7 @@ use super::charts::{Charts, OVER};
 use super::errors::ChannelError;
 use super::model::Case;
 use super::outcome::{Outcome, Verdict};
-use super::report::Report;
+use super::report::{EffectReport, Report};
 use super::search::name as in_words;
 use crate::effects::{Map, Setting};
 use crate::report::{Fact, Part, Table, document, length, number};
@@ -155,16 +155,19 @@ fn coefficients(map: &Map) -> [String; 2] {
 }
 
 fn equations(report: &Report) -> Vec<String> {
-    let sentence = |effect: &super::report::EffectReport| {
-        let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
-        let evidence = if effect.evidence.is_empty() {
-            String::new()
-        } else {
-            format!(" It {}.", effect.evidence)
-        };
-        format!("{}{joint}: {}.{evidence}", effect.kind, effect.equation)
+    report.effects.iter().map(why).collect()
+}
+
+/// What an effect is and what it rests on, in whole sentences.
+fn why(effect: &EffectReport) -> String {
+    let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
+    // Evidence of an effect with a name says what it does, that of a map names what does it.
+    let evidence = match (effect.evidence.as_str(), effect.depends_on) {
+        ("", _) => String::new(),
+        (evidence, None) => format!(" It {evidence}."),
+        (evidence, Some(_)) => format!(" What speaks for it: {evidence}."),
     };
-    report.effects.iter().map(sentence).collect()
+    format!("{}{joint}: {}.{evidence}", effect.kind, effect.equation)
 }
 
 const ERRORS_NOTE: &str = "Root mean square of measured less predicted, both through a zero-phase low-pass of fourth order at 25 Hz, \
@@ -354,5 +357,21 @@ mod tests {
         let [count, meaning] = coefficients(&map(DependsOn::ActuatorLength, 3, 10));
         assert_eq!(count, "10 for each rod");
         assert!(meaning.starts_with("force on each rod, over the length"), "{meaning}");
+    }
+
+    #[test]
+    fn evidence_of_either_kind_makes_a_sentence() {
+        let effect = |depends_on, evidence: &str| EffectReport {
+            kind: "kind",
+            joint: None,
+            depends_on,
+            params: Vec::new(),
+            evidence: evidence.to_owned(),
+            equation: "f = 0",
+        };
+        assert_eq!(why(&effect(None, "removes it")), "kind: f = 0. It removes it.");
+        let map = effect(Some(DependsOn::Velocity), "a force that varies removes it");
+        assert_eq!(why(&map), "kind: f = 0. What speaks for it: a force that varies removes it.");
+        assert_eq!(why(&effect(None, "")), "kind: f = 0.");
     }
 }
