@@ -1,19 +1,18 @@
 //! A calibration of a machine of one joint, and its folder of results.
 
+use super::charts;
 use super::drawn;
 use super::noise::floors;
 use super::prediction::errors;
 use super::rows::predicted;
 use super::simulated::{Machine, along, read};
 use super::{arm, stage};
-use crate::calibrate::charts;
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::recording::stem;
 use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CALIBRATED_FILE, CalibrateError, REPORT_FILE, to_json};
 use crate::identify::Recorded;
-use crate::report::Style;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
@@ -184,9 +183,9 @@ pub fn into_folder(
         let after = along(&found.scenario, *machine, &run.log)?;
         let floors = floors(&found.scenario, *machine, &run.log, &after)?;
         listed.extend(errors(run, role, [Some(&before), Some(&after)], &floors));
-        let models =
-            [("declared", &before, Style::Reference), ("calibrated", &after, Style::Solid)];
-        pictures.extend(charts::of_run(&run.log, role, &models).map_err(RunError::from)?);
+        let declared = Some(("declared", &before));
+        let drawn = charts::of_run(*machine, &run.log, role, declared, ("calibrated", &after));
+        pictures.extend(drawn.map_err(RunError::from)?);
         let name = format!("predicted-{}.csv", stem(&run.log));
         files.push((name.clone(), predicted(run, &after).map_err(refused(&name))?));
     }

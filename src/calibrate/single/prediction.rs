@@ -1,10 +1,10 @@
 //! A machine of one joint along a recording: what a model predicts, and by how much it misses.
 
+use super::charts;
 use super::drawn;
 use super::noise::floors;
 use super::rows::{measured, predicted};
 use super::simulated::{Machine, along};
-use crate::calibrate::charts;
 use crate::calibrate::errors::{ChannelError, rms};
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
 use crate::calibrate::result::{CalibrateError, to_json};
@@ -12,7 +12,6 @@ use crate::calibrate::search::name;
 use crate::identify::Recorded;
 use crate::identify::arm::PLAN;
 use crate::measure::log::Log;
-use crate::report::Style;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
@@ -105,12 +104,9 @@ pub fn predict(
     let floors = floors(model, machine, log, &after)?;
     let errors = errors(recorded, "prediction", [before.as_ref(), Some(&after)], &floors);
     tell("drawing and writing");
-    let mut models = Vec::new();
-    if let Some(before) = &before {
-        models.push(("without effects", before, Style::Reference));
-    }
-    models.push(("predicted", &after, Style::Solid));
-    let pictures = charts::of_run(log, "prediction", &models).map_err(RunError::from)?;
+    let without = before.as_ref().map(|before| ("without effects", before));
+    let pictures = charts::of_run(machine, log, "prediction", without, ("predicted", &after))
+        .map_err(RunError::from)?;
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let prediction = Prediction {
         provenance: Provenance::of(model),
