@@ -1,7 +1,7 @@
 //! The page of a calibration: the verdict first, then how it came about.
 
 use super::charts::{Charts, OVER};
-use super::errors::ChannelError;
+use super::errors::{ChannelError, judged};
 use super::model::Case;
 use super::outcome::{Outcome, Verdict};
 use super::report::{EffectReport, Report};
@@ -45,10 +45,8 @@ pub fn verdict(verdict: Verdict) -> &'static str {
 /// The largest error after calibration in units of its floor, on data not used for fits where there
 /// are any, and whose it is.
 pub fn worst(errors: &[ChannelError]) -> Option<&ChannelError> {
-    let held = errors.iter().filter(|error| error.role == "validation");
-    let pool: Vec<&ChannelError> = held.collect();
-    let pool = if pool.is_empty() { errors.iter().collect() } else { pool };
-    pool.into_iter().max_by(|a, b| (a.after / a.floor).total_cmp(&(b.after / b.floor)))
+    let above = |error: &ChannelError| error.after / error.floor;
+    judged(errors).into_iter().max_by(|a, b| above(a).total_cmp(&above(b)))
 }
 
 fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {

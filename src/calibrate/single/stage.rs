@@ -411,7 +411,8 @@ fn found(
         let evidence =
             if evidence.is_empty() { "is declared".to_owned() } else { evidence.join("; ") };
         let params = setting.values().filter(|(name, _)| *name != "velocity_m_s");
-        let params = params.map(|(name, value)| (name, fitted(value, std_of(name, model, &std))));
+        let params =
+            params.map(|(name, value)| (name, Fitted::new(value, std_of(name, model, &std))));
         EffectReport {
             kind: setting.kind.name,
             joint: setting.joint.clone(),
@@ -422,16 +423,13 @@ fn found(
         }
     });
     let effects = reported.collect();
-    let adjusted = |path, unit, declared, value, std| {
-        let Fitted { value, std, ci95 } = fitted(value, std);
-        Adjusted { path, unit, declared, value, std, ci95 }
-    };
     let mass = match &rig.mechanism {
         scenario::Mechanism::DriveStage(stage) => stage.mass,
         scenario::Mechanism::ThreeRpr(_) | scenario::Mechanism::Pendulum(_) => f64::NAN,
     };
     let whole = model.factor(Term::Mass);
-    let mut parameters = vec![adjusted("mechanism.mass", "kg", mass, whole, std(Term::Mass))];
+    let mut parameters =
+        vec![Adjusted::new("mechanism.mass", "kg", mass, Fitted::new(whole, std(Term::Mass)))];
     let mut names: Vec<String> = Vec::new();
     for (kind, _) in added {
         if !names.iter().any(|name| name == kind) {
@@ -440,7 +438,12 @@ fn found(
     }
     let cascade = judge.data.cascade;
     let slow = lag(model, &cascade);
-    let late = adjusted("drive.sampled.lag", "s", cascade.lag, slow, std(Term::Lag) / whole);
+    let late = Adjusted::new(
+        "drive.sampled.lag",
+        "s",
+        cascade.lag,
+        Fitted::new(slow, std(Term::Lag) / whole),
+    );
     if (slow - cascade.lag).abs() > CERTAIN * 1.96 * late.std {
         names.push(LAG.to_owned());
     }
@@ -452,12 +455,6 @@ fn found(
         ranking,
         added: names,
     }
-}
-
-/// A value with its standard deviation.
-pub(super) fn fitted(value: f64, std: f64) -> Fitted {
-    // 97.5 % of a normal variable lie below 1.96 standard deviations.
-    Fitted { value, std, ci95: [value - 1.96 * std, value + 1.96 * std] }
 }
 
 /// Standard deviation of a parameter of an effect, from those of the terms' factors.
