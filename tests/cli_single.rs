@@ -128,6 +128,12 @@ fn a_stage_is_predicted_in_the_recordings_own_columns_and_units() {
     assert!(with < 0.02 * without && with < 3.0 * floor, "{without} {with} {floor}");
     let page = place.read("out/index.html");
     assert!(page.contains("drive stage") && !page.contains("platform"));
+    for file in ["force-run.svg", "position-run.svg"] {
+        let picture = place.read(&format!("out/{file}"));
+        for part in ["\nmeasured\n", "\npredicted\n", "\nMeasured − model\n"] {
+            assert!(picture.contains(part) && page.contains(file), "{file}: {part}");
+        }
+    }
 }
 
 #[test]
@@ -166,7 +172,13 @@ torque_Nms2 = 1.33243e-5
     let end: Vec<&str> = predicted.lines().last().expect("rows").split(',').collect();
     let rest: f64 = end[1].parse().expect("degrees");
     assert!((rest - 180.0 - last.to_degrees()).abs() < 0.05 && end[2] == "id", "{end:?} {last}");
-    assert!(!place.read("out/index.html").contains("platform"));
+    let page = place.read("out/index.html");
+    assert!(page.contains("Angle of the arm") && !page.contains("platform"));
+    // Without effects it is off by radians: what the model misses is seen by itself only.
+    let picture = place.read("out/angle-run.svg");
+    for part in ["\nmeasured\n", "\nMeasured − model\n", "\nMeasured − predicted\n"] {
+        assert!(picture.contains(part), "{part}");
+    }
 }
 
 #[test]

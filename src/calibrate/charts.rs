@@ -11,13 +11,13 @@ use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg};
 use crate::study::RunError;
 
 /// Corner in Hz of the low-pass that everything is drawn through: that of the errors.
-const CORNER: f64 = 25.0;
+pub(super) const CORNER: f64 = 25.0;
 
 /// Left out at both ends in s, where the low-pass sees beyond the log.
 const TRIM: f64 = 0.06;
 
 /// Points of a curve and of a cloud of dots: about one per pixel, and as many as can be told apart.
-const POINTS: usize = 800;
+pub(super) const POINTS: usize = 800;
 const DOTS: usize = 500;
 
 /// Runs that are drawn, the calibration run first: more would hide what matters.
@@ -111,19 +111,7 @@ pub fn of_run(
         if channels.is_empty() {
             continue;
         }
-        let panels = channels.iter().map(|&channel| {
-            let (factor, unit) = match channel.unit() {
-                "m" => (1e6, "µm"),
-                "rad" => (1e3, "mrad"),
-                unit => (1.0, unit),
-            };
-            let curves = models.iter().filter_map(|(name, model, style)| {
-                let pairs = log.get(channel)?.iter().zip(model.get(channel)?);
-                let missed: Vec<f64> = pairs.map(|(a, b)| factor * (a - b)).collect();
-                curve(name, log, Some(&missed), *style)
-            });
-            panel(format!("{channel}, measured − model"), unit, curves)
-        });
+        let panels = channels.iter().map(|&channel| missed(channel, log, models));
         pictures.push(Picture {
             file: format!("{file}-{name}.svg"),
             title: format!("{what}, {} ({role})", log.name),
@@ -136,7 +124,23 @@ pub fn of_run(
     Ok(pictures)
 }
 
-fn panel(title: String, y_label: &str, curves: impl Iterator<Item = Curve>) -> Panel {
+/// What models miss of a channel, over time.
+pub(super) fn missed(channel: Channel, log: &Log, models: &[(&str, &Log, Style)]) -> Panel {
+    let (factor, unit) = match channel.unit() {
+        "m" => (1e6, "µm"),
+        "rad" => (1e3, "mrad"),
+        unit => (1.0, unit),
+    };
+    let curves = models.iter().filter_map(|(name, model, style)| {
+        let pairs = log.get(channel)?.iter().zip(model.get(channel)?);
+        let missed: Vec<f64> = pairs.map(|(a, b)| factor * (a - b)).collect();
+        curve(name, log, Some(&missed), *style)
+    });
+    panel(format!("{channel}, measured − model"), unit, curves)
+}
+
+/// A chart over time.
+pub(super) fn panel(title: String, y_label: &str, curves: impl Iterator<Item = Curve>) -> Panel {
     Panel {
         title,
         x_label: "time (s)".to_owned(),
@@ -147,13 +151,21 @@ fn panel(title: String, y_label: &str, curves: impl Iterator<Item = Curve>) -> P
 
 /// A signal of a log, low-passed and thinned.
 fn curve(name: &str, log: &Log, values: Option<&[f64]>, style: Style) -> Option<Curve> {
-    let filtered = ZeroPhase::butterworth(4, CORNER, log.interval).apply(values?);
+    let points = thinned(&low_passed(log, values?), POINTS);
+    Some(Curve { name: name.to_owned(), points, style })
+}
+
+/// A signal over time (s) through the low-pass, without the ends that see beyond the log.
+pub(super) fn low_passed(log: &Log, values: &[f64]) -> Vec<(f64, f64)> {
+    let filtered = ZeroPhase::butterworth(4, CORNER, log.interval).apply(values);
     let trim = (TRIM / log.interval).round() as usize;
     let inner = trim..filtered.len().saturating_sub(trim);
-    let stride = (inner.len() / POINTS).max(1);
-    let at = |i: usize| log.start + i as f64 * log.interval;
-    let points = inner.step_by(stride).map(|i| (at(i), filtered[i]));
-    Some(Curve { name: name.to_owned(), points: points.collect(), style })
+    inner.map(|i| (log.start + i as f64 * log.interval, filtered[i])).collect()
+}
+
+/// About so many of the points, evenly: fewer than twice as many.
+pub(super) fn thinned(points: &[(f64, f64)], count: usize) -> Vec<(f64, f64)> {
+    points.iter().copied().step_by((points.len() / count).max(1)).collect()
 }
 
 /// The residual of the calibration run's dynamics over length, speed and acceleration, actuator by

@@ -34,6 +34,12 @@ pub struct ChannelError {
     pub floor: f64,
 }
 
+/// The errors that a model is judged by: those on data not used for fits, where there are any.
+pub fn judged(errors: &[ChannelError]) -> Vec<&ChannelError> {
+    let held: Vec<&ChannelError> = errors.iter().filter(|e| e.role == "validation").collect();
+    if held.is_empty() { errors.iter().collect() } else { held }
+}
+
 /// The mean of several noiseless logs: the best prediction of one whose rattle nobody knows.
 pub fn ensemble(logs: &[Log]) -> Log {
     let first = &logs[0];

@@ -1,12 +1,12 @@
 //! The page of a calibration: the verdict first, then how it came about.
 
 use super::charts::{Charts, OVER};
-use super::errors::ChannelError;
+use super::errors::{ChannelError, judged};
 use super::model::Case;
 use super::outcome::{Outcome, Verdict};
-use super::report::Report;
+use super::report::{EffectReport, Report};
 use super::search::name as in_words;
-use crate::effects::Setting;
+use crate::effects::{Map, Setting};
 use crate::report::{Fact, Part, Table, document, length, number};
 
 /// Candidates of a round that the page lists; the others are in `report.json`.
@@ -45,10 +45,8 @@ pub fn verdict(verdict: Verdict) -> &'static str {
 /// The largest error after calibration in units of its floor, on data not used for fits where there
 /// are any, and whose it is.
 pub fn worst(errors: &[ChannelError]) -> Option<&ChannelError> {
-    let held = errors.iter().filter(|error| error.role == "validation");
-    let pool: Vec<&ChannelError> = held.collect();
-    let pool = if pool.is_empty() { errors.iter().collect() } else { pool };
-    pool.into_iter().max_by(|a, b| (a.after / a.floor).total_cmp(&(b.after / b.floor)))
+    let above = |error: &ChannelError| error.after / error.floor;
+    judged(errors).into_iter().max_by(|a, b| above(a).total_cmp(&above(b)))
 }
 
 fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {
@@ -116,13 +114,15 @@ fn values(outcome: &Outcome, report: &Report) -> Table {
             ]);
         }
         if let Some(map) = effect.map() {
+            let [count, meaning] = coefficients(map);
+            let none = || "–".to_owned();
             rows.push(vec![
                 in_words(effect),
                 "coefficients".to_owned(),
-                format!("{} for each actuator", map.coefficients.first().map_or(0, Vec::len)),
-                "–".to_owned(),
-                "–".to_owned(),
-                format!("force on each rod over {}; in calibrated.toml", map.depends_on.words()),
+                count,
+                none(),
+                none(),
+                meaning,
             ]);
         }
     }
@@ -140,17 +140,32 @@ fn values(outcome: &Outcome, report: &Report) -> Table {
     }
 }
 
-fn equations(report: &Report) -> Vec<String> {
-    let sentence = |effect: &super::report::EffectReport| {
-        let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
-        let evidence = if effect.evidence.is_empty() {
-            String::new()
-        } else {
-            format!(" It {}.", effect.evidence)
-        };
-        format!("{}{joint}: {}.{evidence}", effect.kind, effect.equation)
+/// How many coefficients a map has for each of its components, and what they are the forces of.
+fn coefficients(map: &Map) -> [String; 2] {
+    let (component, acts) = if map.depends_on.acts_on_output() {
+        ("component", "force along x, force along y and torque on the platform")
+    } else {
+        ("rod", "force on each rod")
     };
-    report.effects.iter().map(sentence).collect()
+    let count = map.coefficients.first().map_or(0, Vec::len);
+    let over = map.depends_on.words();
+    [format!("{count} for each {component}"), format!("{acts}, over {over}; in calibrated.toml")]
+}
+
+fn equations(report: &Report) -> Vec<String> {
+    report.effects.iter().map(why).collect()
+}
+
+/// What an effect is and what it rests on, in whole sentences.
+fn why(effect: &EffectReport) -> String {
+    let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
+    // Evidence of an effect with a name says what it does, that of a map names what does it.
+    let evidence = match (effect.evidence.as_str(), effect.depends_on) {
+        ("", _) => String::new(),
+        (evidence, None) => format!(" It {evidence}."),
+        (evidence, Some(_)) => format!(" What speaks for it: {evidence}."),
+    };
+    format!("{}{joint}: {}.{evidence}", effect.kind, effect.equation)
 }
 
 const ERRORS_NOTE: &str = "Root mean square of measured less predicted, both through a zero-phase low-pass of fourth order at 25 Hz, \
@@ -317,4 +332,44 @@ fn provenance(case: &Case, report: &Report) -> Vec<(String, String)> {
         ("Time of computing", format!("{} s", number(report.wall_s))),
     ];
     report.provenance.lines("rig", None, more)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::DependsOn;
+
+    fn map(depends_on: DependsOn, components: usize, features: usize) -> Map {
+        let coefficients = vec![vec![0.0; features]; components];
+        Map { depends_on, middle: [0.0; 3], reach: [1.0; 3], lengths: [0.0, 1.0], coefficients }
+    }
+
+    #[test]
+    fn a_map_is_said_to_act_where_it_acts() {
+        let [count, meaning] = coefficients(&map(DependsOn::Position, 3, 27));
+        assert_eq!(count, "27 for each component");
+        assert!(
+            meaning.contains("torque on the platform, over the platform's position"),
+            "{meaning}"
+        );
+        let [count, meaning] = coefficients(&map(DependsOn::ActuatorLength, 3, 10));
+        assert_eq!(count, "10 for each rod");
+        assert!(meaning.starts_with("force on each rod, over the length"), "{meaning}");
+    }
+
+    #[test]
+    fn evidence_of_either_kind_makes_a_sentence() {
+        let effect = |depends_on, evidence: &str| EffectReport {
+            kind: "kind",
+            joint: None,
+            depends_on,
+            params: Vec::new(),
+            evidence: evidence.to_owned(),
+            equation: "f = 0",
+        };
+        assert_eq!(why(&effect(None, "removes it")), "kind: f = 0. It removes it.");
+        let map = effect(Some(DependsOn::Velocity), "a force that varies removes it");
+        assert_eq!(why(&map), "kind: f = 0. What speaks for it: a force that varies removes it.");
+        assert_eq!(why(&effect(None, "")), "kind: f = 0.");
+    }
 }

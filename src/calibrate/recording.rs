@@ -36,13 +36,18 @@ pub fn read(paths: &[&Path]) -> Result<Vec<Recording>, Vec<LogError>> {
     if !errors.is_empty() {
         return Err(errors);
     }
-    let names: Vec<String> = recordings.iter().map(|r| r.log.name.clone()).collect();
-    for recording in &mut recordings {
-        if names.iter().filter(|name| **name == recording.log.name).count() > 1 {
-            recording.log.name.clone_from(&recording.path);
+    tell_apart(recordings.iter_mut().map(|r| (&mut r.log, r.path.as_str())).collect());
+    Ok(recordings)
+}
+
+/// Calls logs of one name by their paths.
+pub fn tell_apart(logs: Vec<(&mut Log, &str)>) {
+    let names: Vec<String> = logs.iter().map(|(log, _)| log.name.clone()).collect();
+    for (log, path) in logs {
+        if names.iter().filter(|name| **name == log.name).count() > 1 {
+            path.clone_into(&mut log.name);
         }
     }
-    Ok(recordings)
 }
 
 /// The name of a log without folders' separators and without `.csv`: what files about it are called

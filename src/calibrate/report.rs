@@ -77,6 +77,14 @@ pub struct Fitted {
     pub ci95: [f64; 2],
 }
 
+impl Fitted {
+    /// A value with its standard deviation.
+    pub fn new(value: f64, std: f64) -> Self {
+        // 97.5 % of a normal variable lie below 1.96 standard deviations.
+        Self { value, std, ci95: [value - 1.96 * std, value + 1.96 * std] }
+    }
+}
+
 fn by_name<S: Serializer>(params: &[(&str, Fitted)], serializer: S) -> Result<S::Ok, S::Error> {
     let entry = |(name, fitted): &(&str, Fitted)| {
         let value = json!({"value": fitted.value, "std": fitted.std, "ci95": fitted.ci95});

@@ -9,6 +9,7 @@ use super::report::{Report, Sources, calibrated};
 use super::{charts, page, plausibility};
 use crate::engine::{Halt, StepControl};
 use crate::measure::log::LogError;
+use crate::report::Picture;
 use crate::scenario::{Problem, Scenario, Sensors};
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use std::fs;
@@ -162,18 +163,29 @@ pub fn into_folder(
     report.wall_s = started.elapsed().as_secs_f64();
 
     let json = to_json(&report);
-    let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
-    write(REPORT_FILE, &json)?;
-    write(CALIBRATED_FILE, &calibrated(&case.rig, &outcome).to_toml())?;
-    for (name, text) in &predictions {
-        write(name, text)?;
-    }
-    for picture in charts.pictures() {
-        write(&picture.file, &picture.svg)?;
-    }
-    write(PAGE_FILE, &page::page(case, &outcome, &report, &charts))?;
-    let folder = folder.finish().map_err(RunError::from)?;
+    let model = calibrated(&case.rig, &outcome).to_toml();
+    let page = page::page(case, &outcome, &report, &charts);
+    let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &model), (PAGE_FILE, &page)];
+    texts.extend(predictions.iter().map(|(name, text)| (name.as_str(), text)));
+    let folder = publish(folder, &texts, charts.pictures())?;
     Ok(Calibrated { report, json, folder })
+}
+
+/// Writes texts and pictures into a folder of results and puts it where it belongs.
+///
+/// # Errors
+/// Files that cannot be written; the folder is left as it was.
+pub fn publish<'a>(
+    folder: Folder,
+    texts: &[(&str, &String)],
+    pictures: impl IntoIterator<Item = &'a Picture>,
+) -> Result<PathBuf, CalibrateError> {
+    let texts = texts.iter().map(|(name, text)| (*name, text.as_str()));
+    let pictures = pictures.into_iter().map(|p| (p.file.as_str(), p.svg.as_str()));
+    for (name, text) in texts.chain(pictures) {
+        fs::write(folder.file(name), text).map_err(refused(name))?;
+    }
+    Ok(folder.finish().map_err(RunError::from)?)
 }
 
 /// Finds out whether the declared machine rattles on any of its runs, makes the case simulate

@@ -2,10 +2,9 @@
 
 use super::failure::Failure;
 use super::options::{FolderOptions, PrintOptions, Sets};
-use super::output;
 use super::progress::Spinner;
 use crate::calibrate::errors::ChannelError;
-use crate::calibrate::report::{EffectReport, Report};
+use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare};
 use crate::calibrate::single::{self, Adjusted, Machine};
 use crate::calibrate::{quantity, recording};
@@ -13,7 +12,6 @@ use crate::effects::{ALL, named};
 use crate::measure::spelling::nearest;
 use crate::report::number;
 use crate::scenario::Scenario;
-use crate::study::{Folder, default_name};
 use clap::Args;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -83,37 +81,24 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         return single_joint(arguments, rig, machine, &paths, &without);
     }
     let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
-    let name = default_name("calibrate", &rig.name);
+    let name = rig.name.clone();
     let prepared = prepare(rig, recordings)?;
-    let out = arguments.folder.out.clone().unwrap_or(name);
-    let folder = Folder::prepare(&out, REPORT_FILE, arguments.folder.force)?;
-
-    let spinner = Spinner::new(arguments.print.quiet);
-    let calibrated = into_folder(prepared, &without, folder, &|what| spinner.tell(what));
-    spinner.clear();
-    let calibrated = calibrated?;
-    if arguments.print.json {
-        output::print(&calibrated.json)?;
-    } else if !arguments.print.quiet {
-        let report = &calibrated.report;
-        let simulated = format!("{} simulations in ", report.simulations);
-        let Report { provenance, summary, effects, errors, wall_s, .. } = report;
-        let folder = &calibrated.folder;
-        let seconds = *wall_s;
-        let parameters = &[];
-        let shown = Shown {
-            scenario_name: &provenance.scenario_name,
-            summary,
-            effects,
-            parameters,
-            errors,
-            simulated,
-            seconds,
-            folder,
-        };
-        output::print(&text(&shown))?;
-    }
-    Ok(())
+    let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
+    let calibrated = Spinner::during(arguments.print.quiet, |tell| {
+        into_folder(prepared, &without, folder, tell)
+    })?;
+    let report = &calibrated.report;
+    let shown = Shown {
+        scenario_name: &report.provenance.scenario_name,
+        summary: &report.summary,
+        effects: &report.effects,
+        parameters: &[],
+        errors: &report.errors,
+        simulated: format!("{} simulations in ", report.simulations),
+        seconds: report.wall_s,
+        folder: &calibrated.folder,
+    };
+    Ok(arguments.print.result(&calibrated.json, || text(&shown))?)
 }
 
 /// The same of a drive stage or a pendulum, whose recordings have the columns that `[columns]` names.
@@ -124,31 +109,24 @@ fn single_joint(
     paths: &[&Path],
     without: &[&'static str],
 ) -> Result<(), Failure> {
-    let name = default_name("calibrate", &rig.name);
+    let name = rig.name.clone();
     let prepared = single::prepare(rig, machine, paths)?;
-    let out = arguments.folder.out.clone().unwrap_or(name);
-    let folder = Folder::prepare(&out, REPORT_FILE, arguments.folder.force)?;
-    let spinner = Spinner::new(arguments.print.quiet);
-    let calibrated = single::into_folder(&prepared, without, folder, &|what| spinner.tell(what));
-    spinner.clear();
-    let calibrated = calibrated?;
-    if arguments.print.json {
-        output::print(&calibrated.json)?;
-    } else if !arguments.print.quiet {
-        let report = &calibrated.report;
-        let shown = Shown {
-            scenario_name: &report.provenance.scenario_name,
-            summary: &report.summary,
-            effects: &report.effects,
-            parameters: &report.parameters,
-            errors: &report.errors,
-            simulated: String::new(),
-            seconds: report.wall_s,
-            folder: &calibrated.folder,
-        };
-        output::print(&text(&shown))?;
-    }
-    Ok(())
+    let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
+    let calibrated = Spinner::during(arguments.print.quiet, |tell| {
+        single::into_folder(&prepared, without, folder, tell)
+    })?;
+    let report = &calibrated.report;
+    let shown = Shown {
+        scenario_name: &report.provenance.scenario_name,
+        summary: &report.summary,
+        effects: &report.effects,
+        parameters: &report.parameters,
+        errors: &report.errors,
+        simulated: String::new(),
+        seconds: report.wall_s,
+        folder: &calibrated.folder,
+    };
+    Ok(arguments.print.result(&calibrated.json, || text(&shown))?)
 }
 
 /// What is printed of a calibration.

@@ -2,7 +2,6 @@
 
 use super::failure::{Failure, refuse_errors};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
-use super::output;
 use super::progress::Progress;
 use crate::report::number;
 use crate::scenario::Law;
@@ -11,7 +10,6 @@ use crate::study::compare::{
     COMPARE_FILE, CompareError, Compared, Options, QUANTITIES, SAMPLE_INTERVAL, Use, compare,
     in_words, law_key, simulated_time,
 };
-use crate::study::{Folder, default_name};
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -68,19 +66,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     scenario.contact.law = Law::HertzStep;
     refuse_errors(findings(&scenario, &assemble(&scenario)?))?;
     let simulated = simulated_time(&scenario, &options)?;
-    let out = arguments.folder.out.clone();
-    let out = out.unwrap_or_else(|| default_name("compare", &scenario.name));
-    let folder = Folder::prepare(&out, COMPARE_FILE, arguments.folder.force)?;
+    let folder = arguments.folder.prepare("compare", &scenario.name, COMPARE_FILE)?;
 
     let mut progress = Progress::new(simulated, arguments.print.quiet);
     let compared = compare(&scenario, &options, folder, &mut |t| progress.reached(t));
     progress.clear();
     let compared = compared?;
-    if arguments.print.json {
-        output::print(&compared.json)?;
-    } else if !arguments.print.quiet {
-        output::print(&text(&compared))?;
-    }
+    arguments.print.result(&compared.json, || text(&compared))?;
     Ok(())
 }
 

@@ -1,7 +1,10 @@
 //! Options that commands share.
 
+use super::output;
 use crate::scenario::{Problems, Scenario, Source};
+use crate::study::{Folder, FolderError, default_name};
 use clap::Args;
+use std::io;
 use std::path::PathBuf;
 
 /// Which scenario.
@@ -58,6 +61,36 @@ impl Overrides {
     pub fn sets(&self) -> Vec<String> {
         let duration = self.duration.map(|s| format!("simulation.duration={s:?}"));
         self.sets.sets.iter().cloned().chain(duration).collect()
+    }
+}
+
+impl FolderOptions {
+    /// Where the results of a command on a scenario go.
+    pub fn path(&self, command: &str, scenario: &str) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| default_name(command, scenario))
+    }
+
+    /// Makes sure that the results of a command on a scenario can be written; they are known by `marker`.
+    pub fn prepare(
+        &self,
+        command: &str,
+        scenario: &str,
+        marker: &'static str,
+    ) -> Result<Folder, FolderError> {
+        Folder::prepare(&self.path(command, scenario), marker, self.force)
+    }
+}
+
+impl PrintOptions {
+    /// Prints a result as the user wants it: its JSON, its text for people, or nothing.
+    pub fn result(&self, json: &str, text: impl FnOnce() -> String) -> io::Result<()> {
+        if self.json {
+            output::print(json)
+        } else if self.quiet {
+            Ok(())
+        } else {
+            output::print(&text())
+        }
     }
 }
 

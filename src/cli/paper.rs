@@ -2,12 +2,10 @@
 
 use super::failure::Failure;
 use super::options::{FolderOptions, Overrides, PrintOptions};
-use super::output;
 use super::progress::Progress;
 use crate::report::number;
 use crate::scenario::Source;
 use crate::study::paper::{PAPER_FILE, PaperError, Studied, paper, scenarios, simulated_time};
-use crate::study::{Folder, default_name};
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -44,20 +42,14 @@ Examples:
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let phases = arguments.phases.into();
     let scenarios = scenarios(&Source::read(None)?, &arguments.overrides.sets(), phases)?;
-    let out = arguments.folder.out.clone();
-    let out = out.unwrap_or_else(|| default_name("paper", &scenarios[0].1.name));
-    let folder = Folder::prepare(&out, PAPER_FILE, arguments.folder.force)?;
+    let folder = arguments.folder.prepare("paper", &scenarios[0].1.name, PAPER_FILE)?;
 
     let simulated = simulated_time(&scenarios, phases);
     let mut progress = Progress::new(simulated, arguments.print.quiet);
     let studied = paper(&scenarios, phases, folder, &mut |t| progress.reached(t));
     progress.clear();
     let studied = studied?;
-    if arguments.print.json {
-        output::print(&studied.json)?;
-    } else if !arguments.print.quiet {
-        output::print(&text(&studied))?;
-    }
+    arguments.print.result(&studied.json, || text(&studied))?;
     Ok(())
 }
 

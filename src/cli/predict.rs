@@ -2,7 +2,6 @@
 
 use super::failure::Failure;
 use super::options::{FolderOptions, PrintOptions, Sets};
-use super::output;
 use super::progress::Spinner;
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::predict::{ERRORS_FILE, check, into_folder};
@@ -10,7 +9,7 @@ use crate::calibrate::result::CalibrateError;
 use crate::calibrate::single::{self, Machine};
 use crate::calibrate::{quantity, recording};
 use crate::scenario::Scenario;
-use crate::study::{Folder, default_name};
+use crate::simulate::Provenance;
 use clap::Args;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -60,69 +59,45 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let read = recording::read_one(&arguments.data);
     let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
     check(&model, &recording)?;
-    let out = arguments.folder.out.clone();
-    let out = out.unwrap_or_else(|| default_name("predict", &model.name));
-    let folder = Folder::prepare(&out, ERRORS_FILE, arguments.folder.force)?;
-
-    let spinner = Spinner::new(arguments.print.quiet);
-    let predicted = into_folder(&model, &recording, folder, &|what| spinner.tell(what));
-    spinner.clear();
-    let predicted = predicted?;
-    if arguments.print.json {
-        output::print(&predicted.json)?;
-    } else if !arguments.print.quiet {
-        let p = &predicted.prediction;
-        output::print(&text(
-            &p.provenance.scenario_name,
-            &p.run,
-            &p.effects,
-            &p.errors,
-            &predicted.folder,
-        ))?;
-    }
-    Ok(())
+    let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
+    let predicted = Spinner::during(arguments.print.quiet, |tell| {
+        into_folder(&model, &recording, folder, tell)
+    })?;
+    let p = &predicted.prediction;
+    Ok(arguments.print.result(&predicted.json, || {
+        text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder)
+    })?)
 }
 
 /// The same of a drive stage or a pendulum, whose recordings have the columns that `[columns]` names.
 fn single_joint(arguments: &Arguments, model: &Scenario, machine: Machine) -> Result<(), Failure> {
     let recorded = single::read(&arguments.data, model, machine, false)?;
-    let out = arguments.folder.out.clone();
-    let out = out.unwrap_or_else(|| default_name("predict", &model.name));
-    let folder = Folder::prepare(&out, ERRORS_FILE, arguments.folder.force)?;
-    let spinner = Spinner::new(arguments.print.quiet);
-    let predicted = single::predict(model, machine, &recorded, folder, &|what| spinner.tell(what));
-    spinner.clear();
-    let predicted = predicted?;
-    if arguments.print.json {
-        output::print(&predicted.json)?;
-    } else if !arguments.print.quiet {
-        let p = &predicted.prediction;
-        output::print(&text(
-            &p.provenance.scenario_name,
-            &p.run,
-            &p.effects,
-            &p.errors,
-            &predicted.folder,
-        ))?;
-        if !p.carried_columns.is_empty() {
-            let carried = p.carried_columns.join(", ");
-            output::print(&format!(
-                "Columns that nothing asks for, left as they are: {carried}\n"
-            ))?;
+    let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
+    let predicted = Spinner::during(arguments.print.quiet, |tell| {
+        single::predict(model, machine, &recorded, folder, tell)
+    })?;
+    let p = &predicted.prediction;
+    Ok(arguments.print.result(&predicted.json, || {
+        let text = text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder);
+        match p.carried_columns.join(", ").as_str() {
+            "" => text,
+            carried => {
+                text + &format!("Columns that nothing asks for, left as they are: {carried}\n")
+            }
         }
-    }
-    Ok(())
+    })?)
 }
 
 /// The result for people.
 fn text(
-    name: &str,
+    model: &Provenance,
     run: &str,
     effects: &[String],
     errors: &[ChannelError],
     folder: &Path,
 ) -> String {
     let effects = if effects.is_empty() { "none".to_owned() } else { effects.join(", ") };
+    let name = &model.scenario_name;
     let mut text = format!("{name} along {run}; effects: {effects}\n\n");
     // Writing to a string cannot fail, here and below.
     let _ = writeln!(

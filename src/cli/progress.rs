@@ -59,6 +59,14 @@ pub(super) struct Spinner {
 }
 
 impl Spinner {
+    /// Does some work and shows what it tells.
+    pub fn during<T>(quiet: bool, work: impl FnOnce(&(dyn Fn(&str) + Sync)) -> T) -> T {
+        let spinner = Self::new(quiet);
+        let result = work(&|what| spinner.tell(what));
+        spinner.clear();
+        result
+    }
+
     /// A line without a word yet.
     pub fn new(quiet: bool) -> Self {
         let bar = bar(0, "{spinner} {elapsed} {wide_msg}", quiet);

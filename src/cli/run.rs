@@ -2,12 +2,11 @@
 
 use super::failure::{Failure, refuse_errors};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
-use super::output;
 use super::progress::Progress;
 use crate::report::{length, number};
 use crate::scenario::Law;
 use crate::simulate::{Summary, assemble, findings};
-use crate::study::{self, Folder, Outcome, SUMMARY_FILE, default_name};
+use crate::study::{self, Outcome, SUMMARY_FILE};
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -47,19 +46,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.load()?;
     let mut machine = assemble(&scenario)?;
     refuse_errors(findings(&scenario, &machine))?;
-    let out = arguments.folder.out.clone();
-    let out = out.unwrap_or_else(|| default_name("run", &scenario.name));
-    let folder = Folder::prepare(&out, SUMMARY_FILE, arguments.folder.force)?;
+    let folder = arguments.folder.prepare("run", &scenario.name, SUMMARY_FILE)?;
 
     let mut progress = Progress::new(scenario.simulation.duration, arguments.print.quiet);
     let outcome = study::run(&scenario, &mut machine, folder, &mut |t| progress.reached(t));
     progress.clear();
     let outcome = outcome?;
-    if arguments.print.json {
-        output::print(&outcome.json)?;
-    } else if !arguments.print.quiet {
-        output::print(&text(&outcome))?;
-    }
+    arguments.print.result(&outcome.json, || text(&outcome))?;
     match outcome.summary.halted {
         None => Ok(()),
         Some(reason) => Err(Failure::Other(reason)),

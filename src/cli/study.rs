@@ -8,7 +8,6 @@ use crate::study::hardware::{
     Missing, STUDY_FILE, StudyError, Table, emps, emps_page, folder, pendulum, pendulum_page,
     skipped,
 };
-use crate::study::{Folder, default_name};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -64,8 +63,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         Some(path) => Scenario::load(Some(path), &[])?,
         None => Scenario::from_text(built_in, "built-in rig", &[])?,
     };
-    let out = arguments.folder.out.clone().unwrap_or_else(|| default_name("study", name));
-    let prepare = || Folder::prepare(&out, STUDY_FILE, arguments.folder.force);
+    let prepare = || arguments.folder.prepare("study", name, STUDY_FILE);
     let data = folder(arguments.data.as_deref()).join(name);
     let absent = |missing: Missing| match missing {
         Missing::Absent(path) => Ok(output::print(&(skipped(source, &path) + "\n"))?),

@@ -5,7 +5,6 @@ use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::output;
 use super::progress::RunsProgress;
 use crate::report::number;
-use crate::study::default_name;
 use crate::study::sweep::{Outcome, Plan, Shard, SweepError, on_threads, sweep};
 use clap::Args;
 use std::time::Instant as Clock;
@@ -66,7 +65,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
             output::complain(&format!("warning: {warning}"));
         }
         let name = &plan.base().name;
-        let out = arguments.folder.out.clone().unwrap_or_else(|| default_name("sweep", name));
+        let out = arguments.folder.path("sweep", name);
         let progress = RunsProgress::new(quiet);
         let outcome = sweep(&plan, &out, arguments.folder.force, &|finished, runs| {
             progress.finished(finished, runs);
@@ -81,12 +80,10 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Prints what came out, as the user wants it.
 pub(super) fn print(outcome: &Outcome, title: &str, options: &PrintOptions) -> Result<(), Failure> {
-    if options.json {
-        output::print(&outcome.json)?;
-    } else if !options.quiet {
+    let text = || {
         let record = &outcome.record;
         let page = outcome.folder.join("index.html");
-        output::print(&format!(
+        format!(
             "{}: {} of {} runs, {title}: {} ok, {} halted, {} refused\n\nWritten to {}; open {}\n",
             record.identity.provenance.scenario_name,
             record.finished,
@@ -96,7 +93,7 @@ pub(super) fn print(outcome: &Outcome, title: &str, options: &PrintOptions) -> R
             record.refused,
             outcome.folder.display(),
             page.display()
-        ))?;
-    }
-    Ok(())
+        )
+    };
+    Ok(options.result(&outcome.json, text)?)
 }

@@ -19,14 +19,7 @@ pub(super) const KIND: Kind = Kind {
             smallest swings are a little fast",
     joints: Joints::RevoluteOrAll,
     parameters: &[
-        Parameter {
-            name: "coulomb_Nm",
-            unit: "N m",
-            about: "dry friction torque T_c",
-            bounds: [0.0, 1e3],
-            step: 1e-4,
-            default: Some(0.0),
-        },
+        Parameter::size("coulomb_Nm", "N m", "dry friction torque T_c", 1e3, 1e-4),
         Parameter {
             name: "presliding_rad",
             unit: "rad",
@@ -66,12 +59,11 @@ struct Bristles {
 }
 
 impl Bristles {
-    /// Angle in rad and rate in rad/s of the journal's body against the ring's.
-    fn turn(&self, at: Situation) -> [f64; 2] {
+    /// Angle in rad of the journal's body against the ring's.
+    fn angle(&self, at: Situation) -> f64 {
         let joint = &at.mechanism.revolutes[self.joint];
         let rotation = joint.ring.rotation(at.states).inverse() * joint.journal.rotation(at.states);
-        let rate = joint.journal.frame(at.states).spin - joint.ring.frame(at.states).spin;
-        [rotation.angle(), rate]
+        rotation.angle()
     }
 
     /// Deflection after the joint has turned to `angle` one way: `dz/dθ = 1 − z/(±d)` solved exactly.
@@ -83,21 +75,16 @@ impl Bristles {
     }
 
     fn push(&self, at: Situation, z: f64, wrenches: &mut [Vector3<f64>]) {
-        let joint = &at.mechanism.revolutes[self.joint];
-        let [_, rate] = self.turn(at);
+        let rate = at.turning(self.joint);
         let bending = rate - rate.abs() * z / self.presliding;
         let damping = self.damping * (-(rate / self.fading).powi(2)).exp();
         let torque = self.coulomb * z / self.presliding + damping * bending;
-        for (attachment, sign) in [(&joint.journal, -1.0), (&joint.ring, 1.0)] {
-            if let Some(body) = attachment.body {
-                wrenches[body].z += sign * torque;
-            }
-        }
+        at.push_turn(self.joint, -torque, wrenches);
     }
 
     /// Deflection of a joint that has long turned as it does now.
     fn settled(&self, at: Situation) -> f64 {
-        let [_, rate] = self.turn(at);
+        let rate = at.turning(self.joint);
         if rate == 0.0 { 0.0 } else { self.presliding.copysign(rate) }
     }
 }
@@ -109,17 +96,16 @@ impl Load for Bristles {
 
     /// What moves has moved like that before; what rests has bristles that stand upright.
     fn begin(&self, at: Situation) -> Memory {
-        [self.turn(at)[0], self.settled(at)]
+        [self.angle(at), self.settled(at)]
     }
 
     fn remember(&self, at: Situation, memory: Memory) -> Memory {
-        let [angle, _] = self.turn(at);
+        let angle = self.angle(at);
         [angle, self.deflection(angle, memory)]
     }
 
     fn add_after(&self, at: Situation, memory: Memory, wrenches: &mut [Vector3<f64>]) {
-        let [angle, _] = self.turn(at);
-        self.push(at, self.deflection(angle, memory), wrenches);
+        self.push(at, self.deflection(self.angle(at), memory), wrenches);
     }
 
     /// A spring s0 and a damper of twice s1 (when the bristles are bent back) on J: `h ≤ √(J/s0)`,

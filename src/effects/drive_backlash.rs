@@ -16,14 +16,7 @@ pub(super) const KIND: Kind = Kind {
     trace: "measured pose against measured lengths: two levels, a play apart, by the sign of the actuator's force",
     joints: Joints::PrismaticOrAll,
     parameters: &[
-        Parameter {
-            name: "play_m",
-            unit: "m",
-            about: "how far the rod can move from flank to flank",
-            bounds: [0.0, 0.01],
-            step: 1e-6,
-            default: Some(0.0),
-        },
+        Parameter::size("play_m", "m", "how far the rod can move from flank to flank", 0.01, 1e-6),
         Parameter {
             name: "stiffness_N_m",
             unit: "N/m",

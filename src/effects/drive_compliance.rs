@@ -23,14 +23,13 @@ pub(super) const KIND: Kind = Kind {
     trace: "measured pose against measured lengths: with the force of the same actuator",
     joints: Joints::PrismaticOrAll,
     parameters: &[
-        Parameter {
-            name: "compliance_m_N",
-            unit: "m/N",
-            about: "give of the link, 1/k; under 1e-9 m/N a prescribed drive stays rigid",
-            bounds: [0.0, 1e-3],
-            step: 1e-7,
-            default: Some(0.0),
-        },
+        Parameter::size(
+            "compliance_m_N",
+            "m/N",
+            "give of the link, 1/k; under 1e-9 m/N a prescribed drive stays rigid",
+            1e-3,
+            1e-7,
+        ),
         Parameter {
             name: "damping_Ns_m",
             unit: "N s/m",

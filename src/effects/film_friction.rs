@@ -15,14 +15,7 @@ pub(super) const KIND: Kind = Kind {
     trace: "the force of one actuator: less than its dry friction says where its motion is slow",
     joints: Joints::Prismatic,
     parameters: &[
-        Parameter {
-            name: "force_N",
-            unit: "N",
-            about: "force F at speed",
-            bounds: [0.0, 1e4],
-            step: 0.05,
-            default: Some(0.0),
-        },
+        Parameter::size("force_N", "N", "force F at speed", 1e4, 0.05),
         Parameter {
             name: "speed_m_s",
             unit: "m/s",

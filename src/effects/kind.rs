@@ -21,6 +21,20 @@ pub struct Parameter {
     pub default: Option<f64>,
 }
 
+impl Parameter {
+    /// The size of something that is not there at 0, its default, and of which more than `most` makes no
+    /// sense.
+    pub(super) const fn size(
+        name: &'static str,
+        unit: &'static str,
+        about: &'static str,
+        most: f64,
+        step: f64,
+    ) -> Self {
+        Self { name, unit, about, bounds: [0.0, most], step, default: Some(0.0) }
+    }
+}
+
 /// Which joints an effect can be given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Joints {

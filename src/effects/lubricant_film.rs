@@ -17,15 +17,14 @@ pub(super) const KIND: Kind = Kind {
     trace: "rattle: slower and softer hits; forces of the joints with the speed of their journals",
     joints: Joints::RevoluteOrAll,
     parameters: &[
-        Parameter {
-            name: "damping_Ns_m",
-            unit: "N s/m",
-            about: "C, the damping of a centred journal: 25 for oil of 0.1 Pa s in a bearing with R = L = 10 mm and \
-                    c = 0.5 mm",
-            bounds: [0.0, 1e5],
-            step: 0.2,
-            default: Some(0.0),
-        },
+        Parameter::size(
+            "damping_Ns_m",
+            "N s/m",
+            "C, the damping of a centred journal: 25 for oil of 0.1 Pa s in a bearing with R = L = 10 mm and \
+             c = 0.5 mm",
+            1e5,
+            0.2,
+        ),
         Parameter {
             name: "eccentricity_max",
             unit: "",

@@ -15,14 +15,13 @@ pub(super) const KIND: Kind = Kind {
     trace: "measured pose against measured lengths: with the direction of the joint's force, lobes times a turn",
     joints: Joints::Revolute,
     parameters: &[
-        Parameter {
-            name: "amplitude_m",
-            unit: "m",
-            about: "amplitude, smaller than the joint's clearance",
-            bounds: [0.0, 0.01],
-            step: 5e-6,
-            default: Some(0.0),
-        },
+        Parameter::size(
+            "amplitude_m",
+            "m",
+            "amplitude, smaller than the joint's clearance",
+            0.01,
+            5e-6,
+        ),
         Parameter {
             name: "lobes",
             unit: "",

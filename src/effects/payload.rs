@@ -13,14 +13,7 @@ pub(super) const KIND: Kind = Kind {
     trace: "actuator forces: with acceleration, and with gravity where there is any",
     joints: Joints::None,
     parameters: &[
-        Parameter {
-            name: "mass_kg",
-            unit: "kg",
-            about: "mass m",
-            bounds: [0.0, 20.0],
-            step: 2e-3,
-            default: Some(0.0),
-        },
+        Parameter::size("mass_kg", "kg", "mass m", 20.0, 2e-3),
         Parameter {
             name: "com_x_m",
             unit: "m",

@@ -15,22 +15,8 @@ pub(super) const KIND: Kind = Kind {
     trace: "free swings: the amplitude falls by the same angle each time (T_c) or by the same share (k)",
     joints: Joints::RevoluteOrAll,
     parameters: &[
-        Parameter {
-            name: "coulomb_Nm",
-            unit: "N m",
-            about: "dry friction torque T_c",
-            bounds: [0.0, 1e3],
-            step: 1e-4,
-            default: Some(0.0),
-        },
-        Parameter {
-            name: "viscous_Nms",
-            unit: "N m s",
-            about: "viscous friction k",
-            bounds: [0.0, 1e3],
-            step: 1e-5,
-            default: Some(0.0),
-        },
+        Parameter::size("coulomb_Nm", "N m", "dry friction torque T_c", 1e3, 1e-4),
+        Parameter::size("viscous_Nms", "N m s", "viscous friction k", 1e3, 1e-5),
         Parameter {
             name: "velocity_rad_s",
             unit: "rad/s",
@@ -59,14 +45,9 @@ struct Friction {
 
 impl Load for Friction {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
-        let joint = &at.mechanism.revolutes[self.joint];
-        let rate = joint.journal.frame(at.states).spin - joint.ring.frame(at.states).spin;
+        let rate = at.turning(self.joint);
         let torque = self.coulomb * (rate / self.velocity).tanh() + self.viscous * rate;
-        for (attachment, sign) in [(&joint.journal, -1.0), (&joint.ring, 1.0)] {
-            if let Some(body) = attachment.body {
-                wrenches[body].z += sign * torque;
-            }
-        }
+        at.push_turn(self.joint, -torque, wrenches);
     }
 
     /// A torque `c ω` on the inertia J that the lighter side has about the joint: `h ≤ J/c`.

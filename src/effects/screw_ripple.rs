@@ -16,22 +16,8 @@ pub(super) const KIND: Kind = Kind {
     trace: "measured pose against measured lengths (or the actuator's force): with the length, periodic",
     joints: Joints::PrismaticOrAll,
     parameters: &[
-        Parameter {
-            name: "amplitude_m",
-            unit: "m",
-            about: "amplitude of the error of the length",
-            bounds: [0.0, 5e-3],
-            step: 2e-6,
-            default: Some(0.0),
-        },
-        Parameter {
-            name: "amplitude_N",
-            unit: "N",
-            about: "amplitude of the force",
-            bounds: [0.0, 1e3],
-            step: 0.05,
-            default: Some(0.0),
-        },
+        Parameter::size("amplitude_m", "m", "amplitude of the error of the length", 5e-3, 2e-6),
+        Parameter::size("amplitude_N", "N", "amplitude of the force", 1e3, 0.05),
         Parameter {
             name: "pitch_m",
             unit: "m",

@@ -19,14 +19,7 @@ pub(super) const KIND: Kind = Kind {
     trace: "the force of one actuator: with the direction of its own motion, most where it turns round",
     joints: Joints::Prismatic,
     parameters: &[
-        Parameter {
-            name: "coulomb_N",
-            unit: "N",
-            about: "friction F_c in motion",
-            bounds: [0.0, 1e4],
-            step: 0.05,
-            default: Some(0.0),
-        },
+        Parameter::size("coulomb_N", "N", "friction F_c in motion", 1e4, 0.05),
         Parameter {
             name: "static_N",
             unit: "N",
@@ -35,14 +28,7 @@ pub(super) const KIND: Kind = Kind {
             step: 0.05,
             default: None,
         },
-        Parameter {
-            name: "viscous_Ns_m",
-            unit: "N s/m",
-            about: "viscous friction F_v",
-            bounds: [0.0, 1e5],
-            step: 0.2,
-            default: Some(0.0),
-        },
+        Parameter::size("viscous_Ns_m", "N s/m", "viscous friction F_v", 1e5, 0.2),
         speed(
             "stribeck_m_s",
             "speed v_s over which F_s falls to F_c: a tenth of working speeds",

@@ -15,14 +15,13 @@ pub(super) const KIND: Kind = Kind {
     trace: "actuator forces: one frequency, a force on the platform that goes round",
     joints: Joints::None,
     parameters: &[
-        Parameter {
-            name: "mass_radius_kg_m",
-            unit: "kg m",
-            about: "mass times its distance from the axis",
-            bounds: [0.0, 1.0],
-            step: 1e-6,
-            default: Some(0.0),
-        },
+        Parameter::size(
+            "mass_radius_kg_m",
+            "kg m",
+            "mass times its distance from the axis",
+            1.0,
+            1e-6,
+        ),
         Parameter {
             name: "frequency_Hz",
             unit: "Hz",

@@ -1,17 +1,16 @@
 //! Forces and accelerations of a mechanism at a given state, without any engine.
 //!
 //! Bodies that rigid joints hold together form a group; in each group the constrained
-//! accelerations follow from Gauss' principle,
-//!
-//! `a = M⁻¹ (f + Jᵀ λ)`, `(J M⁻¹ Jᵀ) λ = −bias − J M⁻¹ f`
-//!
-//! (e.g. Featherstone, *Rigid Body Dynamics Algorithms*, 2008, §3.2). Groups touch each other
+//! accelerations follow from Gauss' principle (`constraints.rs`). Groups touch each other
 //! through clearance joints only, so each is a small dense system: a leg has three rows.
 
-use super::rows::{Row, prismatic_rows, revolute_rows};
+use super::constraints::{Constraints, RigidJoint, groups};
+use super::rows::{prismatic_rows, revolute_rows};
 use super::telescope::Telescope;
-use super::{Bearing, BodyState, Command, Drive, Held, Mechanism, Memory, Prismatic, Situation};
-use crate::contact::{Contact, circle_in_ring};
+use super::{
+    Bearing, BodyState, Command, Drive, Evaluation, Held, Mechanism, Memory, Prismatic, Situation,
+};
+use crate::contact::circle_in_ring;
 use nalgebra::Vector3;
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
@@ -31,77 +30,13 @@ pub struct Dynamics {
     held: Vec<Held>,
     /// What each load remembers of the end of the last step.
     memories: Vec<Memory>,
-    rows: Vec<Row>,
-    /// J M⁻¹ of each row.
-    weighted: Vec<[Vector3<f64>; 2]>,
-    matrix: Vec<f64>,
-    multipliers: Vec<f64>,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum RigidJoint {
-    Prismatic(usize),
-    Revolute(usize),
-}
-
-/// Everything that is known of a mechanism at one instant beside its state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Evaluation {
-    /// Time in s.
-    pub t: f64,
-    /// Time for which the commands were asked last.
-    commanded: f64,
-    /// Command of each prismatic joint; once something has asked for them at this time.
-    pub commands: Vec<Command>,
-    /// Wrench of gravity, contacts and servos on each body, about its centre of mass.
-    pub wrenches: Vec<Vector3<f64>>,
-    /// Acceleration of each body.
-    pub accelerations: Vec<Vector3<f64>>,
-    /// Contact in each revolute joint; of an ideal one the size of its force.
-    pub contacts: Vec<Contact>,
-    /// Length of each prismatic joint in m.
-    pub lengths: Vec<f64>,
-    /// Force of each drive on its rod in N, positive when it pushes outward.
-    pub drive_forces: Vec<f64>,
-}
-
-impl Evaluation {
-    /// An evaluation of the right size, all zero.
-    pub fn new(mechanism: &Mechanism) -> Self {
-        let bodies = mechanism.bodies.len();
-        let drives = mechanism.prismatics.len();
-        Self {
-            t: 0.0,
-            commanded: f64::NAN,
-            commands: vec![Command::default(); drives],
-            wrenches: vec![Vector3::zeros(); bodies],
-            accelerations: vec![Vector3::zeros(); bodies],
-            contacts: vec![Contact::default(); mechanism.revolutes.len()],
-            lengths: vec![0.0; drives],
-            drive_forces: vec![0.0; drives],
-        }
-    }
+    /// Workspace of a group.
+    constraints: Constraints,
 }
 
 fn add(wrenches: &mut [Vector3<f64>], body: Option<usize>, wrench: Vector3<f64>) {
     if let Some(i) = body {
         wrenches[i] += wrench;
-    }
-}
-
-impl Evaluation {
-    /// Asks for the commands, unless they are those of this time already: inverse kinematics costs
-    /// more than all contacts in flight.
-    fn command(&mut self, mechanism: &Mechanism) {
-        if self.commanded != self.t {
-            mechanism.commands.at(mechanism.epoch + self.t, &mut self.commands);
-            for (command, joint) in self.commands.iter_mut().zip(&mechanism.prismatics) {
-                if joint.drive == Drive::Prescribed && !joint.reading_errors.is_empty() {
-                    *command = joint.true_command(*command);
-                }
-            }
-            self.commanded = self.t;
-        }
     }
 }
 
@@ -148,10 +83,7 @@ impl Dynamics {
                     load.begin(Situation { t: mechanism.epoch, mechanism, states: &starts })
                 })
                 .collect(),
-            rows: Vec::new(),
-            weighted: Vec::new(),
-            matrix: Vec::new(),
-            multipliers: Vec::new(),
+            constraints: Constraints::default(),
         }
     }
 
@@ -294,26 +226,28 @@ impl Dynamics {
             }
         }
         for g in 0..self.groups.len() {
-            self.rows.clear();
+            self.constraints.rows.clear();
             for joint in &self.groups[g] {
                 match *joint {
                     RigidJoint::Prismatic(i) => {
                         let joint = &mechanism.prismatics[i];
                         let bodies = [joint.cylinder.body, joint.rod.body];
                         let [side, angle, mut along] = prismatic_rows(&self.prismatics[i], bodies);
-                        self.rows.extend([side, angle]);
+                        self.constraints.rows.extend([side, angle]);
                         if joint.drive == Drive::Prescribed {
                             along.bias -= out.commands[i].acceleration;
-                            self.rows.push(along);
+                            self.constraints.rows.push(along);
                         }
                     }
                     RigidJoint::Revolute(i) => {
-                        self.rows.extend(revolute_rows(&mechanism.revolutes[i], states));
+                        self.constraints
+                            .rows
+                            .extend(revolute_rows(&mechanism.revolutes[i], states));
                     }
                 }
             }
-            self.constrain(&mut out.accelerations);
-            let mut multipliers = self.multipliers.as_slice();
+            self.constraints.solve(&self.inverse_masses, &mut out.accelerations);
+            let mut multipliers = self.constraints.multipliers.as_slice();
             for joint in &self.groups[g] {
                 match *joint {
                     RigidJoint::Prismatic(i)
@@ -339,112 +273,6 @@ impl Dynamics {
             *w = a.component_mul(m);
         }
     }
-
-    /// Turns free accelerations into those that meet `self.rows`; leaves λ in `self.multipliers`.
-    fn constrain(&mut self, accelerations: &mut [Vector3<f64>]) {
-        let n = self.rows.len();
-        self.matrix.clear();
-        self.matrix.resize(n * n, 0.0);
-        self.multipliers.clear();
-        self.weighted.clear();
-        for (i, row) in self.rows.iter().enumerate() {
-            let mut rhs = -row.bias;
-            let mut weighted = [Vector3::zeros(); 2];
-            for ((body, jacobian), weighted) in
-                row.bodies.iter().zip(&row.jacobians).zip(&mut weighted)
-            {
-                if let Some(body) = *body {
-                    rhs -= jacobian.dot(&accelerations[body]);
-                    *weighted = jacobian.component_mul(&self.inverse_masses[body]);
-                }
-            }
-            for (entry, other) in self.matrix[i * n..=i * n + i].iter_mut().zip(&self.rows) {
-                if other.bodies == row.bodies {
-                    *entry =
-                        weighted[0].dot(&other.jacobians[0]) + weighted[1].dot(&other.jacobians[1]);
-                    continue;
-                }
-                for (body, weighted) in row.bodies.iter().zip(&weighted) {
-                    for (other_body, jacobian) in other.bodies.iter().zip(&other.jacobians) {
-                        if body.is_some() && body == other_body {
-                            *entry += weighted.dot(jacobian);
-                        }
-                    }
-                }
-            }
-            self.weighted.push(weighted);
-            self.multipliers.push(rhs);
-        }
-        solve_in_place(&mut self.matrix, &mut self.multipliers);
-        for ((row, weighted), &lambda) in
-            self.rows.iter().zip(&self.weighted).zip(&self.multipliers)
-        {
-            for (body, weighted) in row.bodies.iter().zip(weighted) {
-                if let Some(body) = *body {
-                    accelerations[body] += weighted * lambda;
-                }
-            }
-        }
-    }
-}
-
-/// Cholesky solution of a symmetric positive definite system given by its lower triangle (row
-/// major); the right-hand side becomes the solution. In place because it runs several times a step
-/// on systems of two or three rows, where an allocation would cost more than the solution.
-fn solve_in_place(a: &mut [f64], b: &mut [f64]) {
-    let n = b.len();
-    for j in 0..n {
-        for k in 0..j {
-            a[j * n + j] -= a[j * n + k] * a[j * n + k];
-        }
-        let pivot = a[j * n + j].sqrt();
-        a[j * n + j] = pivot;
-        for i in j + 1..n {
-            for k in 0..j {
-                a[i * n + j] -= a[i * n + k] * a[j * n + k];
-            }
-            a[i * n + j] /= pivot;
-        }
-        for k in 0..j {
-            b[j] -= a[j * n + k] * b[k];
-        }
-        b[j] /= pivot;
-    }
-    for j in (0..n).rev() {
-        for i in j + 1..n {
-            b[j] -= a[i * n + j] * b[i];
-        }
-        b[j] /= a[j * n + j];
-    }
-}
-
-/// The rigid joints, grouped by the bodies that they connect. The ground connects nothing: it does
-/// not move.
-fn groups(mechanism: &Mechanism) -> Vec<Vec<RigidJoint>> {
-    let prismatics = mechanism.prismatics.iter().enumerate();
-    let revolutes = mechanism.revolutes.iter().enumerate();
-    let joints =
-        prismatics.map(|(i, j)| (RigidJoint::Prismatic(i), [j.cylinder.body, j.rod.body])).chain(
-            revolutes
-                .filter(|(_, j)| matches!(j.bearing, Bearing::Ideal))
-                .map(|(i, j)| (RigidJoint::Revolute(i), [j.ring.body, j.journal.body])),
-        );
-    let mut groups: Vec<(Vec<usize>, Vec<RigidJoint>)> = Vec::new();
-    for (joint, bodies) in joints {
-        let bodies: Vec<usize> = bodies.into_iter().flatten().collect();
-        let (touching, mut rest): (Vec<_>, Vec<_>) =
-            groups.into_iter().partition(|(members, _)| members.iter().any(|m| bodies.contains(m)));
-        let mut merged = (Vec::new(), Vec::new());
-        for (members, joints) in touching {
-            merged.0.extend(members);
-            merged.1.extend(joints);
-        }
-        merged.0.extend(bodies);
-        merged.1.push(joint);
-        rest.push(merged);
-        groups = rest;
-    }
-    groups.into_iter().map(|(_, joints)| joints).collect()
 }
 
 #[cfg(test)]

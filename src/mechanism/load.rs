@@ -62,6 +62,22 @@ impl Situation<'_> {
         [joint.length, joint.length_rate]
     }
 
+    /// Rate in rad/s at which revolute joint `index` turns: of the journal's body against the ring's.
+    pub fn turning(self, index: usize) -> f64 {
+        let joint = &self.mechanism.revolutes[index];
+        joint.journal.frame(self.states).spin - joint.ring.frame(self.states).spin
+    }
+
+    /// Adds a torque (N·m) on the journal's body of revolute joint `index`, against the ring's.
+    pub fn push_turn(self, index: usize, torque: f64, wrenches: &mut [Vector3<f64>]) {
+        let joint = &self.mechanism.revolutes[index];
+        for (attachment, torque) in [(&joint.journal, torque), (&joint.ring, -torque)] {
+            if let Some(body) = attachment.body {
+                wrenches[body].z += torque;
+            }
+        }
+    }
+
     /// Adds a force (N, positive when it extends) between cylinder and rod of prismatic joint `index`.
     pub fn push_rod(self, index: usize, force: f64, wrenches: &mut [Vector3<f64>]) {
         let joint = &self.mechanism.prismatics[index];

@@ -12,7 +12,9 @@ pub mod three_rpr;
 
 mod assembly;
 mod cascade;
+mod constraints;
 mod dynamics;
+mod evaluation;
 mod load;
 mod reading;
 mod rows;
@@ -20,7 +22,8 @@ mod telescope;
 mod transmission;
 
 pub use cascade::{Cascade, Held};
-pub use dynamics::{Dynamics, Evaluation};
+pub use dynamics::Dynamics;
+pub use evaluation::Evaluation;
 pub use load::{Load, Memory, Situation};
 pub use reading::ReadingError;
 pub use transmission::Transmission;

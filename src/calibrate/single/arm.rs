@@ -2,7 +2,6 @@
 //! fitted to.
 
 use super::calibration::{Adjusted, Found, Ranked};
-use super::stage::fitted;
 use crate::calibrate::report::{EffectReport, Fitted};
 use crate::calibrate::result::CalibrateError;
 use crate::effects::Setting;
@@ -125,20 +124,20 @@ pub(super) fn search(
         swinger.effects().iter().map(|setting| report(setting, inertia, &std, &evidence)).collect();
     let had = |kind: &str| rig.effects.iter().any(|effect| effect.kind.name == kind);
     let added = effects.iter().filter(|e| !had(e.kind)).map(|e| e.kind.to_owned()).collect();
-    let adjusted = |path, unit, declared, value, std| {
-        let Fitted { value, std, ci95 } = fitted(value, std);
-        Adjusted { path, unit, declared, value, std, ci95 }
-    };
     let parameters = vec![
-        adjusted(
+        Adjusted::new(
             "mechanism.inertia",
             "kg m²",
             declared.arm.inertia,
-            swinger.arm().inertia,
             // J = m a g/K.
-            inertia / swinger.stiffness * std(0),
+            Fitted::new(swinger.arm().inertia, inertia / swinger.stiffness * std(0)),
         ),
-        adjusted("environment.gravity, its direction", "rad", 0.0, swinger.offset, std(1)),
+        Adjusted::new(
+            "environment.gravity, its direction",
+            "rad",
+            0.0,
+            Fitted::new(swinger.offset, std(1)),
+        ),
     ];
     Ok(Found { scenario: swinger.scenario(rig), effects, parameters, ranking, added })
 }
@@ -157,7 +156,7 @@ fn report(
     };
     let param = |(name, value)| {
         let std = place(name).map_or(f64::NAN, |place| inertia * std(place));
-        (name, fitted(value, std))
+        (name, Fitted::new(value, std))
     };
     EffectReport {
         kind: setting.kind.name,

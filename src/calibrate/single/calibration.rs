@@ -1,24 +1,22 @@
 //! A calibration of a machine of one joint, and its folder of results.
 
+use super::charts;
 use super::drawn;
 use super::noise::floors;
 use super::prediction::errors;
 use super::rows::predicted;
 use super::simulated::{Machine, along, read};
 use super::{arm, stage};
-use crate::calibrate::charts;
-use crate::calibrate::errors::ChannelError;
+use crate::calibrate::errors::{ChannelError, judged};
 use crate::calibrate::outcome::Verdict;
-use crate::calibrate::recording::stem;
-use crate::calibrate::report::EffectReport;
-use crate::calibrate::result::{CALIBRATED_FILE, CalibrateError, REPORT_FILE, to_json};
+use crate::calibrate::recording::{stem, tell_apart};
+use crate::calibrate::report::{EffectReport, Fitted};
+use crate::calibrate::result::{CALIBRATED_FILE, CalibrateError, REPORT_FILE, publish, to_json};
 use crate::identify::Recorded;
-use crate::report::Style;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use serde::Serialize;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant as Clock;
 
@@ -63,6 +61,18 @@ pub struct Adjusted {
     pub std: f64,
     /// The interval that holds the true value 95 times in 100.
     pub ci95: [f64; 2],
+}
+
+impl Adjusted {
+    /// A number of the rig at `path`, as declared and as fitted.
+    pub(super) fn new(
+        path: &'static str,
+        unit: &'static str,
+        declared: f64,
+        Fitted { value, std, ci95 }: Fitted,
+    ) -> Self {
+        Self { path, unit, declared, value, std, ci95 }
+    }
 }
 
 /// A candidate in a round.
@@ -135,12 +145,7 @@ pub fn prepare(
     if !wrong.is_empty() {
         return Err(CalibrateError::Input(wrong));
     }
-    let names: Vec<String> = runs.iter().map(|run| run.log.name.clone()).collect();
-    for run in &mut runs {
-        if names.iter().filter(|name| **name == run.log.name).count() > 1 {
-            run.log.name.clone_from(&run.path);
-        }
-    }
+    tell_apart(runs.iter_mut().map(|run| (&mut run.log, run.path.as_str())).collect());
     Ok(Prepared { rig, machine, runs })
 }
 
@@ -184,9 +189,9 @@ pub fn into_folder(
         let after = along(&found.scenario, *machine, &run.log)?;
         let floors = floors(&found.scenario, *machine, &run.log, &after)?;
         listed.extend(errors(run, role, [Some(&before), Some(&after)], &floors));
-        let models =
-            [("declared", &before, Style::Reference), ("calibrated", &after, Style::Solid)];
-        pictures.extend(charts::of_run(&run.log, role, &models).map_err(RunError::from)?);
+        let declared = Some(("declared", &before));
+        let drawn = charts::of_run(*machine, &run.log, role, declared, ("calibrated", &after));
+        pictures.extend(drawn.map_err(RunError::from)?);
         let name = format!("predicted-{}.csv", stem(&run.log));
         files.push((name.clone(), predicted(run, &after).map_err(refused(&name))?));
     }
@@ -208,25 +213,17 @@ pub fn into_folder(
         files: texts.chain(written).chain(drawn).collect(),
     };
     let json = to_json(&report);
-    let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
-    write(REPORT_FILE, &json)?;
-    write(CALIBRATED_FILE, &found.scenario.to_toml())?;
-    for (name, text) in &files {
-        write(name, text)?;
-    }
-    for picture in &pictures {
-        write(&picture.file, &picture.svg)?;
-    }
-    write(PAGE_FILE, &drawn::calibration(&report, *machine, &pictures))?;
-    let folder = folder.finish().map_err(RunError::from)?;
+    let (model, page) =
+        (found.scenario.to_toml(), drawn::calibration(&report, *machine, &pictures));
+    let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &model), (PAGE_FILE, &page)];
+    texts.extend(files.iter().map(|(name, text)| (name.as_str(), text)));
+    let folder = publish(folder, &texts, &pictures)?;
     Ok(Calibrated { report, json, folder })
 }
 
 /// On data not used for fits where there are any: whether every channel is at its noise.
 fn verdict(errors: &[ChannelError], added: bool) -> Verdict {
-    let held: Vec<&ChannelError> = errors.iter().filter(|e| e.role == "validation").collect();
-    let judged = if held.is_empty() { errors.iter().collect() } else { held };
-    if !judged.iter().all(|e| e.after <= NOISE * e.floor) {
+    if !judged(errors).iter().all(|e| e.after <= NOISE * e.floor) {
         Verdict::Unexplained
     } else if added {
         Verdict::Explained

@@ -46,11 +46,12 @@ pub(super) fn prediction(p: &Prediction, machine: Machine, pictures: &[Picture])
         ("Time of computing", format!("{} s", number(p.wall_s))),
     ];
     let provenance = p.provenance.lines("model", None, more);
-    let parts = [
-        Part::Table(errors_table(&p.errors, &note)),
-        Part::Pictures(pictures),
-        Part::Provenance(&provenance),
-    ];
+    let mut parts = Vec::new();
+    if !p.errors.is_empty() {
+        parts.push(Part::Table(errors_table(&p.errors, &note)));
+    }
+    parts.push(Part::Pictures(pictures));
+    parts.push(Part::Provenance(&provenance));
     document(&format!("Prediction of {}", p.run), &lead, &parts)
 }
 

@@ -3,6 +3,7 @@
 
 mod arm;
 mod calibration;
+mod charts;
 mod drawn;
 mod noise;
 mod prediction;

@@ -1,23 +1,21 @@
 //! A machine of one joint along a recording: what a model predicts, and by how much it misses.
 
+use super::charts;
 use super::drawn;
 use super::noise::floors;
 use super::rows::{measured, predicted};
 use super::simulated::{Machine, along};
-use crate::calibrate::charts;
 use crate::calibrate::errors::{ChannelError, rms};
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
-use crate::calibrate::result::{CalibrateError, to_json};
+use crate::calibrate::result::{CalibrateError, publish, to_json};
 use crate::calibrate::search::name;
 use crate::identify::Recorded;
 use crate::identify::arm::PLAN;
 use crate::measure::log::Log;
-use crate::report::Style;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use serde::Serialize;
-use std::fs;
 use std::path::PathBuf;
 use std::time::Instant as Clock;
 
@@ -105,12 +103,9 @@ pub fn predict(
     let floors = floors(model, machine, log, &after)?;
     let errors = errors(recorded, "prediction", [before.as_ref(), Some(&after)], &floors);
     tell("drawing and writing");
-    let mut models = Vec::new();
-    if let Some(before) = &before {
-        models.push(("without effects", before, Style::Reference));
-    }
-    models.push(("predicted", &after, Style::Solid));
-    let pictures = charts::of_run(log, "prediction", &models).map_err(RunError::from)?;
+    let without = before.as_ref().map(|before| ("without effects", before));
+    let pictures = charts::of_run(machine, log, "prediction", without, ("predicted", &after))
+        .map_err(RunError::from)?;
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let prediction = Prediction {
         provenance: Provenance::of(model),
@@ -123,13 +118,9 @@ pub fn predict(
         files: texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect(),
     };
     let json = to_json(&prediction);
-    let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
-    write(ERRORS_FILE, &json)?;
-    write(PREDICTED_FILE, &predicted(recorded, &after).map_err(refused(PREDICTED_FILE))?)?;
-    for picture in &pictures {
-        write(&picture.file, &picture.svg)?;
-    }
-    write(PAGE_FILE, &drawn::prediction(&prediction, machine, &pictures))?;
-    let folder = folder.finish().map_err(RunError::from)?;
+    let rows = predicted(recorded, &after).map_err(refused(PREDICTED_FILE))?;
+    let page = drawn::prediction(&prediction, machine, &pictures);
+    let texts = [(ERRORS_FILE, &json), (PREDICTED_FILE, &rows), (PAGE_FILE, &page)];
+    let folder = publish(folder, &texts, &pictures)?;
     Ok(Predicted { prediction, json, folder })
 }

@@ -1,8 +1,8 @@
 //! The page of the study: the claims and their verdicts first.
 
-use super::claims::{Judged, Verdict};
 use super::estimate::Estimate;
 use super::items::QUANTITIES;
+use super::judgement::{Judged, Verdict};
 use super::result::Paper;
 use crate::report::{Part, Picture, Table, document, length, number};
 use crate::study::run::SCENARIO_FILE;

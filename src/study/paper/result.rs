@@ -1,8 +1,8 @@
 //! `paper.json`: what the study came to.
 
-use super::claims::{Judged, Verdict};
 use super::estimate::RunMean;
 use super::items::{COUNT, Item, QUANTITIES};
+use super::judgement::{Judged, Verdict};
 use super::parameters::Parameter;
 use super::probe::Values;
 use crate::simulate::Provenance;

@@ -1,11 +1,13 @@
 //! A picture that moves by itself: an SVG that plays frames in slow motion, over and over, wherever a
 //! picture can stand. The mechanism in the middle, its joints magnified on both sides.
 
+mod elements;
+
 use super::page::escaped;
 use super::quantity::number;
-use super::scene::{Outline, Scene};
+use super::scene::Scene;
 use crate::measure::frames::{Frame, Frames};
-use std::f64::consts::TAU;
+use elements::{Film, outline, pair, short, unwrapped};
 use std::fmt::Write;
 
 /// Seconds on the viewer's clock for each second shown.
@@ -52,13 +54,6 @@ pub fn animation_svg(scene: &Scene, frames: &Frames) -> String {
         film.draw(&mut svg, &view, &joints, bottom).expect("writing to a string cannot fail");
     }
     svg + "</svg>\n"
-}
-
-struct Film<'a> {
-    scene: &'a Scene,
-    frames: &'a [&'a Frame],
-    /// Length on the viewer's clock.
-    seconds: f64,
 }
 
 /// Metres to pixels.
@@ -253,50 +248,6 @@ impl Film<'_> {
         };
         self.frames.iter().zip(orbit).map(next).collect()
     }
-
-    /// A curve that appears as time goes by.
-    fn revealed(&self, svg: &mut String, class: &str, points: &[[f64; 2]]) -> std::fmt::Result {
-        let mut lengths = vec![0.0];
-        for pair in points.windows(2) {
-            let step = (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-            lengths.push(lengths[lengths.len() - 1] + step);
-        }
-        let whole = lengths[lengths.len() - 1].max(1e-9);
-        let offsets: Vec<String> = lengths.iter().map(|l| short(whole - l, 1)).collect();
-        let corners: Vec<String> = points.iter().map(|p| pair(*p, 1)).collect();
-        write!(
-            svg,
-            "<polyline class=\"{class}\" stroke-dasharray=\"{whole:.1}\" points=\"{}\">",
-            corners.join(" ")
-        )?;
-        svg.push_str(&self.animate("stroke-dashoffset", "linear", &offsets));
-        writeln!(svg, "</polyline>")
-    }
-
-    fn animate(&self, name: &str, mode: &str, values: &[String]) -> String {
-        self.element("animate", &format!("attributeName=\"{name}\""), mode, values)
-    }
-
-    fn turned(&self, kind: &str, additive: &str, value: impl Fn(&Frame) -> String) -> String {
-        let values: Vec<String> = self.frames.iter().map(|f| value(f)).collect();
-        self.transform(kind, additive, "linear", &values)
-    }
-
-    fn transform(&self, kind: &str, additive: &str, mode: &str, values: &[String]) -> String {
-        let what = format!("attributeName=\"transform\" type=\"{kind}\" additive=\"{additive}\"");
-        self.element("animateTransform", &what, mode, values)
-    }
-
-    fn element(&self, tag: &str, what: &str, mode: &str, values: &[String]) -> String {
-        // A thing at rest needs no list.
-        let rest = values.iter().all(|value| *value == values[0]);
-        let values = if rest { values[0].clone() } else { values.join(";") };
-        format!(
-            "<{tag} {what} calcMode=\"{mode}\" dur=\"{}s\" repeatCount=\"indefinite\" \
-             values=\"{values}\"/>",
-            short(self.seconds, 3)
-        )
-    }
 }
 
 /// What a hit leaves to see.
@@ -310,50 +261,11 @@ struct Mark {
     left: f64,
 }
 
-fn outline(svg: &mut String, outline: &Outline, scale: f64, [x, y]: [f64; 2]) {
-    let corners: Vec<String> =
-        outline.points.iter().map(|p| pair([x + scale * p[0], y - scale * p[1]], 1)).collect();
-    let corners = corners.join(" ");
-    let width = (scale * outline.width_m).max(1.5);
-    // Writing to a string cannot fail.
-    let _ = if outline.closed {
-        write!(svg, "<polygon class=\"l p\" stroke-width=\"{width:.1}\" points=\"{corners}\"/>")
-    } else {
-        write!(
-            svg,
-            "<polyline class=\"l\" stroke-width=\"{width:.1}\" points=\"{corners}\"/>\
-             <polyline class=\"l k\" stroke-width=\"{:.1}\" points=\"{corners}\"/>",
-            width - 2.0
-        )
-    };
-}
-
-/// Angles without jumps of a whole turn.
-fn unwrapped(angles: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut before = 0.0;
-    let next = |angle: f64| {
-        before = angle + TAU * ((before - angle) / TAU).round();
-        before
-    };
-    angles.map(next).collect()
-}
-
-fn pair([x, y]: [f64; 2], digits: usize) -> String {
-    format!("{} {}", short(x, digits), short(y, digits))
-}
-
-/// A number with at most so many decimals.
-fn short(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    let text =
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::scene::SceneJoint;
     use super::*;
+    use crate::report::scene::Outline;
+    use crate::report::scene::SceneJoint;
 
     fn scene(name: &str) -> Scene {
         Scene {
@@ -377,17 +289,6 @@ mod tests {
     }
 
     #[test]
-    fn angles_go_on_beyond_half_a_turn() {
-        let angles = unwrapped([3.0, -3.0, 3.0].into_iter());
-        assert_eq!(angles, [3.0, TAU - 3.0, 3.0]);
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        assert_eq!([short(-0.001, 1), short(10.0, 0), short(1.5, 3)], ["0", "10", "1.5"]);
-    }
-
-    #[test]
     fn nothing_to_play_is_still_a_picture_and_names_are_no_markup() {
         let svg = animation_svg(&scene("<b>"), &Frames::new(4));
         assert!(svg.starts_with("<svg") && svg.contains("&lt;b&gt;") && !svg.contains("<b>"));
@@ -399,7 +300,7 @@ mod tests {
     fn a_journal_at_its_clearance_touches_the_ring() {
         let mut frames = Frames::new(4);
         let mut scene = scene("A");
-        scene.bodies.push(super::super::scene::SceneBody { name: "rod".into(), outlines: vec![] });
+        scene.bodies.push(crate::report::scene::SceneBody { name: "rod".into(), outlines: vec![] });
         for (t, e) in [(0.0, [0.0, 0.0]), (0.01, [1e-3, 0.0]), (0.02, [0.0, 1e-3])] {
             let values = vec![0.1, 0.2, 0.3, e[0], e[1], 0.0, 0.0];
             frames.push(Frame { t, values, extremes: vec![[0.0, 4.0]] });

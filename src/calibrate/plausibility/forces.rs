@@ -1,0 +1,63 @@
+//! Forces of a log held against those of the declared model: another order of magnitude is another unit.
+
+use crate::measure::filter::ZeroPhase;
+use crate::measure::log::{Channel, Log, LogError};
+use crate::scenario::{Drive, DriveMode};
+
+/// Low-passed forces beyond these multiples of the declared model's are in another unit. Downwards
+/// nothing physical leads so far; upwards friction might, so that the servo's own law has to agree.
+const SMALL: f64 = 1.0 / 100.0;
+const LARGE: f64 = 200.0;
+
+/// So many times the force that the servo's law gives is no force in N: gains may be wrong, but not so.
+const BEYOND_LAW: f64 = 30.0;
+
+/// Corner of that low-pass in Hz: most of a rattle and of a sensor's noise lies above.
+const CORNER: f64 = 25.0;
+
+/// Forces of another order of magnitude than the declared model's, whose noiseless log is given.
+pub fn forces(path: &str, log: &Log, declared: &Log, drive: &Drive) -> Vec<LogError> {
+    let filter = ZeroPhase::butterworth(4, CORNER, log.interval);
+    let size = |values: &[f64]| {
+        let filtered = filter.apply(values);
+        (filtered.iter().map(|v| v * v).sum::<f64>() / filtered.len().max(1) as f64).sqrt()
+    };
+    let mut found = Vec::new();
+    for leg in 0..3 {
+        let channel = Channel::Force(leg);
+        let (Some(measured), Some(expected)) = (log.get(channel), declared.get(channel)) else {
+            continue;
+        };
+        let (measured, expected) = (size(measured), size(expected));
+        let by_law = servo(log, drive, leg).map(|force| size(&force));
+        let unit = if measured < SMALL * expected {
+            Some(("kN", 1e3))
+        } else if measured > LARGE * expected
+            && by_law.is_none_or(|by_law| measured > BEYOND_LAW * by_law)
+        {
+            Some(("mN", 1e-3))
+        } else {
+            None
+        };
+        if let Some((unit, factor)) = unit {
+            found.push(LogError {
+                place: path.to_owned(),
+                message: format!(
+                    "column `{channel}` is of the order of {measured:.1e}, where the declared model \
+                     takes {expected:.1e} N: is it in {unit}?"
+                ),
+                help: format!("write it in N: multiply by {factor}"),
+            });
+        }
+    }
+    found
+}
+
+/// The force of a servo in N by its own law, `k_p (q_cmd − q)`; its damping is small where motion is slow.
+fn servo(log: &Log, drive: &Drive, leg: usize) -> Option<Vec<f64>> {
+    if drive.mode != DriveMode::Servo {
+        return None;
+    }
+    let (command, length) = (log.get(Channel::Command(leg))?, log.get(Channel::Length(leg))?);
+    Some(command.iter().zip(length).map(|(c, q)| drive.stiffness * (c - q)).collect())
+}

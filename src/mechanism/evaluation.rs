@@ -1,0 +1,58 @@
+//! What is known of a mechanism at one instant beside its state.
+
+use super::{Command, Drive, Mechanism};
+use crate::contact::Contact;
+use nalgebra::Vector3;
+
+/// Everything that is known of a mechanism at one instant beside its state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evaluation {
+    /// Time in s.
+    pub t: f64,
+    /// Time for which the commands were asked last.
+    commanded: f64,
+    /// Command of each prismatic joint; once something has asked for them at this time.
+    pub commands: Vec<Command>,
+    /// Wrench of gravity, contacts and servos on each body, about its centre of mass.
+    pub wrenches: Vec<Vector3<f64>>,
+    /// Acceleration of each body.
+    pub accelerations: Vec<Vector3<f64>>,
+    /// Contact in each revolute joint; of an ideal one the size of its force.
+    pub contacts: Vec<Contact>,
+    /// Length of each prismatic joint in m.
+    pub lengths: Vec<f64>,
+    /// Force of each drive on its rod in N, positive when it pushes outward.
+    pub drive_forces: Vec<f64>,
+}
+
+impl Evaluation {
+    /// An evaluation of the right size, all zero.
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let bodies = mechanism.bodies.len();
+        let drives = mechanism.prismatics.len();
+        Self {
+            t: 0.0,
+            commanded: f64::NAN,
+            commands: vec![Command::default(); drives],
+            wrenches: vec![Vector3::zeros(); bodies],
+            accelerations: vec![Vector3::zeros(); bodies],
+            contacts: vec![Contact::default(); mechanism.revolutes.len()],
+            lengths: vec![0.0; drives],
+            drive_forces: vec![0.0; drives],
+        }
+    }
+
+    /// Asks for the commands, unless they are those of this time already: inverse kinematics costs
+    /// more than all contacts in flight.
+    pub(super) fn command(&mut self, mechanism: &Mechanism) {
+        if self.commanded != self.t {
+            mechanism.commands.at(mechanism.epoch + self.t, &mut self.commands);
+            for (command, joint) in self.commands.iter_mut().zip(&mechanism.prismatics) {
+                if joint.drive == Drive::Prescribed && !joint.reading_errors.is_empty() {
+                    *command = joint.true_command(*command);
+                }
+            }
+            self.commanded = self.t;
+        }
+    }
+}
