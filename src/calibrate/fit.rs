@@ -79,11 +79,14 @@ pub fn jacobian(target: &Target, fit: &Fit) -> Option<DMatrix<f64>> {
     least_squares::jacobian(&look, &free(&fit.effects), &values(&fit.effects), &fit.white)
 }
 
+/// Drop of the sum of squares that is none: looks through a lens are cheap.
+const ENOUGH: f64 = 1e-3;
+
 /// Least squares from the given values on, at most `iterations` steps; none where the model cannot be
 /// built at its start.
 pub fn fit(target: &Target, effects: &[Setting], iterations: usize) -> Option<Fit> {
     let look = |values: &[f64]| Some(target.look(&with_values(effects, values))?.white);
-    let best = least_squares(&look, &free(effects), values(effects), iterations)?;
+    let best = least_squares(&look, &free(effects), values(effects), iterations, ENOUGH)?;
     Some(Fit {
         effects: with_values(effects, &best.values),
         chi2: best.residual.norm_squared(),

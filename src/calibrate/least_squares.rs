@@ -44,13 +44,14 @@ pub fn jacobian(
     (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
 }
 
-/// Least squares from the given values on, at most `iterations` steps; none where there is no model at
-/// its start.
+/// Least squares from the given values on, at most `iterations` steps, until one brings no more than
+/// `enough` and as many parts of a thousand; none where there is no model at its start.
 pub fn least_squares(
     look: Look,
     free: &[Free],
     start: Vec<f64>,
     iterations: usize,
+    enough: f64,
 ) -> Option<Best> {
     let residual = look(&start)?;
     let mut best = Best { values: start, residual, jacobian: None };
@@ -76,7 +77,7 @@ pub fn least_squares(
             }
             damping = (damping * 10.0).max(1e-4);
         }
-        if before - now < 1e-3 * (1.0 + 1e-3 * before) {
+        if before - now < enough * (1.0 + 1e-3 * before) {
             break;
         }
     }

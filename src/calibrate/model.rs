@@ -136,6 +136,8 @@ struct Part {
     segment: Segment,
     bias: Vec<Vec<f64>>,
     noise: Noise,
+    /// What of the residual is the platform's swing, where joints stay loaded.
+    swing: Option<Vec<Vec<f64>>>,
 }
 
 /// Draws of sensor noise from which a covariance is taken.
@@ -159,7 +161,7 @@ impl Case {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn simulate(&self, effects: &[Setting]) -> Result<Vec<Vec<Log>>, SearchError> {
-        let starts = self.starts(effects, &[])?;
+        let starts = self.starts(effects, None)?;
         let machines: Vec<Mechanism> = starts.into_iter().map(|start| start.machine).collect();
         let count = if self.chaotic { 2 } else { 1 } * self.replicas;
         Ok(self.replicas(&machines, count)?)
@@ -195,14 +197,24 @@ impl Case {
     }
 
     /// How each run's machine with these effects starts: as let go where joints rattle, else as its log
-    /// shows, which is soon found from the starts of a model that is `like` this one.
-    fn starts(&self, effects: &[Setting], like: &[Start]) -> Result<Vec<Start>, SearchError> {
+    /// shows, which is soon found from those of a model that is `like` this one.
+    fn starts(
+        &self,
+        effects: &[Setting],
+        like: Option<&Baseline>,
+    ) -> Result<Vec<Start>, SearchError> {
         let machines = self.released(effects)?.into_par_iter().zip(&self.runs).enumerate();
         let start = |(i, (machine, run)): (usize, (Mechanism, &Run))| {
             if self.chaotic {
                 return Ok(Start::let_go(machine));
             }
-            as_seen(machine, &run.log, &self.sensors, self.control, like.get(i))
+            as_seen(
+                machine,
+                &run.log,
+                &self.sensors,
+                self.control,
+                like.map(|like| &like.starts[i]),
+            )
         };
         Ok(machines.map(start).collect::<Result<_, Halt>>()?)
     }
@@ -210,7 +222,7 @@ impl Case {
     /// The baseline of a model with these effects, from simulations of it.
     ///
     /// Where joints stay loaded the platform swings in their play, and a lens's fault is to see that
-    /// swing: what the same machine does without a swing tells where. The starts of a model that is
+    /// swing: what the same machine does without a swing tells where. Start and swing of a model that is
     /// `like` this one save time.
     ///
     /// # Errors
@@ -219,14 +231,22 @@ impl Case {
         &self,
         effects: &[Setting],
         segments: &[Segment],
-        like: &[Start],
+        like: Option<&Baseline>,
     ) -> Result<Baseline, SearchError> {
         let starts = self.starts(effects, like)?;
-        let [machines, still] =
-            [|start: &Start| start.machine.clone(), |start: &Start| start.still.clone()]
-                .map(|of| starts.iter().map(of).collect::<Vec<Mechanism>>());
+        let machines: Vec<Mechanism> = starts.iter().map(|start| start.machine.clone()).collect();
         let logs = self.replicas(&machines, self.replicas)?;
-        let still = if self.chaotic { Vec::new() } else { self.replicas(&still, 1)? };
+        // The swing of a kicked start is not that of a release.
+        let kicked = |starts: &[Start]| -> Vec<bool> {
+            starts.iter().map(|start| start.kicks.is_some()).collect()
+        };
+        let like = like.filter(|like| kicked(&like.starts) == kicked(&starts));
+        let still = if self.chaotic || like.is_some() {
+            Vec::new()
+        } else {
+            let still: Vec<Mechanism> = starts.iter().map(|start| start.still.clone()).collect();
+            self.replicas(&still, 1)?
+        };
         let part = |segment: &Segment| {
             let machine = &machines[segment.run];
             let look = |log: &Log| {
@@ -246,13 +266,15 @@ impl Case {
                     difference(&look(&log), &without(&bias, &clean[index], clean.len()))
                 })
                 .collect();
-            let swing = still.get(segment.run).map(|logs| {
+            let seen = still.get(segment.run).map(|logs| {
                 let mut swing = difference(&clean[0], &look(&logs[0]));
                 swing.iter_mut().flatten().for_each(|value| *value *= SWING);
                 swing
             });
+            let known = || like?.parts.iter().find(|part| part.segment == *segment)?.swing.clone();
+            let swing = seen.or_else(known);
             let noise = Noise::from_draws(&draws, swing.as_deref());
-            Part { segment: segment.clone(), bias, noise }
+            Part { segment: segment.clone(), bias, noise, swing }
         };
         let parts = segments.iter().map(part).collect();
         Ok(Baseline { parts, starts })

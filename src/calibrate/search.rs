@@ -98,7 +98,7 @@ pub fn search(
 ) -> Result<Found, SearchError> {
     tell("simulating the model as declared");
     let mut simulations = case.simulations();
-    let declared = settle(case, question, &[], 1, &[])?;
+    let declared = settle(case, question, &[], 1, None)?;
     let threshold = GAIN[usize::from(case.chaotic)];
     let mut best = Way { model: declared.clone(), rounds: Vec::new(), certain: true };
     let mut ways = vec![best.clone()];
@@ -128,13 +128,13 @@ pub fn search(
         }
         let winner = next.remove(0);
         tell(&format!("settling {}", names(&winner.model.fit.effects)));
-        let starts = &winner.model.baseline.starts;
-        let model = settle(case, question, &winner.model.fit.effects, SETTLES, starts)?;
+        let like = Some(&winner.model.baseline);
+        let model = settle(case, question, &winner.model.fit.effects, SETTLES, like)?;
         simulations += model.times * case.simulations();
         let mut model = simplified(case, question, model);
         if Way::key(&model.fit.effects) != Way::key(&winner.model.fit.effects) {
             // What a lens is wrong by depends on all values.
-            model = settle(case, question, &model.fit.effects, SETTLES, starts)?;
+            model = settle(case, question, &model.fit.effects, SETTLES, like)?;
             simulations += model.times * case.simulations();
         }
         if !case.chaotic {
@@ -185,8 +185,8 @@ fn beside(
         let (scored, effects) = &ranking[i];
         tried.push(Way::key(effects));
         tell(&format!("simulating {}", names(effects)));
-        let starts = &model.baseline.starts;
-        let Ok(rival) = settle(case, question, effects, 2, starts) else { continue };
+        let like = Some(&model.baseline);
+        let Ok(rival) = settle(case, question, effects, 2, like) else { continue };
         simulations += rival.times * case.simulations();
         let values = scored.effect.values().count() as f64;
         let (scored, _) = &mut ranking[i];
@@ -230,7 +230,7 @@ fn needed(
         let mut fewer = best.fit.effects.clone();
         let dropped = fewer.remove(i);
         tell(&format!("doing without {}", name(&dropped)));
-        let without = settle(case, question, &fewer, 2, &best.baseline.starts)?;
+        let without = settle(case, question, &fewer, 2, Some(&best.baseline))?;
         simulations += without.times * case.simulations();
         let values = dropped.values().count() as f64;
         if without.misfit - best.misfit - GAIN_PER_VALUE * values < threshold {

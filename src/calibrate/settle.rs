@@ -2,7 +2,6 @@
 
 use super::fit::{self, Fit, Target};
 use super::model::{Baseline, Case, SearchError, Segment};
-use super::start::Start;
 use super::whole::whole;
 use crate::effects::Setting;
 
@@ -14,7 +13,7 @@ pub const GAIN_PER_VALUE: f64 = 2.0;
 const SETTLED: f64 = 0.3;
 
 /// Mean square in units of noise beyond which a model lacks more than digits of its values.
-const HOPEFUL: f64 = 5.0;
+const HOPEFUL: f64 = 2.5;
 
 /// A model that simulations of itself have been held against.
 #[derive(Clone, Debug)]
@@ -52,7 +51,7 @@ impl Question<'_> {
 }
 
 /// Fits the values of a model, simulating it anew each time: the lens's own fault depends on them.
-/// The starts of a model that is `like` this one save time.
+/// What is known of a model that is `like` this one saves time.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
@@ -61,13 +60,13 @@ pub fn settle(
     question: &Question,
     effects: &[Setting],
     times: usize,
-    like: &[Start],
+    like: Option<&Baseline>,
 ) -> Result<Settled, SearchError> {
     let segments = question.segments();
     let mut effects = effects.to_vec();
     let mut settled: Option<Settled> = None;
     for time in 1..=times.max(1) {
-        let like = settled.as_ref().map_or(like, |settled| &settled.baseline.starts);
+        let like = settled.as_ref().map_or(like, |settled| Some(&settled.baseline));
         let baseline = case.baseline(&effects, &segments, like)?;
         let target = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
         let iterations = if effects.is_empty() { 0 } else { 6 };
@@ -99,7 +98,7 @@ pub fn refined(case: &Case, question: &Question, model: Settled) -> Result<Settl
     }
     let starts = &model.baseline.starts;
     let Some(fit) = whole(case, question.on, &model.fit.effects, starts) else { return Ok(model) };
-    let baseline = case.baseline(&fit.effects, &question.segments(), starts)?;
+    let baseline = case.baseline(&fit.effects, &question.segments(), Some(&model.baseline))?;
     let target = Target { case, baseline: &baseline, on: question.hold, fixed: &[], blind: None };
     let held = target.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
     Ok(Settled { fit, baseline, held, misfit: held, times: model.times + 1 })

@@ -49,7 +49,7 @@ const RIDGE: f64 = 1e-3;
 
 /// Mean square in units of noise up to which a release shows the recorded swing, and the share of its
 /// squares that a kicked start has to leave to be the better one.
-const SHOWN: f64 = 1.1;
+pub const SHOWN: f64 = 1.1;
 const SLACK: f64 = 0.95;
 
 /// Numbers of kicks of one start.
@@ -75,6 +75,11 @@ impl Start {
     /// A start that nothing is known of, but how the machine was let go.
     pub fn let_go(machine: Mechanism) -> Self {
         Self { kicks: None, still: machine.clone(), machine, response: None }
+    }
+
+    /// The same with this machine, as it was let go.
+    pub fn without_kicks(&self, released: Mechanism) -> Self {
+        Self { still: self.still.clone(), ..Self::let_go(released) }
     }
 }
 
@@ -205,7 +210,13 @@ pub fn as_seen(
         Judge { log, sensors, control }
     };
     let whole = judge(SEEN);
-    let let_go = whole.look(&released)?;
+    // Both at once: one core would wait for the other.
+    let known = || match like {
+        Some(Start { kicks: Some(kicks), .. }) => whole.look(&kicked(&still, kicks)).map(Some),
+        _ => Ok(None),
+    };
+    let (let_go, known) = rayon::join(|| whole.look(&released), known);
+    let (let_go, known) = (let_go?, known?);
     let released = Start { kicks: None, machine: released, still, response: None };
     if let_go.norm_squared() <= SHOWN * let_go.len() as f64 {
         return Ok(released);
@@ -225,7 +236,10 @@ pub fn as_seen(
             }
         }
     }
-    let mut left = whole.look(&kicked(still, &kicks))?;
+    let mut left = match known {
+        Some(left) => left,
+        None => whole.look(&kicked(still, &kicks))?,
+    };
     for _ in 0..STEPS {
         let known = match response.take() {
             Some(known) => known,

@@ -51,7 +51,7 @@ pub fn describe(
         };
         let effect = Setting::unnamed(map);
         let effects = [model.fit.effects.as_slice(), std::slice::from_ref(&effect)].concat();
-        simulated = settle(case, question, &effects, 1, &model.baseline.starts)?;
+        simulated = settle(case, question, &effects, 1, Some(&model.baseline))?;
         let share = share.clamp(0.0, 1.0);
         last = Some((Described { effect, share, others: others.clone() }, simulated.clone()));
     }

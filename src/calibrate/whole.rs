@@ -6,72 +6,143 @@
 //! the third digit of what loads it. The start is fitted with the values ([`super::start`]).
 
 use super::fit::{Fit, free, values, with_values};
-use super::least_squares::{Free, least_squares};
+use super::least_squares::{Best, Free, jacobian, least_squares};
 use super::model::{Case, Segment};
 use super::rattle::noise;
 use super::replica;
 use super::spectrum::{Signal, transform};
-use super::start::{KICKS, Kicks, Start, kicked, still};
+use super::start::{KICKS, Kicks, SHOWN, Start, kicked, still};
 use crate::effects::Setting;
 use crate::measure::log::{Channel, Log};
+use crate::mechanism::Mechanism;
 use nalgebra::DVector;
 
-/// Highest frequencies in Hz that count: at first below the swing, whose phase has many wrong answers
-/// for values that are off; then all that a platform does.
-const BANDS: [f64; 2] = [30.0, 100.0];
+/// Highest frequency in Hz that counts: all that a platform does.
+const BAND: f64 = 100.0;
 
-/// Steps of Gauss and Newton in each band, at most.
-const STEPS: [usize; 2] = [3, 4];
+/// A stage of a fit.
+struct Stage {
+    /// Share of the swing by which it may be missed.
+    share: f64,
+    /// Steps of Gauss and Newton, at most.
+    steps: usize,
+    /// Drop of the sum of squares, and parts of a thousand, below which another step is not worth its
+    /// simulations.
+    enough: f64,
+}
 
-/// Share of a parameter's step by which derivatives are taken: the swing's phase bends what is straight
-/// through the lens.
-const STEP: f64 = 0.1;
+/// First whatever the swing: its phase has many wrong answers for values that are off. Then it counts
+/// more and more: it pins values that are nearly right.
+const ROUGH: [Stage; 1] = [Stage { share: 2.0, steps: 4, enough: 1.0 }];
+const CLOSE: [Stage; 3] = [
+    Stage { share: 0.3, steps: 3, enough: 1.0 },
+    Stage { share: 0.05, steps: 3, enough: 1.0 },
+    Stage { share: 0.0, steps: 6, enough: 0.1 },
+];
 
-/// Mean square in units of noise up to which a model is complete enough for its values to be better than
-/// through the lens: what it lacks would be made good by them.
-const COMPLETE: f64 = 1.5;
+/// Share of a parameter's step, or of a kick's size, by which derivatives are taken at first: the swing's
+/// phase bends what is straight through the lens. Then steps are a standard deviation each, which is
+/// above what simulations are wrong by, and small beside all that bends.
+const STEP: f64 = 0.01;
+
+/// Standard deviations of a value by which derivatives are taken.
+const SIGMAS: f64 = 2.0;
+
+/// Mean square in units of noise, after any stage, beyond which a model is not complete: its values would
+/// make good what it lacks, and stages in which the swing counts more come no nearer.
+const COMPLETE: f64 = 1.2;
+
+/// Half the number of neighbouring frequencies over which a swing's size is averaged.
+const NEIGHBOURS: usize = 8;
+
+/// Residuals by channel and frequency.
+type Spectra = Vec<Vec<f64>>;
 
 /// The values of a model near `effects`, whose runs start like `starts`, that meet segments point by
 /// point, with residual and derivatives from which intervals follow; none where joints rattle, or where
 /// no values make the model nearly complete.
+///
+/// With values that are right to a hundredth a release may swing unlike the recording, with right ones
+/// like it: kicks are taken only where the release does not do.
 pub fn whole(case: &Case, on: &[Segment], effects: &[Setting], starts: &[Start]) -> Option<Fit> {
-    let count = values(effects).len();
-    if case.chaotic || count == 0 {
+    if case.chaotic || values(effects).is_empty() {
         return None;
     }
-    let kicks: Vec<Option<Kicks>> = starts.iter().map(|start| start.kicks).collect();
+    let let_go: Vec<Start> = starts
+        .iter()
+        .zip(case.released(effects).ok()?)
+        .map(|(start, machine)| start.without_kicks(machine))
+        .collect();
+    let rough = from(case, on, effects, &let_go, &ROUGH)?;
+    let close = |starts: &[Start]| from(case, on, &rough.effects, starts, &CLOSE);
+    let mut best = close(&let_go);
+    if mean_square(best.as_ref()) > SHOWN && starts.iter().any(|start| start.kicks.is_some()) {
+        let kicked = close(starts);
+        if mean_square(kicked.as_ref()) < mean_square(best.as_ref()) {
+            best = kicked;
+        }
+    }
+    best
+}
+
+fn mean_square(fit: Option<&Fit>) -> f64 {
+    fit.map_or(f64::INFINITY, |fit| fit.chi2 / fit.white.len() as f64)
+}
+
+/// The same from starts of one kind, in these stages.
+fn from(
+    case: &Case,
+    on: &[Segment],
+    effects: &[Setting],
+    starts: &[Start],
+    stages: &[Stage],
+) -> Option<Fit> {
+    let count = values(effects).len();
     let mut free: Vec<Free> = free(effects);
     free.iter_mut().for_each(|free| free.step *= STEP);
-    let mut start = values(effects);
-    for kicks in on.iter().filter_map(|segment| kicks[segment.run]) {
-        start.extend(kicks.iter());
+    let mut now = values(effects);
+    for kicks in on.iter().filter_map(|segment| starts[segment.run].kicks) {
+        now.extend(kicks.iter());
         free.extend([Free { step: STEP, bounds: [f64::NEG_INFINITY, f64::INFINITY] }; KICKS]);
     }
-    let mut fit = None;
-    for (band, steps) in BANDS.into_iter().zip(STEPS) {
+    let swings = on.iter().map(|segment| swing(case, segment, &starts[segment.run]));
+    let swings: Vec<Spectra> = swings.collect::<Option<_>>()?;
+    let mut fit: Option<Best> = None;
+    for Stage { share, steps, enough } in stages {
         let look = |values: &[f64]| {
             let (own, mut rest) = values.split_at(count);
             let effects = with_values(effects, own);
             let mut white = Vec::new();
-            for segment in on {
-                let own = kicks[segment.run].map(|_| {
+            for (segment, swing) in on.iter().zip(&swings) {
+                let mut machine = case.runs[segment.run].released(&case.rig, &effects).ok()?;
+                if starts[segment.run].kicks.is_some() {
                     let (own, others) = rest.split_at(KICKS);
                     rest = others;
-                    Kicks::from_column_slice(own)
-                });
-                white.extend(residual(case, segment, &effects, own, band)?);
+                    let still = still(&machine, case.control).ok()?;
+                    machine = kicked(&still, &Kicks::from_column_slice(own));
+                }
+                let missed = missed(case, segment, &machine)?;
+                let pairs = missed.into_iter().flatten().zip(swing.iter().flatten());
+                white.extend(pairs.map(|(r, swing)| r / (1.0 + share * share * swing).sqrt()));
             }
             Some(DVector::from_vec(white))
         };
-        let best = least_squares(&look, &free, start.clone(), steps)?;
-        start.clone_from(&best.values);
+        let derivatives = match fit.and_then(|fit| fit.jacobian) {
+            Some(derivatives) => derivatives,
+            None => jacobian(&look, &free, &now, &look(&now)?)?,
+        };
+        for (free, column) in free.iter_mut().zip(derivatives.column_iter()) {
+            free.step = SIGMAS / column.norm().max(SIGMAS / free.step);
+        }
+        let best = least_squares(&look, &free, now, *steps, *enough)?;
+        if best.residual.norm_squared() > COMPLETE * best.residual.len() as f64 {
+            return None;
+        }
+        now = best.values.clone();
         fit = Some(best);
     }
     let best = fit?;
     let chi2 = best.residual.norm_squared();
-    if chi2 > COMPLETE * best.residual.len() as f64 {
-        return None;
-    }
     // What kicks could do as well tells nothing of values.
     let jacobian = best.jacobian.map(|jacobian| {
         let own = jacobian.columns(0, count).into_owned();
@@ -85,29 +156,38 @@ pub fn whole(case: &Case, on: &[Segment], effects: &[Setting], starts: &[Start])
     Some(Fit { effects, chi2, white: best.residual, jacobian })
 }
 
-/// Recording less simulation on a segment in units of noise, by frequency; none where the model cannot be
-/// simulated.
-fn residual(
-    case: &Case,
-    segment: &Segment,
-    effects: &[Setting],
-    kicks: Option<Kicks>,
-    band: f64,
-) -> Option<Vec<f64>> {
-    let run = &case.runs[segment.run];
-    let log = run.log.part(0..segment.rows.end);
-    let mut machine = run.released(&case.rig, effects).ok()?;
-    if let Some(kicks) = kicks {
-        machine = kicked(&still(&machine, case.control).ok()?, &kicks);
-    }
-    let simulated = replica::simulate(&machine, &case.sensors, case.control, &log, 0).ok()?;
+/// Recording less simulation on a segment in units of noise; none where the model cannot be simulated.
+fn missed(case: &Case, segment: &Segment, machine: &Mechanism) -> Option<Spectra> {
+    let log = case.runs[segment.run].log.part(0..segment.rows.end);
+    let simulated = replica::simulate(machine, &case.sensors, case.control, &log, 0).ok()?;
+    difference(case, segment, &log, &simulated)
+}
+
+/// Square of a start's swing in units of noise, smooth over frequency.
+fn swing(case: &Case, segment: &Segment, start: &Start) -> Option<Spectra> {
+    let log = case.runs[segment.run].log.part(0..segment.rows.end);
+    let simulate = |machine| replica::simulate(machine, &case.sensors, case.control, &log, 0).ok();
+    let (with, without) = rayon::join(|| simulate(&start.machine), || simulate(&start.still));
+    let swing = difference(case, segment, &with?, &without?)?;
+    let smooth = |channel: Vec<f64>| {
+        let mean = |k: usize| {
+            let near = k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(channel.len());
+            let count = near.len() as f64;
+            channel[near].iter().map(|value| value * value).sum::<f64>() / count
+        };
+        (0..channel.len()).map(mean).collect()
+    };
+    Some(swing.into_iter().map(smooth).collect())
+}
+
+/// Difference of two logs on a segment in units of noise.
+fn difference(case: &Case, segment: &Segment, a: &Log, b: &Log) -> Option<Spectra> {
     let signal = |channel: Channel| {
         let unit = noise(&case.sensors, channel)?;
-        let rows = |log: &Log| Some(log.get(channel)?[segment.rows.clone()].to_vec());
-        let (measured, simulated) = (rows(&log)?, rows(&simulated)?);
-        let values = measured.iter().zip(simulated).map(|(a, b)| (a - b) / unit).collect();
-        Some(Signal { values, band })
+        let [a, b] = [a, b].map(|log| log.get(channel).map(|v| &v[segment.rows.clone()]));
+        let values = a?.iter().zip(b?).map(|(a, b)| (a - b) / unit).collect();
+        Some(Signal { values, band: BAND })
     };
-    let signals: Vec<Signal> = log.channels().filter_map(signal).collect();
-    Some(transform(&signals, log.interval).concat())
+    let signals: Vec<Signal> = a.channels().filter_map(signal).collect();
+    Some(transform(&signals, a.interval))
 }

@@ -83,6 +83,16 @@ impl Load for Friction {
         let steepest = |[coulomb, viscous]: [f64; 2]| coulomb / self.velocity + viscous;
         mechanism.rod_damper_step(self.joint, steepest(self.inward).max(steepest(self.outward)))
     }
+
+    /// Steep around rest only: `dF/dq̇ = F_c/v_s sech²(q̇/v_s) + F_v`, taken v_s nearer to rest, which a
+    /// step may bring.
+    fn longest_step_at(&self, at: Situation) -> Option<f64> {
+        let [_, rate] = at.length(self.joint);
+        let [coulomb, viscous] = if rate < 0.0 { self.inward } else { self.outward };
+        let near = (rate.abs() / self.velocity - 1.0).max(0.0);
+        let slope = coulomb / self.velocity / near.cosh().powi(2) + viscous;
+        at.mechanism.rod_damper_step(self.joint, slope)
+    }
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {

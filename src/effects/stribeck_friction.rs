@@ -87,6 +87,16 @@ impl Load for Friction {
         let steepest = self.coulomb.max(self.static_friction) / self.velocity + self.viscous;
         mechanism.rod_damper_step(self.joint, steepest)
     }
+
+    /// Steep around rest: as of actuator friction, and what Stribeck's curve adds at most.
+    fn longest_step_at(&self, at: Situation) -> Option<f64> {
+        let [_, rate] = at.length(self.joint);
+        let near = (rate.abs() / self.velocity - 1.0).max(0.0);
+        let most = self.coulomb.max(self.static_friction);
+        let falling = (self.static_friction - self.coulomb).abs() / self.stribeck;
+        let slope = most / self.velocity / near.cosh().powi(2) + falling + self.viscous;
+        at.mechanism.rod_damper_step(self.joint, slope)
+    }
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {

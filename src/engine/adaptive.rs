@@ -13,7 +13,7 @@
 
 use super::run::Stepper;
 use super::world::{Target, World};
-use crate::mechanism::{Bearing, BodyState, Drive, Dynamics, Evaluation, Mechanism};
+use crate::mechanism::{Bearing, BodyState, Drive, Dynamics, Evaluation, Mechanism, Situation};
 use nalgebra::Vector3;
 
 /// Inner nodes of the four-point Lobatto rule on [0, 1]: ½(1 ∓ 1/√5); weights 1, 5, 5, 1 over 12.
@@ -83,7 +83,7 @@ impl Adaptive {
         let dynamics = Dynamics::new(mechanism);
         Self {
             tolerance: tolerance * share(mechanism),
-            longest: mechanism.longest_smooth_step().map_or(LONGEST_STEP, |s| s.min(LONGEST_STEP)),
+            longest: mechanism.longest_servo_step().map_or(LONGEST_STEP, |s| s.min(LONGEST_STEP)),
             world: World::new(mechanism, false),
             coupled: dynamics.coupled(),
             dynamics,
@@ -226,7 +226,10 @@ impl Stepper for Adaptive {
         // The next step, predicted; shortened until it is accurate. No sliver is left before a row:
         // a prescribed drive would get an endless force.
         let span = until - t;
-        let mut h = self.next_step.min(self.longest);
+        let at = Situation { t: mechanism.epoch + t, mechanism, states: &self.states };
+        let loads = mechanism.loads.iter().filter_map(|load| load.longest_step_at(at));
+        let longest = loads.fold(self.longest, f64::min);
+        let mut h = self.next_step.min(longest);
         let (h, reached) = loop {
             let last = h >= span * (1.0 - 1e-9);
             if last {
@@ -257,7 +260,7 @@ impl Stepper for Adaptive {
             let ratio = (self.tolerance / self.step_error).sqrt().sqrt();
             // Infinite where nothing acts, NaN where the state is none: both end here.
             if ratio.is_nan() || ratio >= 0.9 {
-                self.next_step = (h * (0.9 * ratio).clamp(0.3, 2.0)).min(self.longest);
+                self.next_step = (h * (0.9 * ratio).clamp(0.3, 2.0)).min(longest);
                 break (h, if last { until } else { t + h });
             }
             h *= (0.85 * ratio).max(0.2);

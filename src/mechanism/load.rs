@@ -46,6 +46,11 @@ pub trait Load: Debug + Send + Sync {
     fn longest_step(&self, _mechanism: &Mechanism) -> Option<f64> {
         None
     }
+
+    /// The same at an instant, where a load is steep in some states only and the step is free to change.
+    fn longest_step_at(&self, at: Situation) -> Option<f64> {
+        self.longest_step(at.mechanism)
+    }
 }
 
 impl Situation<'_> {
