@@ -122,3 +122,36 @@ fn step(
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WIDE: [f64; 2] = [-1e3, 1e3];
+
+    #[test]
+    fn a_curved_valley_is_followed_to_its_end() {
+        // Rosenbrock's function: its smallest value is 0 at (1, 1).
+        let look =
+            |v: &[f64]| Some(DVector::from_vec(vec![10.0 * (v[1] - v[0] * v[0]), 1.0 - v[0]]));
+        let free = [Free { step: 1e-6, bounds: WIDE }; 2];
+        let best = least_squares(&look, &free, vec![-1.2, 1.0], 100, 1e-12).expect("a model");
+        assert!(best.values.iter().all(|v| (v - 1.0).abs() < 1e-5), "{:?}", best.values);
+    }
+
+    #[test]
+    fn a_bound_holds_one_value_and_lets_the_other_go_to_its_best() {
+        // (a + b − 3)² + (a − b − 1)² without bounds: a = 2, b = 1; with a ≤ 1: b = 1.
+        let look = |v: &[f64]| Some(DVector::from_vec(vec![v[0] + v[1] - 3.0, v[0] - v[1] - 1.0]));
+        let free = [Free { step: 1e-3, bounds: [0.0, 1.0] }, Free { step: 1e-3, bounds: WIDE }];
+        let best = least_squares(&look, &free, vec![0.5, 0.0], 50, 1e-12).expect("a model");
+        assert!((best.values[0] - 1.0).abs() < 1e-9 && (best.values[1] - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_model_that_cannot_be_is_not_fitted() {
+        let free = [Free { step: 1.0, bounds: WIDE }];
+        assert!(least_squares(&|_| None, &free, vec![0.0], 5, 0.1).is_none());
+        assert!(jacobian(&|_| None, &[], &[], &DVector::zeros(1)).is_none(), "nothing to change");
+    }
+}

@@ -1,7 +1,7 @@
 //! The whole way: from a rig and its logs to a verdict, a calibrated model and its errors.
 
 use super::errors::{self, ChannelError};
-use super::fit;
+use super::fit::{self, Fit};
 use super::left::{Left, is_noise, left};
 use super::model::{Case, Run, SearchError, Segment};
 use super::search::{Found, Round, Way, name, search};
@@ -10,6 +10,7 @@ use super::unnamed::{Described, describe};
 use crate::effects::{Setting, UNNAMED};
 use crate::measure::log::Log;
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// What a calibration comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -100,6 +101,7 @@ pub fn calibrate(
     } else {
         (Verdict::Explained, None, best)
     };
+    let last = Settled { fit: within_a_turn(last.fit), ..last };
     let estimates = estimates(&last);
     tell("predicting the runs");
     let declared = case.simulate(&[])?;
@@ -121,6 +123,18 @@ pub fn calibrate(
         declared: declared.iter().map(|logs| errors::ensemble(logs)).collect(),
         simulations,
     })
+}
+
+/// The same with each phase between 0 and a whole turn.
+fn within_a_turn(fit: Fit) -> Fit {
+    let turned = |effect: &Setting| {
+        let value = |(name, value): (&str, f64)| match name {
+            "phase_rad" => value.rem_euclid(TAU),
+            _ => value,
+        };
+        effect.with(&effect.values().map(value).collect::<Vec<f64>>())
+    };
+    Fit { effects: fit.effects.iter().map(turned).collect(), ..fit }
 }
 
 /// What is certain although something else remains, and a map of that: of all models whose effects are

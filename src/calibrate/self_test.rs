@@ -323,7 +323,13 @@ fn judge(trial: &Trial, hidden: Vec<Setting>, outcome: &Outcome) -> Result {
         };
         for (name, true_value) in truth.values() {
             if let Some(e) = estimates.iter().find(|e| e.name == name) {
-                values.push((format!("{}.{name}", truth.kind.name), true_value, e.value, e.std));
+                // Phases on both sides of a whole turn are near each other.
+                let turns = match name {
+                    "phase_rad" => ((e.value - true_value) / TAU).round(),
+                    _ => 0.0,
+                };
+                let value = e.value - turns * TAU;
+                values.push((format!("{}.{name}", truth.kind.name), true_value, value, e.std));
             }
         }
     }
