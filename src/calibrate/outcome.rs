@@ -230,11 +230,12 @@ pub fn evidence(outcome: &Outcome, effect: &Setting) -> String {
         100.0 * share
     );
     if let (Some(own), Some(rival)) = (own, rival) {
-        text += &format!(
-            "; the next best, {}, leaves {:.0} more in units of squared noise",
-            name(&rival.effect),
-            own.gain - rival.gain
-        );
+        let (rival, ahead) = (name(&rival.effect), own.gain - rival.gain);
+        text += &if ahead > 0.0 {
+            format!("; the next best, {rival}, leaves {ahead:.0} more in units of squared noise")
+        } else {
+            format!("; {rival} did as well by itself, but not with what was found after it")
+        };
     }
     text
 }

@@ -7,7 +7,7 @@ use super::outcome::{Outcome, Verdict};
 use super::report::{EffectReport, Report};
 use super::search::name as in_words;
 use crate::effects::{Map, Setting};
-use crate::report::{Fact, Part, Table, document, length, number};
+use crate::report::{Fact, Part, Table, document, known_to, length, number};
 
 /// Candidates of a round that the page lists; the others are in `report.json`.
 const LISTED: usize = 8;
@@ -64,7 +64,7 @@ fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {
     for (effect, estimates) in &outcome.effects {
         let values: Vec<String> = estimates
             .iter()
-            .map(|e| format!("{} = {} ± {}", e.name, number(e.value), number(e.std)))
+            .map(|e| format!("{} = {} ± {}", e.name, known_to(e.value, e.std), number(e.std)))
             .collect();
         facts.push(fact("Found", in_words(effect), values.join(", ")));
     }
@@ -103,11 +103,11 @@ fn values(outcome: &Outcome, report: &Report) -> Table {
     for ((effect, _), found) in outcome.effects.iter().zip(&report.effects) {
         for (name, fitted) in &found.params {
             let about = effect.kind.parameter(name).map_or("", |p| p.about);
-            let [low, high] = fitted.ci95.map(number);
+            let [low, high] = fitted.ci95.map(|end| known_to(end, fitted.std));
             rows.push(vec![
                 in_words(effect),
                 (*name).to_owned(),
-                number(fitted.value),
+                known_to(fitted.value, fitted.std),
                 number(fitted.std),
                 format!("{low} to {high}"),
                 about.to_owned(),

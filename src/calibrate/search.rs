@@ -6,6 +6,7 @@ use super::model::{Case, SearchError};
 use super::screen::{Scored, screen, share};
 use super::settle::{GAIN_PER_VALUE, Question, Settled, refined, settle, simplified};
 use crate::effects::Setting;
+use std::sync::atomic::AtomicUsize;
 
 /// Drop of Σ of squares on data not used for the fit that an effect has to bring, with loaded joints and
 /// with joints that rattle, and how much more for each of its values. Twice the logarithm of the number
@@ -98,6 +99,7 @@ pub fn search(
 ) -> Result<Found, SearchError> {
     tell("simulating the model as declared");
     let mut simulations = case.simulations();
+    let point_by_point = AtomicUsize::new(0);
     let declared = settle(case, question, &[], 1, None)?;
     let threshold = GAIN[usize::from(case.chaotic)];
     let mut best = Way { model: declared.clone(), rounds: Vec::new(), certain: true };
@@ -139,7 +141,7 @@ pub fn search(
         }
         if !case.chaotic {
             tell(&format!("settling {} point by point", names(&model.fit.effects)));
-            model = refined(case, question, model)?;
+            model = refined(case, question, model, &point_by_point)?;
         }
         let before = best.cost();
         best = Way { model, ..winner };
@@ -150,11 +152,14 @@ pub fn search(
         next.truncate(WAYS - 1);
         ways.append(&mut next);
     }
-    let count_before = best.model.fit.effects.len();
+    let found = best.model.fit.effects.len();
     let (kept, count) = needed(case, question, best.model, threshold, tell)?;
-    best.model =
-        if kept.fit.effects.len() < count_before { refined(case, question, kept)? } else { kept };
-    simulations += count;
+    best.model = if kept.fit.effects.len() < found {
+        refined(case, question, kept, &point_by_point)?
+    } else {
+        kept
+    };
+    simulations += count + point_by_point.into_inner();
     Ok(Found { best, declared, certain, simulations })
 }
 

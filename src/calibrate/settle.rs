@@ -4,6 +4,7 @@ use super::fit::{self, Fit, Target};
 use super::model::{Baseline, Case, SearchError, Segment};
 use super::whole::whole;
 use crate::effects::Setting;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How much more than nothing each value of an effect has to bring: Akaike's price of a parameter in
 /// units of −2 log likelihood.
@@ -89,15 +90,23 @@ pub fn settle(
 }
 
 /// The model with values from whole simulations, where the joints stay loaded and it is nearly complete.
+/// `simulated` counts simulations.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
-pub fn refined(case: &Case, question: &Question, model: Settled) -> Result<Settled, SearchError> {
+pub fn refined(
+    case: &Case,
+    question: &Question,
+    model: Settled,
+    simulated: &AtomicUsize,
+) -> Result<Settled, SearchError> {
     if model.held > HOPEFUL * model.baseline.places(case, question.hold).len() as f64 {
         return Ok(model);
     }
     let starts = &model.baseline.starts;
-    let Some(fit) = whole(case, question.on, &model.fit.effects, starts) else { return Ok(model) };
+    let fit = whole(case, question.on, &model.fit.effects, starts, simulated);
+    let Some(fit) = fit else { return Ok(model) };
+    simulated.fetch_add(case.simulations(), Ordering::Relaxed);
     let baseline = case.baseline(&fit.effects, &question.segments(), Some(&model.baseline))?;
     let target = Target { case, baseline: &baseline, on: question.hold, fixed: &[], blind: None };
     let held = target.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);

@@ -16,6 +16,7 @@ use crate::effects::Setting;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use nalgebra::DVector;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Highest frequencies in Hz that count: all that a platform does, and its motion alone. Where a leg is
 /// nearly unloaded its journal crosses over, which is a matter of milliseconds: a model whose values
@@ -68,8 +69,14 @@ type Spectra = Vec<Vec<f64>>;
 /// no values make the model nearly complete.
 ///
 /// With values that are right to a hundredth a release may swing unlike the recording, with right ones
-/// like it: kicks are taken only where the release does not do.
-pub fn whole(case: &Case, on: &[Segment], effects: &[Setting], starts: &[Start]) -> Option<Fit> {
+/// like it: kicks are taken only where the release does not do. `simulated` counts simulations.
+pub fn whole(
+    case: &Case,
+    on: &[Segment],
+    effects: &[Setting],
+    starts: &[Start],
+    simulated: &AtomicUsize,
+) -> Option<Fit> {
     if case.chaotic || values(effects).is_empty() {
         return None;
     }
@@ -78,8 +85,8 @@ pub fn whole(case: &Case, on: &[Segment], effects: &[Setting], starts: &[Start])
         .zip(case.released(effects).ok()?)
         .map(|(start, machine)| start.without_kicks(machine))
         .collect();
-    let rough = from(case, on, effects, &let_go, &ROUGH)?;
-    let close = |starts: &[Start]| from(case, on, &rough.effects, starts, &CLOSE);
+    let rough = from(case, on, effects, &let_go, &ROUGH, simulated)?;
+    let close = |starts: &[Start]| from(case, on, &rough.effects, starts, &CLOSE, simulated);
     let mut best = close(&let_go);
     if mean_square(best.as_ref()) > SHOWN && starts.iter().any(|start| start.kicks.is_some()) {
         let kicked = close(starts);
@@ -101,6 +108,7 @@ fn from(
     effects: &[Setting],
     starts: &[Start],
     stages: &[Stage],
+    simulated: &AtomicUsize,
 ) -> Option<Fit> {
     let count = values(effects).len();
     let mut free: Vec<Free> = free(effects);
@@ -126,6 +134,7 @@ fn from(
                     let still = still(&machine, case.control).ok()?;
                     machine = kicked(&still, &Kicks::from_column_slice(own));
                 }
+                simulated.fetch_add(1, Ordering::Relaxed);
                 let missed = missed(case, segment, &machine)?;
                 for (missed, swing) in missed.iter().zip(swing) {
                     let count = (missed.len() as f64 * band / BAND).ceil() as usize;

@@ -10,7 +10,7 @@ use crate::calibrate::single::{self, Adjusted, Machine};
 use crate::calibrate::{quantity, recording};
 use crate::effects::{ALL, named};
 use crate::measure::spelling::nearest;
-use crate::report::number;
+use crate::report::{known_to, number};
 use crate::scenario::Scenario;
 use clap::Args;
 use std::fmt::Write as _;
@@ -178,8 +178,8 @@ fn text(report: &Shown) -> String {
         let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
         let _ = writeln!(text, "\n  {}{joint}", effect.kind);
         for (name, fitted) in &effect.params {
-            let [low, high] = fitted.ci95.map(number);
-            let value = number(fitted.value);
+            let [low, high] = fitted.ci95.map(|end| known_to(end, fitted.std));
+            let value = known_to(fitted.value, fitted.std);
             let _ = writeln!(text, "    {name:<20} {value:>10}  (95 %: {low} to {high})");
         }
         if !effect.evidence.is_empty() {
@@ -187,8 +187,8 @@ fn text(report: &Shown) -> String {
         }
     }
     for p in report.parameters {
-        let [low, high] = p.ci95.map(number);
-        let (declared, value) = (number(p.declared), number(p.value));
+        let [low, high] = p.ci95.map(|end| known_to(end, p.std));
+        let (declared, value) = (number(p.declared), known_to(p.value, p.std));
         let _ = writeln!(
             text,
             "\n  {} in {}: {value} (95 %: {low} to {high}), declared {declared}",

@@ -22,7 +22,7 @@ pub use orbits::orbits_svg;
 pub use page::{Part, Table, document, page};
 pub use path::path_svg;
 pub use player::player_html;
-pub use quantity::{length, number};
+pub use quantity::{known_to, length, number};
 pub use scene::{Outline, Scene, SceneBody, SceneChart, SceneCurve, SceneJoint};
 
 /// How a curve is drawn.

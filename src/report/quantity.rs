@@ -14,6 +14,20 @@ pub fn length(metres: f64) -> String {
 /// A number with three significant digits; very small and very large ones with a power of ten, what
 /// is no number as a dash.
 pub fn number(value: f64) -> String {
+    significant(value, 3)
+}
+
+/// A value with as many digits as its standard deviation is worth: two of the latter's, at least three.
+pub fn known_to(value: f64, std: f64) -> String {
+    let ratio = (value / std).abs();
+    if std > 0.0 && ratio.is_normal() {
+        let more = value.abs().log10().floor() - std.log10().floor();
+        return significant(value, (more + 2.0).clamp(3.0, 12.0) as usize);
+    }
+    number(value)
+}
+
+fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
@@ -22,11 +36,12 @@ pub fn number(value: f64) -> String {
     }
     let size = value.abs();
     if !(0.999_5e-3..0.999_5e6).contains(&size) {
-        let text = format!("{value:.2e}");
+        let decimals = digits - 1;
+        let text = format!("{value:.decimals$e}");
         let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
         return format!("{}e{power}", trimmed(digits));
     }
-    let decimals = (2.0 - size.log10().floor()).max(0.0) as usize;
+    let decimals = (digits as f64 - 1.0 - size.log10().floor()).max(0.0) as usize;
     trimmed(&format!("{value:.decimals$}")).to_owned()
 }
 
@@ -37,6 +52,16 @@ fn trimmed(text: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn values_have_the_digits_that_are_known() {
+        assert_eq!(known_to(-9.80022, 0.0015), "-9.8002");
+        assert_eq!(known_to(4.001_78e-4, 4.1e-7), "4.0018e-4");
+        assert_eq!(known_to(1.2345, 0.4), "1.23");
+        assert_eq!(known_to(0.0, 0.1), "0");
+        assert_eq!(known_to(1.2345, f64::NAN), "1.23");
+        assert_eq!(known_to(2.0, 0.0), "2");
+    }
 
     #[test]
     fn lengths_choose_their_unit() {

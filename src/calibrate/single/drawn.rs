@@ -4,7 +4,7 @@ use super::calibration::Report;
 use super::prediction::Prediction;
 use super::simulated::Machine;
 use crate::calibrate::page::{errors_table, verdict};
-use crate::report::{Part, Picture, Table, document, number};
+use crate::report::{Part, Picture, Table, document, known_to, number};
 
 const NOTE: &str = "Root mean square of measured less predicted, both through a zero-phase low-pass of \
                     fourth order at 25 Hz, first and last 60 ms left out. Floor: what the recording's own \
@@ -60,23 +60,23 @@ pub(super) fn calibration(r: &Report, machine: Machine, pictures: &[Picture]) ->
     let mut rows = Vec::new();
     for effect in &r.effects {
         for (name, fitted) in &effect.params {
-            let [low, high] = fitted.ci95.map(number);
+            let [low, high] = fitted.ci95.map(|end| known_to(end, fitted.std));
             let joint = effect.joint.as_ref().map_or(String::new(), |j| format!(" at {j}"));
             rows.push(vec![
                 format!("{}{joint}", effect.kind),
                 (*name).to_owned(),
-                number(fitted.value),
+                known_to(fitted.value, fitted.std),
                 number(fitted.std),
                 format!("{low} to {high}"),
             ]);
         }
     }
     for p in &r.parameters {
-        let [low, high] = p.ci95.map(number);
+        let [low, high] = p.ci95.map(|end| known_to(end, p.std));
         rows.push(vec![
             format!("{} (declared: {})", p.path, number(p.declared)),
             p.unit.to_owned(),
-            number(p.value),
+            known_to(p.value, p.std),
             number(p.std),
             format!("{low} to {high}"),
         ]);
