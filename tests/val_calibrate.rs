@@ -3,12 +3,15 @@
 //!
 //! Slow: a calibration takes a minute or two.
 
+use freeplay::calibrate::left::{is_noise, left};
+use freeplay::calibrate::model::{Case, Segment};
 use freeplay::calibrate::outcome::{Outcome, Verdict, calibrate};
 use freeplay::calibrate::rattle::Rattle;
+use freeplay::calibrate::recording;
 use freeplay::calibrate::report::{Report, Sources, calibrated};
 use freeplay::calibrate::result::{Prepared, case, prepare};
 use freeplay::calibrate::self_test::{self, Trial};
-use freeplay::calibrate::{model::Case, recording};
+use freeplay::calibrate::settle::{Question, settle};
 use freeplay::scenario::Scenario;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -178,6 +181,26 @@ fn a_payload_that_nearly_unloads_a_leg_is_found() {
         );
         assert!((value - truth).abs() < 4.0 * std, "{name}: {value} ± {std}, hidden {truth}");
     }
+}
+
+/// Where joints rattle, the lens reads off flying forces which way a journal leans. Least squares made the
+/// clearance of a worn joint small that such noise is multiplied by (attenuation): 0.2 mm for 0.27 mm, and
+/// the verdict was `unexplained`.
+#[test]
+fn a_worn_joint_that_rattles_settles_at_its_clearance() {
+    let hidden = vec!["joint-wear"];
+    let trial = Trial { hidden, size: 3.0, gravity: false, withheld: false, seed: 11_050 };
+    let (case, hidden) = self_test::recorded(&trial).unwrap();
+    let truth = hidden[0].value("clearance_m").unwrap();
+    let [on, hold] = [0, 1].map(|run| vec![Segment { run, rows: case.runs[run].rows() }]);
+    let question = Question { on: &on, hold: &hold, without: &[] };
+    let start = vec![hidden[0].with(&[1.5e-4])];
+    let settled = settle(&case, &question, &start, 3, None).unwrap();
+    let found = settled.fit.effects[0].value("clearance_m").unwrap();
+    println!("hidden {truth:.3e} m, found {found:.3e} m");
+    assert!((found - truth).abs() < 0.1 * truth, "{found} m, hidden {truth} m");
+    let left = left(&case, &question, &settled);
+    assert!(is_noise(&left), "{left:?}");
 }
 
 /// What it lacks has no name here: a table of forces stands in for it.

@@ -127,7 +127,7 @@ fn step(kind: &Kind, name: &str) -> f64 {
 }
 
 /// Values of a scan that are looked at closely.
-const TRIED: usize = 6;
+const TRIED: usize = 40;
 
 /// Frequencies in Hz at which the residual of the dynamics stands out most.
 fn peaks(target: &Target, model: &Fit) -> Vec<f64> {

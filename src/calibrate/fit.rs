@@ -1,7 +1,8 @@
 //! Values of effects fitted to residuals in units of noise.
 
+use super::baseline::Baseline;
 use super::least_squares::{self, Free, least_squares};
-use super::model::{Baseline, Case, Segment};
+use super::model::{Case, Segment};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 

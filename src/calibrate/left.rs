@@ -41,7 +41,7 @@ pub fn left(case: &Case, question: &Question, model: &Settled) -> Vec<Left> {
                 largest = largest.max(value.abs());
             }
             let limits = LIMITS[group].0;
-            let limit = limits[usize::from(case.chaotic)];
+            let limit = limits[usize::from(baseline.rattles)];
             Left { residual: NAMES[group], mean_square: sum / f64::max(count, 1.0), largest, limit }
         })
         .collect()

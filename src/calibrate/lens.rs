@@ -7,7 +7,8 @@
 //!   the forces come from the measured actuator forces and the leg's own dynamics, so that what acts
 //!   on the platform does not matter here.
 //! * **Dynamics** `F − F_inv`: the forces that the measured motion takes, by inverse dynamics of the
-//!   machine without clearance at the measured pose.
+//!   machine without clearance at the measured pose; but rods accelerate along their legs as encoders say,
+//!   whose journals may float.
 //!
 //! Everything about the machine is read off its [`Mechanism`], effects included.
 
@@ -50,6 +51,7 @@ pub struct Lens {
     lengths: Vec<[f64; 3]>,
     rates: Vec<[f64; 3]>,
     smooth_rates: Vec<[f64; 3]>,
+    smooth_accelerations: Vec<[f64; 3]>,
     poses: Vec<Vector3<f64>>,
     smooth: Vec<[Vector3<f64>; 3]>,
 }
@@ -81,6 +83,7 @@ impl Lens {
         let smooth = pose.map(|column| filter.apply(column));
         let rate = [0, 1, 2].map(|k| derivative(&smooth[k], h));
         let acceleration = [0, 1, 2].map(|k| derivative(&rate[k], h));
+        let smooth_rates = q.map(|column| derivative(&filter.apply(column), h));
         let at = |columns: &[Vec<f64>; 3], i: usize| Vector3::from_fn(|k, _| columns[k][i]);
         Some(Self {
             interval: h,
@@ -90,9 +93,10 @@ impl Lens {
             smooth_forces: triples([&smooth_f[0], &smooth_f[1], &smooth_f[2]]),
             leaning_forces: triples([&leaning[0], &leaning[1], &leaning[2]]),
             lengths: triples(q),
-            smooth_rates: {
-                let rates = q.map(|column| derivative(&filter.apply(column), h));
-                triples([&rates[0], &rates[1], &rates[2]])
+            smooth_rates: triples(smooth_rates.each_ref().map(Vec::as_slice)),
+            smooth_accelerations: {
+                let second = smooth_rates.each_ref().map(|rate| derivative(rate, h));
+                triples(second.each_ref().map(Vec::as_slice))
             },
             rates: {
                 let rates = q.map(|column| derivative(column, h));
@@ -142,7 +146,17 @@ impl Lens {
             let t = i as f64 * self.interval;
             mechanism.commands.at(t, &mut commands);
             let [pose, rate, acceleration] = self.smooth[i];
-            let look = machine.look(t, pose, rate, acceleration, self.leaning_forces[i]);
+            let rods = [0, 1, 2].map(|leg| {
+                let joint = &mechanism.prismatics[leg];
+                let read = Command {
+                    length: self.lengths[i][leg],
+                    rate: self.smooth_rates[i][leg],
+                    acceleration: self.smooth_accelerations[i][leg],
+                };
+                let truth = joint.true_command(read).acceleration;
+                joint.transmission.is_none().then_some([read.acceleration, truth])
+            });
+            let look = machine.look(t, [pose, rate, acceleration], rods, self.leaning_forces[i]);
             for leg in 0..3 {
                 let joint = &mechanism.prismatics[leg];
                 let (q, command) = (self.lengths[i][leg], commands[leg]);
@@ -211,9 +225,8 @@ impl<'a> Machine<'a> {
     fn look(
         &mut self,
         t: f64,
-        pose: Vector3<f64>,
-        rate: Vector3<f64>,
-        acceleration: Vector3<f64>,
+        [pose, rate, acceleration]: [Vector3<f64>; 3],
+        rods: [Option<[f64; 2]>; 3],
         measured: [f64; 3],
     ) -> Look {
         let mechanism = self.mechanism;
@@ -257,7 +270,12 @@ impl<'a> Machine<'a> {
             // Distances of the centres of mass from A, and their rates along the leg.
             let parts = [
                 (joint.cylinder.body, -joint.cylinder.point.x, 0.0, 0.0),
-                (joint.rod.body, q - joint.rod.point.x, q_rate, q_second),
+                (
+                    joint.rod.body,
+                    q - joint.rod.point.x,
+                    q_rate,
+                    rods[leg].map_or(q_second, |[read, _]| read),
+                ),
             ];
             for (body, s, s_rate, s_second) in parts {
                 let Some(body) = body else { continue };
@@ -322,7 +340,10 @@ impl<'a> Machine<'a> {
                 let rod = joint.rod.body.map_or_else(Vector3::zeros, |b| needed[b]);
                 let cylinder = joint.cylinder.body.map_or_else(Vector3::zeros, |b| needed[b]);
                 let rod_along = rod.xy().dot(&u);
-                look.forces[leg] = rod_along - along[leg];
+                // What an error of the encoder adds turns fast: which way journals lean is none of its matter.
+                let mass = joint.rod.body.map_or(0.0, |b| mechanism.bodies[b].mass);
+                let unread = rods[leg].map_or(0.0, |[read, truth]| mass * (truth - read));
+                look.forces[leg] = rod_along + unread - along[leg];
                 let top = u * (rod_along - measured[leg]) + n * across[leg];
                 let base = rod.xy() + cylinder.xy() - top;
                 joint_forces[leg] = [base, top];

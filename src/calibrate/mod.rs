@@ -2,11 +2,13 @@
 //! Around it: [`recording`] and [`plausibility`] take files and refuse what cannot be right, [`rattle`]
 //! decides how often to simulate, [`result`] and [`predict`] write folders of results.
 
+pub mod baseline;
 pub mod candidates;
 mod charts;
 pub mod commands;
 pub mod errors;
 pub mod fit;
+pub mod instrument;
 pub mod least_squares;
 pub mod left;
 pub mod lens;

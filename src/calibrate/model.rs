@@ -2,8 +2,9 @@
 
 use super::commands::LoggedCommands;
 use super::lens::Lens;
+use super::rattle;
 use super::replica;
-use super::spectrum::{Noise, Signal, transform};
+use super::spectrum::{Signal, transform};
 use super::start::{Start, as_seen};
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
@@ -11,7 +12,7 @@ use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use crate::scenario::{Problem, Scenario, Sensors};
 use crate::simulate::{close, driven};
-use nalgebra::{DVector, Vector3};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -115,41 +116,30 @@ pub struct Case {
     pub runs: Vec<Run>,
     /// How to step simulations.
     pub control: StepControl,
-    /// Simulations of each run that a floor and a bias are taken from.
+    /// Simulations of each run that a floor and a bias of a model that rattles are taken from.
     pub replicas: usize,
-    /// Whether joints rattle: replicas then differ by more than sensors see.
+    /// Whether the declared machine's joints rattle: replicas then differ by more than sensors see.
     pub chaotic: bool,
 }
 
-/// What simulations of a model say of its own residuals: their mean, which is the lens's fault, and
-/// their spread, which is noise.
-#[derive(Clone, Debug)]
-pub struct Baseline {
-    /// One per segment.
-    parts: Vec<Part>,
+/// Simulations of a model.
+pub(super) struct Ensemble {
     /// How each run's machine starts.
     pub starts: Vec<Start>,
+    /// Noiseless logs: `[run][replica]`.
+    pub logs: Vec<Vec<Log>>,
+    /// Whether replicas differ by more than sensors see; there is one of each run if not.
+    pub rattles: bool,
 }
-
-#[derive(Clone, Debug)]
-struct Part {
-    segment: Segment,
-    bias: Vec<Vec<f64>>,
-    noise: Noise,
-    /// What of the residual is the platform's swing, where joints stay loaded.
-    swing: Option<Vec<Vec<f64>>>,
-}
-
-/// Draws of sensor noise from which a covariance is taken.
-const DRAWS: usize = 16;
-
-/// Share of a platform's swing that a model may be wrong by before its values are settled: a frequency
-/// that is off by a thousandth has lost the phase after some seconds.
-const SWING: f64 = 0.3;
 
 impl Case {
     /// Coefficients of the residuals of a log under a mechanism.
-    fn coefficients(&self, lens: &Lens, mechanism: &Mechanism, segment: &Segment) -> Vec<Vec<f64>> {
+    pub(super) fn coefficients(
+        &self,
+        lens: &Lens,
+        mechanism: &Mechanism,
+        segment: &Segment,
+    ) -> Vec<Vec<f64>> {
         let interval = self.runs[segment.run].log.interval * lens.stride() as f64;
         transform(&lens.residuals(mechanism, segment.rows.clone()), interval)
     }
@@ -161,16 +151,48 @@ impl Case {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn simulate(&self, effects: &[Setting]) -> Result<Vec<Vec<Log>>, SearchError> {
-        let starts = self.starts(effects, None)?;
-        let machines: Vec<Mechanism> = starts.into_iter().map(|start| start.machine).collect();
-        let count = if self.chaotic { 2 } else { 1 } * self.replicas;
-        Ok(self.replicas(&machines, count)?)
+        Ok(self.ensemble(effects, 2 * self.replicas, None)?.logs)
     }
 
-    /// Noiseless logs of a model, so many of each run.
-    fn replicas(&self, machines: &[Mechanism], count: usize) -> Result<Vec<Vec<Log>>, Halt> {
+    /// Noiseless logs of a model with these effects, so many of each run where its joints rattle. What the
+    /// declared machine does says little of it: a tether may keep joints loaded that rattle without.
+    /// What is known of a model that is `like` this one saves time.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub(super) fn ensemble(
+        &self,
+        effects: &[Setting],
+        count: usize,
+        like: Option<&[Start]>,
+    ) -> Result<Ensemble, SearchError> {
+        if self.chaotic {
+            let machines = self.released(effects)?;
+            let mut logs = self.logs(&machines, 0..2)?;
+            let seen = |logs: &Vec<Log>| rattle::difference(&logs[0], &logs[1], &self.sensors).1;
+            if logs.iter().map(seen).fold(0.0, f64::max) > rattle::SEEN {
+                let others = self.logs(&machines, 2..count as u64)?;
+                logs.iter_mut().zip(others).for_each(|(logs, others)| logs.extend(others));
+                let start = |machine| Start::let_go(machine, self.control);
+                let starts = machines.into_par_iter().map(start).collect::<Result<_, _>>()?;
+                return Ok(Ensemble { starts, logs, rattles: true });
+            }
+        }
+        let starts = self.starts(effects, like)?;
+        let machines: Vec<Mechanism> = starts.iter().map(|start| start.machine.clone()).collect();
+        let logs = self.logs(&machines, 0..1)?;
+        Ok(Ensemble { starts, logs, rattles: false })
+    }
+
+    /// Noiseless logs of a model, these replicas of each run.
+    pub(super) fn logs(
+        &self,
+        machines: &[Mechanism],
+        replicas: Range<u64>,
+    ) -> Result<Vec<Vec<Log>>, Halt> {
+        let count = replicas.end.saturating_sub(replicas.start) as usize;
         let jobs: Vec<(usize, u64)> = (0..self.runs.len())
-            .flat_map(|run| (0..count as u64).map(move |replica| (run, replica)))
+            .flat_map(|run| replicas.clone().map(move |replica| (run, replica)))
             .collect();
         let logs: Result<Vec<Log>, Halt> = jobs
             .into_par_iter()
@@ -196,88 +218,18 @@ impl Case {
         self.runs.iter().map(|run| run.released(&self.rig, effects)).collect()
     }
 
-    /// How each run's machine with these effects starts: as let go where joints rattle, else as its log
-    /// shows, which is soon found from those of a model that is `like` this one.
+    /// How each run's machine with these effects starts where joints stay loaded: as its log shows, which
+    /// is soon found from those of a model that is `like` this one.
     fn starts(
         &self,
         effects: &[Setting],
-        like: Option<&Baseline>,
+        like: Option<&[Start]>,
     ) -> Result<Vec<Start>, SearchError> {
         let machines = self.released(effects)?.into_par_iter().zip(&self.runs).enumerate();
         let start = |(i, (machine, run)): (usize, (Mechanism, &Run))| {
-            if self.chaotic {
-                return Ok(Start::let_go(machine));
-            }
-            as_seen(
-                machine,
-                &run.log,
-                &self.sensors,
-                self.control,
-                like.map(|like| &like.starts[i]),
-            )
+            as_seen(machine, &run.log, &self.sensors, self.control, like.map(|starts| &starts[i]))
         };
         Ok(machines.map(start).collect::<Result<_, Halt>>()?)
-    }
-
-    /// The baseline of a model with these effects, from simulations of it.
-    ///
-    /// Where joints stay loaded the platform swings in their play, and a lens's fault is to see that
-    /// swing: what the same machine does without a swing tells where. Start and swing of a model that is
-    /// `like` this one save time.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn baseline(
-        &self,
-        effects: &[Setting],
-        segments: &[Segment],
-        like: Option<&Baseline>,
-    ) -> Result<Baseline, SearchError> {
-        let starts = self.starts(effects, like)?;
-        let machines: Vec<Mechanism> = starts.iter().map(|start| start.machine.clone()).collect();
-        let logs = self.replicas(&machines, self.replicas)?;
-        // The swing of a kicked start is not that of a release.
-        let kicked = |starts: &[Start]| -> Vec<bool> {
-            starts.iter().map(|start| start.kicks.is_some()).collect()
-        };
-        let like = like.filter(|like| kicked(&like.starts) == kicked(&starts));
-        let still = if self.chaotic || like.is_some() {
-            Vec::new()
-        } else {
-            let still: Vec<Mechanism> = starts.iter().map(|start| start.still.clone()).collect();
-            self.replicas(&still, 1)?
-        };
-        let part = |segment: &Segment| {
-            let machine = &machines[segment.run];
-            let look = |log: &Log| {
-                let lens = Lens::new(log).expect("the channels of the recorded log");
-                self.coefficients(&lens, machine, segment)
-            };
-            let logs = &logs[segment.run];
-            let clean: Vec<Vec<Vec<f64>>> = logs.par_iter().map(look).collect();
-            let bias = mean(&clean);
-            // A replica stands for the data, the mean of the others for the bias: sensor noise, the
-            // rattle of one run, and what is left of it in a mean.
-            let draws: Vec<Vec<Vec<f64>>> = (0..DRAWS)
-                .into_par_iter()
-                .map(|draw| {
-                    let index = draw % clean.len();
-                    let log = replica::with_noise(&logs[index], &self.sensors, draw as u64 + 1000);
-                    difference(&look(&log), &without(&bias, &clean[index], clean.len()))
-                })
-                .collect();
-            let seen = still.get(segment.run).map(|logs| {
-                let mut swing = difference(&clean[0], &look(&logs[0]));
-                swing.iter_mut().flatten().for_each(|value| *value *= SWING);
-                swing
-            });
-            let known = || like?.parts.iter().find(|part| part.segment == *segment)?.swing.clone();
-            let swing = seen.or_else(known);
-            let noise = Noise::from_draws(&draws, swing.as_deref());
-            Part { segment: segment.clone(), bias, noise, swing }
-        };
-        let parts = segments.iter().map(part).collect();
-        Ok(Baseline { parts, starts })
     }
 
     /// Residuals of the data on a segment as they are, with the measured lengths of the legs.
@@ -297,78 +249,4 @@ impl Case {
         });
         Ok((run.lens.residuals(&machine, segment.rows.clone()), lengths))
     }
-
-    /// Residuals of the data under a model in units of noise, of all segments in a row.
-    pub fn white(
-        &self,
-        baseline: &Baseline,
-        effects: &[Setting],
-        segments: &[Segment],
-    ) -> Result<DVector<f64>, Problem> {
-        let mut all = Vec::new();
-        for part in baseline.parts.iter().filter(|part| segments.contains(&part.segment)) {
-            let run = &self.runs[part.segment.run];
-            let machine = run.machine(&self.rig, effects)?;
-            let mut coefficients = self.coefficients(&run.lens, &machine, &part.segment);
-            for (values, bias) in coefficients.iter_mut().zip(&part.bias) {
-                for (value, bias) in values.iter_mut().zip(bias) {
-                    *value -= bias;
-                }
-            }
-            all.extend(part.noise.whiten(&coefficients).iter());
-        }
-        Ok(DVector::from_vec(all))
-    }
-}
-
-impl Baseline {
-    /// Logarithm of the determinant of the noise on segments.
-    pub fn log_determinant(&self, on: &[Segment]) -> f64 {
-        let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
-        parts.map(|part| part.noise.log_determinant()).sum()
-    }
-
-    /// Channel (servo, closure, dynamics of each leg) and frequency in Hz of each number of
-    /// [`Case::white`] for these segments.
-    pub fn places(&self, case: &Case, segments: &[Segment]) -> Vec<(usize, f64)> {
-        let parts = self.parts.iter().filter(|part| segments.contains(&part.segment));
-        parts
-            .flat_map(|part| {
-                let rows = part.segment.rows.len() as f64;
-                let step = 0.5 / (rows * case.runs[part.segment.run].log.interval);
-                part.noise.places().into_iter().map(move |(c, k)| (c, k as f64 * step))
-            })
-            .collect()
-    }
-}
-
-fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let channels = a.iter().zip(b);
-    channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
-}
-
-/// The mean of `count` draws with one of them left out, if that leaves any.
-fn without(mean: &[Vec<f64>], own: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
-    if count < 2 {
-        return own.to_vec();
-    }
-    let part = 1.0 / count as f64;
-    let left = |(all, own): (&f64, &f64)| (all - part * own) / (1.0 - part);
-    let channels = mean.iter().zip(own);
-    channels.map(|(all, own)| all.iter().zip(own).map(left).collect()).collect()
-}
-
-fn mean(draws: &[Vec<Vec<f64>>]) -> Vec<Vec<f64>> {
-    let mut sum = draws[0].clone();
-    for draw in &draws[1..] {
-        for (sum, values) in sum.iter_mut().zip(draw) {
-            for (sum, value) in sum.iter_mut().zip(values) {
-                *sum += value;
-            }
-        }
-    }
-    for value in sum.iter_mut().flatten() {
-        *value /= draws.len() as f64;
-    }
-    sum
 }

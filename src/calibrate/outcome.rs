@@ -7,10 +7,10 @@ use super::model::{Case, Run, SearchError, Segment};
 use super::search::{Found, Round, Way, name, search};
 use super::settle::{Question, Settled};
 use super::unnamed::{Described, describe};
-use crate::effects::{Setting, UNNAMED};
+use crate::effects::{Scan, Setting, UNNAMED};
 use crate::measure::log::Log;
 use serde::Serialize;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// What a calibration comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -101,7 +101,8 @@ pub fn calibrate(
     } else {
         (Verdict::Explained, None, best)
     };
-    let last = Settled { fit: within_a_turn(last.fit), ..last };
+    let effects = last.fit.effects.iter().map(canonical).collect();
+    let last = Settled { fit: Fit { effects, ..last.fit }, ..last };
     let estimates = estimates(&last);
     tell("predicting the runs");
     let declared = case.simulate(&[])?;
@@ -125,16 +126,19 @@ pub fn calibrate(
     })
 }
 
-/// The same with each phase between 0 and a whole turn.
-fn within_a_turn(fit: Fit) -> Fit {
-    let turned = |effect: &Setting| {
-        let value = |(name, value): (&str, f64)| match name {
-            "phase_rad" => value.rem_euclid(TAU),
-            _ => value,
-        };
-        effect.with(&effect.values().map(value).collect::<Vec<f64>>())
+/// The same repeating effects in one of the many ways to write them: the first amplitude is not negative,
+/// phases lie between 0 and a whole turn.
+pub(super) fn canonical(effect: &Setting) -> Setting {
+    let Some(Scan { over, phase, .. }) = effect.kind.scan else { return effect.clone() };
+    let amplitude = |name: &str| name != over && name != phase;
+    let first = effect.values().find(|(name, _)| amplitude(name));
+    let turned = first.is_some_and(|(_, value)| value < 0.0);
+    let value = |(name, value): (&str, f64)| match name {
+        _ if name == phase => (value + if turned { PI } else { 0.0 }).rem_euclid(TAU),
+        _ if amplitude(name) && turned => -value,
+        _ => value,
     };
-    Fit { effects: fit.effects.iter().map(turned).collect(), ..fit }
+    effect.with(&effect.values().map(value).collect::<Vec<f64>>())
 }
 
 /// What is certain although something else remains, and a map of that: of all models whose effects are

@@ -13,7 +13,7 @@ const REPLICAS: usize = 6;
 
 /// Root mean square of the difference of two replicas, as a share of the sensor's noise, above which
 /// they differ by more than sensors see: a tenth of the noise's variance.
-const SEEN: f64 = 0.3;
+pub const SEEN: f64 = 0.3;
 
 /// What stands for the noise of sensors that declare none: a good tracker's micrometre, ten
 /// microradians, a hundredth of a newton.
@@ -46,18 +46,23 @@ pub fn look(
 ) -> Result<Rattle, Halt> {
     let simulated = |replica| replica::simulate(mechanism, sensors, control, log, replica);
     let logs = (0..2u64).into_par_iter().map(simulated).collect::<Result<Vec<_>, _>>()?;
-    let differences = logs[0].channels().filter_map(|channel| {
+    let (channel, difference) = difference(&logs[0], &logs[1], sensors);
+    let chaotic = difference > SEEN;
+    let replicas = if chaotic { REPLICAS } else { 1 };
+    Ok(Rattle { chaotic, replicas, difference, channel, logs })
+}
+
+/// The largest difference of two logs of all channels, root mean square in units of the sensor's noise,
+/// and its channel.
+pub fn difference(a: &Log, b: &Log, sensors: &Sensors) -> (Channel, f64) {
+    let differences = a.channels().filter_map(|channel| {
         let noise = noise(sensors, channel)?;
-        let [a, b] = [logs[0].get(channel)?, logs[1].get(channel)?];
+        let [a, b] = [a.get(channel)?, b.get(channel)?];
         let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
         Some((channel, (squares / a.len() as f64).sqrt() / noise))
     });
     // A machine without any channel has nothing that could differ.
-    let worst = differences.max_by(|a, b| a.1.total_cmp(&b.1));
-    let (channel, difference) = worst.unwrap_or((Channel::Force(0), 0.0));
-    let chaotic = difference > SEEN;
-    let replicas = if chaotic { REPLICAS } else { 1 };
-    Ok(Rattle { chaotic, replicas, difference, channel, logs })
+    differences.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((Channel::Force(0), 0.0))
 }
 
 /// Standard deviation of a channel's noise in its unit; none of commands, which are known. Rounding to

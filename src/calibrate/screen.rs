@@ -1,8 +1,10 @@
 //! Every candidate through the lens alone, which takes no simulation.
 
+use super::baseline::Baseline;
 use super::candidates;
 use super::fit::{self, Target};
-use super::model::{Baseline, Case};
+use super::instrument::{changed, unpulled};
+use super::model::Case;
 use super::settle::{GAIN_PER_VALUE, Question, Settled};
 use crate::effects::Setting;
 use nalgebra::DMatrix;
@@ -70,13 +72,20 @@ pub fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored,
                 let tuned = candidates::tune(&own, &plain, candidate)?;
                 let mut effects = [others, tuned.effects.clone()].concat();
                 // All values together, where it is worth the time.
-                if plain.chi2 - tuned.chi2 > WORTH && effects.len() > 1 {
-                    effects = fit::fit(&target, &effects, 3)?.effects;
+                if plain.chi2 - tuned.chi2 > WORTH && (effects.len() > 1 || baseline.rattles) {
+                    let fit = fit::fit(&target, &effects, 3)?;
+                    let fit = if baseline.rattles { unpulled(&target, fit) } else { fit };
+                    effects = fit.effects;
                 }
-                let held = Target { on: question.hold, ..target }.look(&effects)?.chi2;
+                let held = Target { on: question.hold, ..target };
+                let mut left = held.look(&effects)?.chi2;
+                // What rattle hides in the data may show in replicas; a simulation will tell.
+                if baseline.rattles {
+                    left = left.min(changed(&held, &model.fit.effects, &effects)?.norm_squared());
+                }
                 let effect = effects.last()?.clone();
-                let gain = model.held - held - GAIN_PER_VALUE * effect.values().count() as f64;
-                let share = share(model.held, held, case, question, baseline);
+                let gain = model.held - left - GAIN_PER_VALUE * effect.values().count() as f64;
+                let share = share(model.held, left, case, question, baseline);
                 Some((Scored { effect, gain, share, simulated: false }, effects))
             })
             .collect();

@@ -15,10 +15,14 @@ use std::sync::atomic::AtomicUsize;
 /// hides it brings a thousand and more.
 const GAIN: [f64; 2] = [40.0, 100.0];
 
+/// Gain through the lens from which a candidate is worth simulating, with loaded joints and with joints
+/// that rattle: there a lens shows little, in units of a noise that contains what is missing.
+const WORTH: [f64; 2] = [40.0, 25.0];
+
 /// Rivals that are simulated beside a model, the declared one and one that has effects already, and the
 /// share of the best one's gain that makes a rival.
 const RIVALS: [usize; 2] = [6, 3];
-const RIVAL_SHARE: f64 = 0.6;
+const RIVAL_SHARE: [f64; 2] = [0.6, 0.3];
 
 /// Models that are followed at once while none of them is noise, and the share of the best one's drop
 /// that makes another worth following.
@@ -34,6 +38,10 @@ const EFFECTS: usize = 3;
 /// Share of what stands above noise that an effect has to remove to be believed where something else
 /// remains: what passes for an effect without being it rarely removes as much.
 const CERTAIN: f64 = 0.9;
+
+/// The least such share of an effect that is worth adding: of up to [`EFFECTS`] effects, one removes a
+/// third. What removes less takes up some of what it is not.
+const LEAST: f64 = 0.2;
 
 /// One round of the search.
 #[derive(Clone, Debug)]
@@ -139,7 +147,7 @@ pub fn search(
             model = settle(case, question, &model.fit.effects, SETTLES, like)?;
             simulations += model.times * case.simulations();
         }
-        if !case.chaotic {
+        if !model.baseline.rattles {
             tell(&format!("settling {} point by point", names(&model.fit.effects)));
             model = refined(case, question, model, &point_by_point)?;
         }
@@ -173,13 +181,13 @@ fn beside(
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<(Vec<Way>, Round, usize), SearchError> {
     let model = &way.model;
-    let threshold = GAIN[usize::from(case.chaotic)];
+    let rattles = usize::from(model.baseline.rattles);
     let mut ranking = screen(case, question, model);
     let best = ranking.first().map_or(0.0, |(scored, _)| scored.gain);
     let rivals: Vec<usize> = (0..ranking.len())
         .filter(|&i| {
             let (scored, effects) = &ranking[i];
-            let worth = scored.gain > threshold && scored.gain > RIVAL_SHARE * best;
+            let worth = scored.gain > WORTH[rattles] && scored.gain > RIVAL_SHARE[rattles] * best;
             worth && !tried.contains(&Way::key(effects))
         })
         .take(RIVALS[usize::from(!model.fit.effects.is_empty())])
@@ -210,7 +218,8 @@ fn beside(
         order.unwrap_or(std::cmp::Ordering::Equal)
     });
     let round = Round { ranking, added: None };
-    let ways = settled.into_iter().map(|(scored, model)| {
+    let worth = settled.into_iter().filter(|(scored, _)| scored.share > LEAST);
+    let ways = worth.map(|(scored, model)| {
         let certain = way.certain && scored.share > CERTAIN;
         let added = Some(scored.effect);
         let own = Round { added, ranking: round.ranking.clone() };

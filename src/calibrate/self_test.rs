@@ -3,7 +3,7 @@
 
 use super::model::SearchError;
 use super::model::{Case, Run};
-use super::outcome::{Outcome, Verdict, calibrate};
+use super::outcome::{Outcome, Verdict, calibrate, canonical};
 use super::replica;
 use crate::effects::{Setting, named};
 use crate::engine::StepControl;
@@ -167,7 +167,9 @@ pub struct Result {
     pub right: bool,
     /// For each hidden value found by name: name, truth, estimate, standard deviation.
     pub values: Vec<(String, f64, f64, f64)>,
-    /// Largest ratio of an error to its floor on the validation run.
+    /// How large what is hidden is: the declared model's largest error on the validation run, in floors.
+    pub floors: f64,
+    /// The same of the calibrated model.
     pub worst_ratio: f64,
     /// Simulations it took.
     pub simulations: usize,
@@ -227,11 +229,11 @@ fn path(run: usize, random: [f64; 4], t: f64) -> Vector3<f64> {
     }
 }
 
-/// A rig's recordings with what a trial hides in them.
+/// A rig's recordings with what a trial hides in them, and that.
 ///
 /// # Errors
 /// A hidden effect that gives no machine.
-fn recorded(trial: &Trial) -> std::result::Result<(Case, Vec<Setting>), SearchError> {
+pub fn recorded(trial: &Trial) -> std::result::Result<(Case, Vec<Setting>), SearchError> {
     let mut random = ChaCha8Rng::seed_from_u64(trial.seed);
     let gravity = if trial.gravity { "-9.81" } else { "0.0" };
     let set = [format!("environment.gravity=[0.0,{gravity}]")];
@@ -243,6 +245,7 @@ fn recorded(trial: &Trial) -> std::result::Result<(Case, Vec<Setting>), SearchEr
         .iter()
         .filter_map(|name| HIDDEN.iter().find(|hidden| hidden.kind == *name))
         .filter_map(|hidden| hide(hidden, trial, &mut random))
+        .map(|effect| canonical(&effect))
         .collect();
     let geometry = Geometry { base_side: 0.66, platform_side: 0.1 };
     let (interval, samples) = (1e-3, 3001);
@@ -333,7 +336,7 @@ fn judge(trial: &Trial, hidden: Vec<Setting>, outcome: &Outcome) -> Result {
             }
         }
     }
-    let validation = outcome.errors.iter().filter(|error| error.role == "validation");
+    let validation = || outcome.errors.iter().filter(|error| error.role == "validation");
     Result {
         gravity: trial.gravity,
         size: trial.size,
@@ -341,7 +344,8 @@ fn judge(trial: &Trial, hidden: Vec<Setting>, outcome: &Outcome) -> Result {
         verdict: outcome.verdict,
         right,
         values,
-        worst_ratio: validation.map(|e| e.after / e.floor).fold(0.0, f64::max),
+        floors: validation().map(|e| e.before / e.floor).fold(0.0, f64::max),
+        worst_ratio: validation().map(|e| e.after / e.floor).fold(0.0, f64::max),
         simulations: outcome.simulations,
         hidden,
         found,

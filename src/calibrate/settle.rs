@@ -1,7 +1,9 @@
 //! Values of a model that agree with simulations of it.
 
+use super::baseline::Baseline;
 use super::fit::{self, Fit, Target};
-use super::model::{Baseline, Case, SearchError, Segment};
+use super::instrument::unpulled;
+use super::model::{Case, SearchError, Segment};
 use super::whole::whole;
 use crate::effects::Setting;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -72,7 +74,11 @@ pub fn settle(
         let target = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
         let iterations = if effects.is_empty() { 0 } else { 6 };
         let Some(mut fit) = fit::fit(&target, &effects, iterations) else { break };
-        fit.jacobian = fit::jacobian(&target, &fit);
+        if baseline.rattles {
+            fit = unpulled(&target, fit);
+        } else {
+            fit.jacobian = fit::jacobian(&target, &fit);
+        }
         let held = Target { on: question.hold, ..target };
         let held = held.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
         let change = change(&effects, &fit);
@@ -100,7 +106,9 @@ pub fn refined(
     model: Settled,
     simulated: &AtomicUsize,
 ) -> Result<Settled, SearchError> {
-    if model.held > HOPEFUL * model.baseline.places(case, question.hold).len() as f64 {
+    if model.baseline.rattles
+        || model.held > HOPEFUL * model.baseline.places(case, question.hold).len() as f64
+    {
         return Ok(model);
     }
     let starts = &model.baseline.starts;

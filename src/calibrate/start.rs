@@ -73,13 +73,17 @@ pub struct Start {
 
 impl Start {
     /// A start that nothing is known of, but how the machine was let go.
-    pub fn let_go(machine: Mechanism) -> Self {
-        Self { kicks: None, still: machine.clone(), machine, response: None }
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn let_go(machine: Mechanism, control: StepControl) -> Result<Self, Halt> {
+        let still = still(&machine, control)?;
+        Ok(Self { kicks: None, still, machine, response: None })
     }
 
     /// The same with this machine, as it was let go.
-    pub fn without_kicks(&self, released: Mechanism) -> Self {
-        Self { still: self.still.clone(), ..Self::let_go(released) }
+    pub fn without_kicks(&self, machine: Mechanism) -> Self {
+        Self { kicks: None, still: self.still.clone(), machine, response: None }
     }
 }
 

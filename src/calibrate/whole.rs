@@ -77,7 +77,7 @@ pub fn whole(
     starts: &[Start],
     simulated: &AtomicUsize,
 ) -> Option<Fit> {
-    if case.chaotic || values(effects).is_empty() {
+    if values(effects).is_empty() {
         return None;
     }
     let let_go: Vec<Start> = starts

@@ -12,6 +12,9 @@ use std::fmt::Write as _;
 /// ten.
 const LACKING_NOTHING: u64 = 5;
 
+/// Floors above which what is hidden must be found.
+const LARGE: f64 = 3.0;
+
 /// Tries every effect at every size with gravity and without, the same withheld from the candidates at
 /// the middle size, and rigs that lack nothing; prints what became of each and the confusion matrix.
 pub(super) fn main(only: &[String], seed: u64, json: bool, quiet: bool) -> Result<(), Failure> {
@@ -70,10 +73,10 @@ fn line(result: &Tried) -> String {
         if result.hidden.is_empty() { "nothing".to_owned() } else { names(&result.hidden) };
     let found = if result.found.is_empty() { "nothing".to_owned() } else { names(&result.found) };
     format!(
-        "{} {}, size {}{}: hidden {hidden}; {verdict}: {found} ({} simulations)\n",
+        "{} {}, {:.1} floors{}: hidden {hidden}; {verdict}: {found} ({} simulations)\n",
         if result.right { "right" } else { "WRONG" },
         if result.gravity { "gravity" } else { "no gravity" },
-        result.size,
+        result.floors,
         if result.withheld { ", withheld" } else { "" },
         result.simulations
     )
@@ -103,14 +106,20 @@ fn matrix(results: &[Tried]) -> String {
             let _ = writeln!(text, "{what:<58} {right:>4} of {:<4} {share:>5.0} %", of.len());
         }
     };
-    let verdicts = |gravity: bool, nothing: bool| {
-        let own = named.clone().filter(|r| r.gravity == gravity && r.hidden.is_empty() == nothing);
-        own.map(|result| result.right).collect::<Vec<_>>()
-    };
-    rate("the right effect named, with gravity", verdicts(true, false));
-    rate("the right effect named, without", verdicts(false, false));
-    rate("nothing found where nothing is hidden, with gravity", verdicts(true, true));
-    rate("nothing found where nothing is hidden, without", verdicts(false, true));
+    for (gravity, where_from) in [(true, "with gravity"), (false, "without")] {
+        let own = || named.clone().filter(move |r| r.gravity == gravity);
+        let right = |of: &dyn Fn(&Tried) -> bool| {
+            own().filter(|result| of(result)).map(|result| result.right).collect::<Vec<_>>()
+        };
+        let large = |r: &Tried| !r.hidden.is_empty() && r.floors > LARGE;
+        let small = |r: &Tried| !r.hidden.is_empty() && r.floors <= LARGE;
+        rate(&format!("right effects where above three floors, {where_from}"), right(&large));
+        rate(&format!("right effects below three floors, {where_from}"), right(&small));
+        rate(
+            &format!("nothing found where nothing is hidden, {where_from}"),
+            right(&|r| r.hidden.is_empty()),
+        );
+    }
     let withheld = results.iter().filter(|result| result.withheld);
     rate("unexplained where the effect is no candidate", withheld.map(|r| r.right).collect());
     let values = || results.iter().flat_map(|result| &result.values);

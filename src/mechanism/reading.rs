@@ -40,7 +40,7 @@ impl Prismatic {
     }
 
     /// The motion of the true length that a motion of the read length means.
-    pub(super) fn true_command(&self, read: Command) -> Command {
+    pub(crate) fn true_command(&self, read: Command) -> Command {
         let [length, first, second] = self.true_length(read.length);
         Command {
             length,

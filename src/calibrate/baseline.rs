@@ -1,0 +1,220 @@
+//! What simulations of a model say of its own residuals.
+
+use super::lens::Lens;
+use super::model::{Case, Ensemble, SearchError, Segment};
+use super::replica;
+use super::spectrum::Noise;
+use super::start::Start;
+use crate::effects::Setting;
+use crate::measure::log::Log;
+use crate::mechanism::Mechanism;
+use crate::scenario::Problem;
+use nalgebra::DVector;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// What simulations of a model say of its own residuals: their mean, which is the lens's fault, and
+/// their spread, which is noise.
+#[derive(Clone, Debug)]
+pub struct Baseline {
+    /// One per segment.
+    parts: Vec<Part>,
+    /// How each run's machine starts.
+    pub starts: Vec<Start>,
+    /// Whether the model's joints rattle.
+    pub rattles: bool,
+    /// Its noiseless logs, prepared to be looked at: `[run][replica]`.
+    views: Arc<Vec<Vec<Lens>>>,
+}
+
+#[derive(Clone, Debug)]
+struct Part {
+    segment: Segment,
+    bias: Vec<Vec<f64>>,
+    noise: Noise,
+    /// What of the residual is the platform's swing, where joints stay loaded.
+    swing: Option<Vec<Vec<f64>>>,
+}
+
+/// Draws of sensor noise from which a covariance is taken.
+const DRAWS: usize = 16;
+
+/// Share of a platform's swing that a model may be wrong by before its values are settled: a frequency
+/// that is off by a thousandth has lost the phase after some seconds.
+const SWING: f64 = 0.3;
+
+impl Case {
+    /// The baseline of a model with these effects, from simulations of it.
+    ///
+    /// Where joints stay loaded the platform swings in their play, and a lens's fault is to see that
+    /// swing: what the same machine does without a swing tells where. Start and swing of a model that is
+    /// `like` this one save time.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn baseline(
+        &self,
+        effects: &[Setting],
+        segments: &[Segment],
+        like: Option<&Baseline>,
+    ) -> Result<Baseline, SearchError> {
+        let starts = like.map(|like| like.starts.as_slice());
+        let Ensemble { starts, logs, rattles } = self.ensemble(effects, self.replicas, starts)?;
+        // The swing of a kicked start is not that of a release.
+        let kicked = |starts: &[Start]| -> Vec<bool> {
+            starts.iter().map(|start| start.kicks.is_some()).collect()
+        };
+        let like = like.filter(|like| kicked(&like.starts) == kicked(&starts));
+        let still = if like.is_some() {
+            Vec::new()
+        } else {
+            let still: Vec<Mechanism> = starts.iter().map(|start| start.still.clone()).collect();
+            self.logs(&still, 0..1)?
+        };
+        let view = |log: &Log| Lens::new(log).expect("the channels of the recorded log");
+        let views: Vec<Vec<Lens>> =
+            logs.iter().map(|logs| logs.par_iter().map(view).collect()).collect();
+        let part = |segment: &Segment| {
+            let machine = &starts[segment.run].machine;
+            let seen = |lens: &Lens| self.coefficients(lens, machine, segment);
+            let look = |log: &Log| seen(&view(log));
+            let logs = &logs[segment.run];
+            let clean: Vec<Vec<Vec<f64>>> = views[segment.run].par_iter().map(seen).collect();
+            let bias = mean(&clean);
+            // A replica stands for the data, the mean of the others for the bias: sensor noise, the
+            // rattle of one run, and what is left of it in a mean.
+            let draws: Vec<Vec<Vec<f64>>> = (0..DRAWS)
+                .into_par_iter()
+                .map(|draw| {
+                    let index = draw % clean.len();
+                    let log = replica::with_noise(&logs[index], &self.sensors, draw as u64 + 1000);
+                    difference(&look(&log), &without(&bias, &clean[index], clean.len()))
+                })
+                .collect();
+            let seen = still.get(segment.run).map(|logs| {
+                let mut swing = difference(&bias, &look(&logs[0]));
+                for (channel, swing) in swing.iter_mut().enumerate() {
+                    let share = if rattles { coherence(&clean, channel, swing) } else { SWING };
+                    swing.iter_mut().for_each(|value| *value *= share);
+                }
+                swing
+            });
+            let known = || like?.parts.iter().find(|part| part.segment == *segment)?.swing.clone();
+            let swing = seen.or_else(known);
+            let noise = Noise::from_draws(&draws, swing.as_deref());
+            Part { segment: segment.clone(), bias, noise, swing }
+        };
+        let parts = segments.iter().map(part).collect();
+        Ok(Baseline { parts, starts, rattles, views: Arc::new(views) })
+    }
+
+    /// Residuals of the data under a model in units of noise, of all segments in a row.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take.
+    pub fn white(
+        &self,
+        baseline: &Baseline,
+        effects: &[Setting],
+        segments: &[Segment],
+    ) -> Result<DVector<f64>, Problem> {
+        self.white_of(baseline, effects, segments, None)
+    }
+
+    /// The same of one of the baseline's replicas in place of the data.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take.
+    pub fn white_of(
+        &self,
+        baseline: &Baseline,
+        effects: &[Setting],
+        segments: &[Segment],
+        replica: Option<usize>,
+    ) -> Result<DVector<f64>, Problem> {
+        let mut all = Vec::new();
+        for part in baseline.parts.iter().filter(|part| segments.contains(&part.segment)) {
+            let run = &self.runs[part.segment.run];
+            let machine = run.machine(&self.rig, effects)?;
+            let lens = replica.map_or(&run.lens, |r| &baseline.views[part.segment.run][r]);
+            let mut coefficients = self.coefficients(lens, &machine, &part.segment);
+            for (values, bias) in coefficients.iter_mut().zip(&part.bias) {
+                for (value, bias) in values.iter_mut().zip(bias) {
+                    *value -= bias;
+                }
+            }
+            all.extend(part.noise.whiten(&coefficients).iter());
+        }
+        Ok(DVector::from_vec(all))
+    }
+}
+
+impl Baseline {
+    /// How many replicas it rests on.
+    pub fn replicas(&self) -> usize {
+        self.views.first().map_or(0, Vec::len)
+    }
+
+    /// Logarithm of the determinant of the noise on segments.
+    pub fn log_determinant(&self, on: &[Segment]) -> f64 {
+        let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
+        parts.map(|part| part.noise.log_determinant()).sum()
+    }
+
+    /// Channel (servo, closure, dynamics of each leg) and frequency in Hz of each number of
+    /// [`Case::white`] for these segments.
+    pub fn places(&self, case: &Case, segments: &[Segment]) -> Vec<(usize, f64)> {
+        let parts = self.parts.iter().filter(|part| segments.contains(&part.segment));
+        parts
+            .flat_map(|part| {
+                let rows = part.segment.rows.len() as f64;
+                let step = 0.5 / (rows * case.runs[part.segment.run].log.interval);
+                part.noise.places().into_iter().map(move |(c, k)| (c, k as f64 * step))
+            })
+            .collect()
+    }
+}
+
+fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let channels = a.iter().zip(b);
+    channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
+}
+
+/// The mean of `count` draws with one of them left out, if that leaves any.
+fn without(mean: &[Vec<f64>], own: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
+    if count < 2 {
+        return own.to_vec();
+    }
+    let part = 1.0 / count as f64;
+    let left = |(all, own): (&f64, &f64)| (all - part * own) / (1.0 - part);
+    let channels = mean.iter().zip(own);
+    channels.map(|(all, own)| all.iter().zip(own).map(left).collect()).collect()
+}
+
+/// Share of a swing, mean of replicas less a machine at rest, that is no rattle: what replicas differ by
+/// would be as large in both.
+fn coherence(replicas: &[Vec<Vec<f64>>], channel: usize, swing: &[f64]) -> f64 {
+    let count = replicas.len() as f64;
+    let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+    let mean = &mean(replicas)[channel];
+    let from_mean = |replica: &Vec<Vec<f64>>| {
+        square(&replica[channel].iter().zip(mean).map(|(a, b)| a - b).collect::<Vec<_>>())
+    };
+    let rattle = replicas.iter().map(from_mean).sum::<f64>() / (count - 1.0);
+    (1.0 - (1.0 + 1.0 / count) * rattle / square(swing).max(f64::MIN_POSITIVE)).max(0.0).sqrt()
+}
+
+fn mean(draws: &[Vec<Vec<f64>>]) -> Vec<Vec<f64>> {
+    let mut sum = draws[0].clone();
+    for draw in &draws[1..] {
+        for (sum, values) in sum.iter_mut().zip(draw) {
+            for (sum, value) in sum.iter_mut().zip(values) {
+                *sum += value;
+            }
+        }
+    }
+    for value in sum.iter_mut().flatten() {
+        *value /= draws.len() as f64;
+    }
+    sum
+}

@@ -1,0 +1,91 @@
+//! Values without the pull of what rattles.
+//!
+//! Where joints rattle, what a lens multiplies a value by is itself full of rattle: where a journal leans
+//! is read off forces that fly about. Least squares then make such a value small, as they do with any
+//! regressor that carries errors ("attenuation"; Fuller, *Measurement Error Models*, 1987, §1.1): a worn
+//! clearance of 0.27 mm settles at 0.2 mm. Replicas of the model rattle otherwise than the data, so the mean of
+//! their derivatives, `J̄`, knows nothing of the data's rattle: `J̄ᵀ r(θ) = 0` (instrumental variables, §1.4
+//! there) has the right values as its answer.
+
+use super::fit::{self, Fit, Target};
+use super::least_squares::{Free, jacobian};
+use crate::effects::Setting;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Steps towards the answer, at most: residuals are nearly linear in most values.
+const STEPS: usize = 3;
+
+/// Standard deviations that are no step.
+const SETTLED: f64 = 0.05;
+
+/// Factor by which the sum of squares may grow in a step: more is no rattle but a wrong way.
+const GROWTH: f64 = 1.5;
+
+/// Ridge, relative to the diagonal: values that the data cannot tell apart stay where they are.
+const RIDGE: f64 = 1e-6;
+
+/// The fit with values that rattle does not pull, and the derivatives from which their intervals follow.
+pub fn unpulled(target: &Target, fit: Fit) -> Fit {
+    let free = fit::free(&fit.effects);
+    let mut best = fit;
+    for _ in 0..STEPS {
+        let Some(jacobian) = expected(target, &best, &free) else { break };
+        let step = step(&jacobian, &best.white);
+        let values = fit::values(&best.effects);
+        let bounded = values.iter().zip(step.iter()).zip(&free);
+        let moved: Vec<f64> = bounded
+            .map(|((value, step), free)| (value + step).clamp(free.bounds[0], free.bounds[1]))
+            .collect();
+        let sigmas = (&jacobian * step).norm();
+        best.jacobian = Some(jacobian);
+        let there = target.look(&fit::with_values(&best.effects, &moved));
+        let Some(there) = there.filter(|there| there.chi2 < GROWTH * best.chi2) else { break };
+        best = Fit { jacobian: best.jacobian, ..there };
+        if sigmas < SETTLED {
+            break;
+        }
+    }
+    best
+}
+
+/// What the residual would be with effects `to` in place of `from`, by what replicas say of the change:
+/// the data's own rattle has no part in it. None where such a machine cannot be.
+pub fn changed(target: &Target, from: &[Setting], to: &[Setting]) -> Option<DVector<f64>> {
+    let replicas = target.baseline.replicas();
+    let of = |replica: usize| {
+        let look = |effects: &[Setting]| {
+            target.case.white_of(target.baseline, effects, target.on, Some(replica)).ok()
+        };
+        Some(look(to)? - look(from)?)
+    };
+    let change = (0..replicas).map(of).sum::<Option<DVector<f64>>>()?;
+    Some(target.look(from)?.white + change / replicas as f64)
+}
+
+/// Mean of the replicas' derivatives of the residual by each value.
+fn expected(target: &Target, fit: &Fit, free: &[Free]) -> Option<DMatrix<f64>> {
+    let values = fit::values(&fit.effects);
+    let replicas = target.baseline.replicas();
+    let of = |replica: usize| {
+        let look = |values: &[f64]| {
+            let effects = fit::with_values(&fit.effects, values);
+            target.case.white_of(target.baseline, &effects, target.on, Some(replica)).ok()
+        };
+        jacobian(&look, free, &values, &look(&values)?)
+    };
+    let all = (0..replicas).into_par_iter().map(of).collect::<Option<Vec<_>>>()?;
+    let mut all = all.into_iter();
+    let first = all.next()?;
+    Some(all.fold(first, |sum, next| sum + next) / replicas as f64)
+}
+
+/// The step of Gauss and Newton.
+fn step(jacobian: &DMatrix<f64>, white: &DVector<f64>) -> DVector<f64> {
+    let mut normal = jacobian.transpose() * jacobian;
+    for i in 0..normal.nrows() {
+        normal[(i, i)] *= 1.0 + RIDGE;
+    }
+    let solved = normal.cholesky().map(|factor| -factor.solve(&(jacobian.transpose() * white)));
+    solved.unwrap_or_else(|| DVector::zeros(jacobian.ncols()))
+}
