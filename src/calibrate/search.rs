@@ -1,11 +1,13 @@
 //! One effect after another, until what is left of the residual is noise; several ways at once, for the
 //! first of two effects is often mistaken for a rival that also takes up a part of the second.
 
+use super::fit::Target;
+use super::instrument::changed;
 use super::left::{is_noise, left};
 use super::model::{Case, SearchError};
 use super::screen::{Scored, screen, share};
 use super::settle::{GAIN_PER_VALUE, Question, Settled, refined, settle, simplified};
-use crate::effects::Setting;
+use crate::effects::{SELDOM, Setting};
 use std::sync::atomic::AtomicUsize;
 
 /// Drop of Σ of squares on data not used for the fit that an effect has to bring, with loaded joints and
@@ -19,18 +21,21 @@ const GAIN: [f64; 2] = [40.0, 100.0];
 /// that rattle: there a lens shows little, in units of a noise that contains what is missing.
 const WORTH: [f64; 2] = [40.0, 25.0];
 
+/// How far behind the best a candidate is a rival in any case: what rattle hides from a lens.
+const REACH: [f64; 2] = [0.0, 500.0];
+
 /// Rivals that are simulated beside a model, the declared one and one that has effects already, and the
 /// share of the best one's gain that makes a rival.
 const RIVALS: [usize; 2] = [6, 3];
-const RIVAL_SHARE: [f64; 2] = [0.6, 0.3];
+const RIVAL_SHARE: f64 = 0.6;
 
 /// Models that are followed at once while none of them is noise, and the share of the best one's drop
 /// that makes another worth following.
 const WAYS: usize = 4;
 const WAY_SHARE: f64 = 0.9;
 
-/// Simulations after which values have settled, at most.
-const SETTLES: usize = 7;
+/// Simulations after which values have settled, at most; where joints rattle the best of so many counts.
+const SETTLES: [usize; 2] = [7, 4];
 
 /// Most effects that are added.
 const EFFECTS: usize = 3;
@@ -38,6 +43,11 @@ const EFFECTS: usize = 3;
 /// Share of what stands above noise that an effect has to remove to be believed where something else
 /// remains: what passes for an effect without being it rarely removes as much.
 const CERTAIN: f64 = 0.9;
+
+/// By how much misfits of equally good models differ by chance where joints rattle, as two sets of six
+/// replicas do (some 90, measured), twice; and what a seldom effect has to bring beyond a commoner one.
+const CHANCE: f64 = 200.0;
+const SELDOM_PRICE: f64 = 20.0;
 
 /// The least such share of an effect that is worth adding: of up to [`EFFECTS`] effects, one removes a
 /// third. What removes less takes up some of what it is not.
@@ -66,9 +76,13 @@ pub struct Way {
 impl Way {
     /// What models of different numbers of values are compared by.
     pub fn cost(&self) -> f64 {
-        let values =
-            self.model.fit.effects.iter().map(|effect| effect.values().count()).sum::<usize>();
-        self.model.misfit + GAIN_PER_VALUE * values as f64
+        self.model.misfit + self.price()
+    }
+
+    /// What its values have to bring.
+    fn price(&self) -> f64 {
+        let values = self.model.fit.effects.iter().map(|effect| effect.values().count());
+        GAIN_PER_VALUE * values.sum::<usize>() as f64
     }
 
     /// Its effects, whatever their order and values.
@@ -131,6 +145,9 @@ pub fn search(
             searched.push(round);
         }
         next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        if let Some(first) = nearest(case, question, &next) {
+            next[..=first].rotate_right(1);
+        }
         let won = next.first().is_some_and(|first| first.cost() < best.cost() - threshold);
         if !won {
             best.rounds.extend(searched.into_iter().next());
@@ -139,12 +156,13 @@ pub fn search(
         let winner = next.remove(0);
         tell(&format!("settling {}", names(&winner.model.fit.effects)));
         let like = Some(&winner.model.baseline);
-        let model = settle(case, question, &winner.model.fit.effects, SETTLES, like)?;
+        let settles = SETTLES[usize::from(winner.model.baseline.rattles)];
+        let model = settle(case, question, &winner.model.fit.effects, settles, like)?;
         simulations += model.times * case.simulations();
         let mut model = simplified(case, question, model);
         if Way::key(&model.fit.effects) != Way::key(&winner.model.fit.effects) {
             // What a lens is wrong by depends on all values.
-            model = settle(case, question, &model.fit.effects, SETTLES, like)?;
+            model = settle(case, question, &model.fit.effects, settles, like)?;
             simulations += model.times * case.simulations();
         }
         if !model.baseline.rattles {
@@ -171,6 +189,27 @@ pub fn search(
     Ok(Found { best, declared, certain, simulations })
 }
 
+/// Which of the best models, whose misfits differ by no more than chance, does best through the lens of
+/// the very best: there the data's rattle and the replicas' are the same for all.
+fn nearest(case: &Case, question: &Question, ways: &[Way]) -> Option<usize> {
+    let best = ways.first().filter(|best| best.model.baseline.rattles)?;
+    let baseline = &best.model.baseline;
+    let target = Target { case, baseline, on: question.hold, fixed: &[], blind: None };
+    let left = |way: &Way| {
+        let effects = &way.model.fit.effects;
+        let white = changed(&target, &best.model.fit.effects, effects)?;
+        let seldom = |effect: &&Setting| SELDOM.iter().any(|kind| kind.name == effect.kind.name);
+        Some(
+            white.norm_squared()
+                + way.price()
+                + SELDOM_PRICE * effects.iter().filter(seldom).count() as f64,
+        )
+    };
+    let near = ways.iter().take_while(|way| way.cost() < best.cost() + CHANCE);
+    let scored = near.enumerate().filter_map(|(i, way)| Some((i, left(way)?)));
+    scored.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
+}
+
 /// The models that one more effect makes of one, its round, and the simulations it took. The first way
 /// has its best rivals simulated even if another way has come to the same.
 fn beside(
@@ -187,7 +226,8 @@ fn beside(
     let rivals: Vec<usize> = (0..ranking.len())
         .filter(|&i| {
             let (scored, effects) = &ranking[i];
-            let worth = scored.gain > WORTH[rattles] && scored.gain > RIVAL_SHARE[rattles] * best;
+            let reach = f64::min(RIVAL_SHARE * best, best - REACH[rattles]);
+            let worth = scored.gain > WORTH[rattles] && scored.gain > reach;
             worth && !tried.contains(&Way::key(effects))
         })
         .take(RIVALS[usize::from(!model.fit.effects.is_empty())])

@@ -68,9 +68,11 @@ pub fn settle(
     let segments = question.segments();
     let mut effects = effects.to_vec();
     let mut settled: Option<Settled> = None;
+    let mut done = 0;
     for time in 1..=times.max(1) {
         let like = settled.as_ref().map_or(like, |settled| Some(&settled.baseline));
         let baseline = case.baseline(&effects, &segments, like)?;
+        done = time;
         let target = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
         let iterations = if effects.is_empty() { 0 } else { 6 };
         let Some(mut fit) = fit::fit(&target, &effects, iterations) else { break };
@@ -85,11 +87,16 @@ pub fn settle(
         effects.clone_from(&fit.effects);
         let noisiness = if case.chaotic { baseline.log_determinant(question.hold) } else { 0.0 };
         let misfit = held + noisiness;
-        settled = Some(Settled { fit, baseline, held, misfit, times: time });
+        // Where joints rattle values never come to rest: each time the replicas' bias is another.
+        let worse = |before: &Settled| baseline.rattles && before.misfit < misfit;
+        if !settled.as_ref().is_some_and(worse) {
+            settled = Some(Settled { fit, baseline, held, misfit, times: time });
+        }
         if change < SETTLED {
             break;
         }
     }
+    let settled = settled.map(|settled| Settled { times: done, ..settled });
     settled.ok_or_else(|| {
         case.rig.problem("effect", "gives a machine that cannot be", "other values").into()
     })

@@ -42,7 +42,8 @@ pub(super) const KIND: Kind = Kind {
             name: "velocity_m_s",
             unit: "m/s",
             about: "speed v_s at which Coulomb friction is near its full value: slow against working speeds",
-            bounds: [1e-5, 1.0],
+            // A film of oil gives way over more; steps through a steeper law grow short.
+            bounds: [1e-4, 1.0],
             step: 2e-4,
             default: Some(1e-3),
         },

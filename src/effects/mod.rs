@@ -70,6 +70,20 @@ pub const ALL: &[&Kind] = &[
     &air_drag::KIND,
 ];
 
+/// Effects of machines that a search is for which imitate a commoner one: an encoder's wrong zero looks
+/// like an anchor moved along its leg. They are named only where they do clearly better.
+pub const SELDOM: &[&Kind] = &[
+    &leg_density::KIND,
+    &stribeck_friction::KIND,
+    &out_of_round::KIND,
+    &lubricant_film::KIND,
+    &contact_damping::KIND,
+    &servo_gain::KIND,
+    &drive_backlash::KIND,
+    &drive_compliance::KIND,
+    &sensor_offset::KIND,
+];
+
 /// The effect called `name`.
 pub fn named(name: &str) -> Option<&'static Kind> {
     ALL.iter().find(|kind| kind.name == name).copied()

@@ -6,8 +6,8 @@ use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-const fn speed(name: &'static str, about: &'static str, default: f64) -> Parameter {
-    Parameter { name, unit: "m/s", about, bounds: [1e-6, 1.0], step: 1e-3, default: Some(default) }
+const fn speed(name: &'static str, about: &'static str, least: f64, default: f64) -> Parameter {
+    Parameter { name, unit: "m/s", about, bounds: [least, 1.0], step: 1e-3, default: Some(default) }
 }
 
 pub(super) const KIND: Kind = Kind {
@@ -32,11 +32,14 @@ pub(super) const KIND: Kind = Kind {
         speed(
             "stribeck_m_s",
             "speed v_s over which F_s falls to F_c: a tenth of working speeds",
+            // Below the default of v_0 nothing falls, and steps grow short.
+            1e-3,
             0.02,
         ),
         speed(
             "velocity_m_s",
             "speed v_0 at which friction is near its full value: slow against v_s",
+            1e-5,
             1e-3,
         ),
     ],
