@@ -7,6 +7,7 @@ pub mod candidates;
 mod charts;
 pub mod commands;
 pub mod errors;
+pub mod evidence;
 pub mod fit;
 pub mod instrument;
 pub mod least_squares;

@@ -4,7 +4,7 @@ use super::errors::{self, ChannelError};
 use super::fit::{self, Fit};
 use super::left::{Left, is_noise, left};
 use super::model::{Case, Run, SearchError, Segment};
-use super::search::{Found, Round, Way, name, search};
+use super::search::{self, Found, Round, Way, search};
 use super::settle::{Question, Settled};
 use super::unnamed::{Described, describe};
 use crate::effects::{Scan, Setting, UNNAMED};
@@ -65,6 +65,8 @@ pub struct Outcome {
     pub declared: Vec<Log>,
     /// Simulations it took.
     pub simulations: usize,
+    /// By how much gains of equally good models differ by chance.
+    pub chance: f64,
 }
 
 /// Calibrates: fits on the first run, judges on the others; with one run alone, fits on its first half
@@ -123,6 +125,7 @@ pub fn calibrate(
         predictions: predicted.iter().map(|logs| errors::ensemble(logs)).collect(),
         declared: declared.iter().map(|logs| errors::ensemble(logs)).collect(),
         simulations,
+        chance: CHANCE[usize::from(case.chaotic)],
     })
 }
 
@@ -170,6 +173,9 @@ fn remaining(
     best.ok_or_else(|| case.rig.problem("effect", "cannot be described", "other data").into())
 }
 
+/// By how much gains of equally good models differ by chance, with loaded joints and with joints that rattle.
+const CHANCE: [f64; 2] = [10.0, search::CHANCE];
+
 /// Models with certain effects that are held against each other, each with a map.
 const BASES: usize = 3;
 
@@ -210,36 +216,4 @@ fn estimates(model: &Settled) -> Vec<Vec<Estimate>> {
             effect.values().map(|(name, value)| Estimate { name, value, std: next() }).collect()
         })
         .collect()
-}
-
-/// One sentence on what an effect rests on.
-pub fn evidence(outcome: &Outcome, effect: &Setting) -> String {
-    if let (Some(_), Some(described)) = (effect.map(), &outcome.described) {
-        let depends = described.others.first().map_or("", |(class, _)| class.words());
-        return format!(
-            "a force that varies with {depends} removes {:.0} % of what stands above noise on data \
-             not used for its fit; no effect with a name does",
-            100.0 * described.share
-        );
-    }
-    let same = |other: &Setting| other.kind.name == effect.kind.name && other.joint == effect.joint;
-    let round = outcome.rounds.iter().find(|r| r.added.as_ref().is_some_and(same));
-    let Some(round) = round else { return String::new() };
-    let own = round.ranking.iter().find(|scored| scored.simulated && same(&scored.effect));
-    let rival =
-        round.ranking.iter().find(|s| s.simulated && s.effect.kind.name != effect.kind.name);
-    let share = own.map_or(0.0, |scored| scored.share);
-    let mut text = format!(
-        "removes {:.1} % of what stood above noise on data not used for its fit",
-        100.0 * share
-    );
-    if let (Some(own), Some(rival)) = (own, rival) {
-        let (rival, ahead) = (name(&rival.effect), own.gain - rival.gain);
-        text += &if ahead > 0.0 {
-            format!("; the next best, {rival}, leaves {ahead:.0} more in units of squared noise")
-        } else {
-            format!("; {rival} did as well by itself, but not with what was found after it")
-        };
-    }
-    text
 }

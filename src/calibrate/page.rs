@@ -228,16 +228,15 @@ fn dependence(charts: &Charts) -> Table {
 
 fn candidates(outcome: &Outcome) -> Table {
     let mut rows = Vec::new();
-    let same = |a: &Setting, b: &Setting| a.kind.name == b.kind.name && a.joint == b.joint;
     for (i, round) in outcome.rounds.iter().enumerate() {
         let mut seen: Vec<&Setting> = Vec::new();
         for scored in &round.ranking {
-            if seen.len() == LISTED || seen.iter().any(|other| same(other, &scored.effect)) {
+            if seen.len() == LISTED || seen.iter().any(|other| other.is(&scored.effect)) {
                 continue;
             }
             seen.push(&scored.effect);
-            let added = round.added.as_ref().is_some_and(|added| same(added, &scored.effect));
-            let kept = outcome.effects.iter().any(|(effect, _)| same(effect, &scored.effect));
+            let added = round.added.as_ref().is_some_and(|added| added.is(&scored.effect));
+            let kept = outcome.effects.iter().any(|(effect, _)| effect.is(&scored.effect));
             rows.push(vec![
                 (i + 1).to_string(),
                 in_words(&scored.effect),
@@ -365,6 +364,7 @@ mod tests {
             depends_on,
             params: Vec::new(),
             evidence: evidence.to_owned(),
+            as_good: Vec::new(),
             equation: "f = 0",
         };
         assert_eq!(why(&effect(None, "removes it")), "kind: f = 0. It removes it.");

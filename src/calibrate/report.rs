@@ -1,9 +1,10 @@
 //! `report.json`: what a calibration came to.
 
 use super::errors::ChannelError;
+use super::evidence::{as_good, evidence};
 use super::left::Left;
 use super::model::Case;
-use super::outcome::{Outcome, Verdict, evidence};
+use super::outcome::{Outcome, Verdict};
 use super::rattle::Rattle;
 use super::search::name;
 use crate::effects::{DependsOn, Setting};
@@ -62,6 +63,8 @@ pub struct EffectReport {
     pub params: Vec<(&'static str, Fitted)>,
     /// What it rests on.
     pub evidence: String,
+    /// Effects that explain these recordings as well.
+    pub as_good: Vec<String>,
     /// Its equation.
     pub equation: &'static str,
 }
@@ -209,10 +212,6 @@ pub fn calibrated(rig: &Scenario, outcome: &Outcome) -> Scenario {
     scenario
 }
 
-fn same(a: &Setting, b: &Setting) -> bool {
-    a.kind.name == b.kind.name && a.joint == b.joint
-}
-
 fn effect_report(outcome: &Outcome, effect: &Setting) -> EffectReport {
     let estimates = outcome.effects.iter().find(|(e, _)| e == effect).map(|(_, e)| e.as_slice());
     let params = estimates.unwrap_or_default().iter().map(|estimate| {
@@ -225,6 +224,7 @@ fn effect_report(outcome: &Outcome, effect: &Setting) -> EffectReport {
         depends_on: effect.map().map(|map| map.depends_on),
         params: params.collect(),
         evidence: evidence(outcome, effect),
+        as_good: as_good(outcome, effect).into_iter().map(name).collect(),
         equation: effect.kind.equation,
     }
 }
@@ -235,12 +235,12 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     for (i, round) in outcome.rounds.iter().enumerate() {
         let mut seen: Vec<&Setting> = Vec::new();
         for scored in &round.ranking {
-            if seen.iter().any(|other| same(other, &scored.effect)) {
+            if seen.iter().any(|other| other.is(&scored.effect)) {
                 continue;
             }
             seen.push(&scored.effect);
-            let in_model = outcome.effects.iter().any(|(effect, _)| same(effect, &scored.effect));
-            let added = round.added.as_ref().is_some_and(|added| same(added, &scored.effect));
+            let in_model = outcome.effects.iter().any(|(effect, _)| effect.is(&scored.effect));
+            let added = round.added.as_ref().is_some_and(|added| added.is(&scored.effect));
             all.push(Ranked {
                 kind: scored.effect.kind.name,
                 joint: scored.effect.joint.clone(),

@@ -49,46 +49,42 @@ pub fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored,
     let candidates = candidates::all(&machine, question.without);
     // What the values of the present effects could make good: the same for nearly every candidate.
     let Some(present) = without_values(&target, &model.fit.effects) else { return Vec::new() };
-    let mut scored: Vec<(Scored, Vec<Setting>)> =
-        candidates
-            .par_iter()
-            .filter_map(|candidate| {
-                // A fuller variant of an effect that the model has takes its place.
-                let same = |effect: &Setting| {
-                    effect.kind.name == candidate.kind.name && effect.joint == candidate.joint
-                };
-                if model.fit.effects.iter().any(|effect| {
-                    same(effect) && effect.values().count() >= candidate.values().count()
-                }) {
-                    return None;
-                }
-                let others: Vec<Setting> =
-                    model.fit.effects.iter().filter(|effect| !same(effect)).cloned().collect();
-                let replaced = others.len() < model.fit.effects.len();
-                let fewer = if replaced { Some(without_values(&target, &others)?) } else { None };
-                let blind = fewer.as_ref().unwrap_or(&present);
-                let own = Target { fixed: &others, blind: blind.as_ref(), ..target };
-                let plain = own.look(&[])?;
-                let tuned = candidates::tune(&own, &plain, candidate)?;
-                let mut effects = [others, tuned.effects.clone()].concat();
-                // All values together, where it is worth the time.
-                if plain.chi2 - tuned.chi2 > WORTH && (effects.len() > 1 || baseline.rattles) {
-                    let fit = fit::fit(&target, &effects, 3)?;
-                    let fit = if baseline.rattles { unpulled(&target, fit) } else { fit };
-                    effects = fit.effects;
-                }
-                let held = Target { on: question.hold, ..target };
-                let mut left = held.look(&effects)?.chi2;
-                // What rattle hides in the data may show in replicas; a simulation will tell.
-                if baseline.rattles {
-                    left = left.min(changed(&held, &model.fit.effects, &effects)?.norm_squared());
-                }
-                let effect = effects.last()?.clone();
-                let gain = model.held - left - GAIN_PER_VALUE * effect.values().count() as f64;
-                let share = share(model.held, left, case, question, baseline);
-                Some((Scored { effect, gain, share, simulated: false }, effects))
-            })
-            .collect();
+    let mut scored: Vec<(Scored, Vec<Setting>)> = candidates
+        .par_iter()
+        .filter_map(|candidate| {
+            // A fuller variant of an effect that the model has takes its place.
+            if model.fit.effects.iter().any(|effect| {
+                effect.is(candidate) && effect.values().count() >= candidate.values().count()
+            }) {
+                return None;
+            }
+            let others: Vec<Setting> =
+                model.fit.effects.iter().filter(|effect| !effect.is(candidate)).cloned().collect();
+            let replaced = others.len() < model.fit.effects.len();
+            let fewer = if replaced { Some(without_values(&target, &others)?) } else { None };
+            let blind = fewer.as_ref().unwrap_or(&present);
+            let own = Target { fixed: &others, blind: blind.as_ref(), ..target };
+            let plain = own.look(&[])?;
+            let tuned = candidates::tune(&own, &plain, candidate)?;
+            let mut effects = [others, tuned.effects.clone()].concat();
+            // All values together, where it is worth the time.
+            if plain.chi2 - tuned.chi2 > WORTH && (effects.len() > 1 || baseline.rattles) {
+                let fit = fit::fit(&target, &effects, 3)?;
+                let fit = if baseline.rattles { unpulled(&target, fit) } else { fit };
+                effects = fit.effects;
+            }
+            let held = Target { on: question.hold, ..target };
+            let mut left = held.look(&effects)?.chi2;
+            // What rattle hides in the data may show in replicas; a simulation will tell.
+            if baseline.rattles {
+                left = left.min(changed(&held, &model.fit.effects, &effects)?.norm_squared());
+            }
+            let effect = effects.last()?.clone();
+            let gain = model.held - left - GAIN_PER_VALUE * effect.values().count() as f64;
+            let share = share(model.held, left, case, question, baseline);
+            Some((Scored { effect, gain, share, simulated: false }, effects))
+        })
+        .collect();
     scored.sort_by(|a, b| b.0.gain.total_cmp(&a.0.gain));
     scored
 }

@@ -46,7 +46,7 @@ const CERTAIN: f64 = 0.9;
 
 /// By how much misfits of equally good models differ by chance where joints rattle, as two sets of six
 /// replicas do (some 90, measured), twice; and what a seldom effect has to bring beyond a commoner one.
-const CHANCE: f64 = 200.0;
+pub const CHANCE: f64 = 200.0;
 const SELDOM_PRICE: f64 = 20.0;
 
 /// The least such share of an effect that is worth adding: of up to [`EFFECTS`] effects, one removes a

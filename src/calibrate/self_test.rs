@@ -309,7 +309,6 @@ pub fn run(trial: &Trial) -> std::result::Result<Result, SearchError> {
 fn judge(trial: &Trial, hidden: Vec<Setting>, outcome: &Outcome) -> Result {
     let found: Vec<Setting> = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
     let named = || outcome.effects.iter().filter(|(effect, _)| effect.map().is_none());
-    let same = |a: &Setting, b: &Setting| a.kind.name == b.kind.name && a.joint == b.joint;
     let right = if trial.withheld {
         outcome.verdict == Verdict::Unexplained
     } else if hidden.is_empty() {
@@ -317,11 +316,11 @@ fn judge(trial: &Trial, hidden: Vec<Setting>, outcome: &Outcome) -> Result {
     } else {
         outcome.verdict == Verdict::Explained
             && named().count() == hidden.len()
-            && hidden.iter().all(|h| named().any(|(effect, _)| same(effect, h)))
+            && hidden.iter().all(|h| named().any(|(effect, _)| effect.is(h)))
     };
     let mut values = Vec::new();
     for truth in &hidden {
-        let Some((_, estimates)) = named().find(|(effect, _)| same(effect, truth)) else {
+        let Some((_, estimates)) = named().find(|(effect, _)| effect.is(truth)) else {
             continue;
         };
         for (name, true_value) in truth.values() {

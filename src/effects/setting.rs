@@ -134,6 +134,11 @@ impl Setting {
         Self { values: self.kind.parameters.iter().filter_map(value).collect(), ..self.clone() }
     }
 
+    /// Whether this is the same effect at the same joint, whatever the values.
+    pub fn is(&self, other: &Self) -> bool {
+        self.kind.name == other.kind.name && self.joint == other.joint
+    }
+
     /// The same effect with other values of the parameters that were given.
     pub fn with(&self, values: &[f64]) -> Self {
         let values = self.values.iter().zip(values).map(|((name, _), v)| (*name, *v)).collect();

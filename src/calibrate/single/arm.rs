@@ -164,6 +164,7 @@ fn report(
         depends_on: None,
         params: setting.values().map(param).collect(),
         evidence: evidence.to_owned(),
+        as_good: Vec::new(),
         equation: setting.kind.equation,
     }
 }

@@ -43,6 +43,7 @@ pub(super) fn found(
             depends_on: None,
             params: params.collect(),
             evidence,
+            as_good: Vec::new(),
             equation: setting.kind.equation,
         }
     });
