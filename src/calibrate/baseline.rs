@@ -11,6 +11,7 @@ use crate::mechanism::Mechanism;
 use crate::scenario::Problem;
 use nalgebra::DVector;
 use rayon::prelude::*;
+use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
 /// What simulations of a model say of its own residuals: their mean, which is the lens's fault, and
@@ -94,7 +95,8 @@ impl Case {
             let seen = still.get(segment.run).map(|logs| {
                 let mut swing = difference(&bias, &look(&logs[0]));
                 for (channel, swing) in swing.iter_mut().enumerate() {
-                    let share = if rattles { coherence(&clean, channel, swing) } else { SWING };
+                    let share =
+                        if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { SWING };
                     swing.iter_mut().for_each(|value| *value *= share);
                 }
                 swing
@@ -192,7 +194,8 @@ fn without(mean: &[Vec<f64>], own: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
 }
 
 /// Share of a swing, mean of replicas less a machine at rest, that is no rattle: what replicas differ by
-/// would be as large in both.
+/// would be as large in both. Its phase is anybody's guess after some seconds, and two swings of one size
+/// and any phase differ by √2 of it.
 fn coherence(replicas: &[Vec<Vec<f64>>], channel: usize, swing: &[f64]) -> f64 {
     let count = replicas.len() as f64;
     let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
