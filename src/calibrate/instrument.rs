@@ -30,8 +30,8 @@ pub fn unpulled(target: &Target, fit: Fit) -> Fit {
     let free = fit::free(&fit.effects);
     let mut best = fit;
     for _ in 0..STEPS {
-        let Some(jacobian) = expected(target, &best, &free) else { break };
-        let step = step(&jacobian, &best.white);
+        let Some(Expected { jacobian, shared }) = expected(target, &best, &free) else { break };
+        let step = step(&jacobian, &(jacobian.transpose() * &best.white + shared));
         let values = fit::values(&best.effects);
         let bounded = values.iter().zip(step.iter()).zip(&free);
         let moved: Vec<f64> = bounded
@@ -63,29 +63,47 @@ pub fn changed(target: &Target, from: &[Setting], to: &[Setting]) -> Option<DVec
     Some(target.look(from)?.white + change / replicas as f64)
 }
 
-/// Mean of the replicas' derivatives of the residual by each value.
-fn expected(target: &Target, fit: &Fit, free: &[Free]) -> Option<DMatrix<f64>> {
+/// What replicas say of a model's derivatives.
+struct Expected {
+    /// Mean of the replicas' derivatives of the residual by each value.
+    jacobian: DMatrix<f64>,
+    /// The bias in `r` is the mean of the same replicas, so `J̄ᵀ r` has a share of the covariance that
+    /// pulls least squares, of the other sign: this makes good for it, as if each replica's derivatives
+    /// were held against the bias of the others.
+    shared: DVector<f64>,
+}
+
+fn expected(target: &Target, fit: &Fit, free: &[Free]) -> Option<Expected> {
     let values = fit::values(&fit.effects);
-    let replicas = target.baseline.replicas();
+    let count = target.baseline.replicas();
     let of = |replica: usize| {
         let look = |values: &[f64]| {
             let effects = fit::with_values(&fit.effects, values);
             target.case.white_of(target.baseline, &effects, target.on, Some(replica)).ok()
         };
-        jacobian(&look, free, &values, &look(&values)?)
+        let own = look(&values)?;
+        Some((jacobian(&look, free, &values, &own)?, own))
     };
-    let all = (0..replicas).into_par_iter().map(of).collect::<Option<Vec<_>>>()?;
-    let mut all = all.into_iter();
-    let first = all.next()?;
-    Some(all.fold(first, |sum, next| sum + next) / replicas as f64)
+    let all = (0..count).into_par_iter().map(of).collect::<Option<Vec<_>>>()?;
+    let share = 1.0 / count as f64;
+    let (rows, columns) = all.first()?.0.shape();
+    let mut jacobian = DMatrix::zeros(rows, columns);
+    let mut mean = DVector::zeros(rows);
+    for (own, white) in &all {
+        jacobian += own * share;
+        mean += white * share;
+    }
+    let together = all.iter().map(|(own, white)| own.transpose() * (white - &mean));
+    let shared = together.sum::<DVector<f64>>() * (share / (count as f64 - 1.0));
+    Some(Expected { jacobian, shared })
 }
 
-/// The step of Gauss and Newton.
-fn step(jacobian: &DMatrix<f64>, white: &DVector<f64>) -> DVector<f64> {
+/// The step of Gauss and Newton for this gradient.
+fn step(jacobian: &DMatrix<f64>, gradient: &DVector<f64>) -> DVector<f64> {
     let mut normal = jacobian.transpose() * jacobian;
     for i in 0..normal.nrows() {
         normal[(i, i)] *= 1.0 + RIDGE;
     }
-    let solved = normal.cholesky().map(|factor| -factor.solve(&(jacobian.transpose() * white)));
+    let solved = normal.cholesky().map(|factor| -factor.solve(gradient));
     solved.unwrap_or_else(|| DVector::zeros(jacobian.ncols()))
 }
