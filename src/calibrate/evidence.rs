@@ -47,16 +47,13 @@ pub fn evidence(outcome: &Outcome, effect: &Setting) -> String {
 /// Effects that explain these recordings as well as one that was found, but for chance; none where another
 /// was found after it, beside which they did worse.
 pub fn as_good<'a>(outcome: &'a Outcome, effect: &Setting) -> Vec<&'a Setting> {
-    let Some((round, own)) = added(outcome, effect) else { return Vec::new() };
-    let later = outcome.rounds.iter().rev().take_while(|later| !std::ptr::eq(*later, round));
-    if outcome.verdict != Verdict::Explained || later.into_iter().any(|r| r.added.is_some()) {
-        return Vec::new();
-    }
+    let last = outcome.rounds.iter().rev().find(|round| round.added.is_some());
+    let own = last.filter(|round| round.added.as_ref().is_some_and(|added| added.is(effect)));
     let mut twins: Vec<&Setting> = Vec::new();
-    for scored in round.ranking.iter().filter(|scored| scored.simulated) {
-        let known = scored.effect.is(effect) || twins.iter().any(|t| t.is(&scored.effect));
-        if !known && scored.gain > own.gain - outcome.chance {
-            twins.push(&scored.effect);
+    for twin in own.iter().flat_map(|round| &round.as_good) {
+        let known = twin.is(effect) || twins.iter().any(|other| other.is(twin));
+        if !known && outcome.verdict == Verdict::Explained {
+            twins.push(twin);
         }
     }
     twins

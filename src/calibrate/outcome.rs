@@ -4,7 +4,7 @@ use super::errors::{self, ChannelError};
 use super::fit::{self, Fit};
 use super::left::{Left, is_noise, left};
 use super::model::{Case, Run, SearchError, Segment};
-use super::search::{self, Found, Round, Way, search};
+use super::search::{Found, Round, Way, search};
 use super::settle::{Question, Settled};
 use super::unnamed::{Described, describe};
 use crate::effects::{Scan, Setting, UNNAMED};
@@ -65,8 +65,6 @@ pub struct Outcome {
     pub declared: Vec<Log>,
     /// Simulations it took.
     pub simulations: usize,
-    /// By how much gains of equally good models differ by chance.
-    pub chance: f64,
 }
 
 /// Calibrates: fits on the first run, judges on the others; with one run alone, fits on its first half
@@ -125,7 +123,6 @@ pub fn calibrate(
         predictions: predicted.iter().map(|logs| errors::ensemble(logs)).collect(),
         declared: declared.iter().map(|logs| errors::ensemble(logs)).collect(),
         simulations,
-        chance: CHANCE[usize::from(case.chaotic)],
     })
 }
 
@@ -172,9 +169,6 @@ fn remaining(
     // The declared model is always among them.
     best.ok_or_else(|| case.rig.problem("effect", "cannot be described", "other data").into())
 }
-
-/// By how much gains of equally good models differ by chance, with loaded joints and with joints that rattle.
-const CHANCE: [f64; 2] = [10.0, search::CHANCE];
 
 /// Models with certain effects that are held against each other, each with a map.
 const BASES: usize = 3;

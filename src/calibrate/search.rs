@@ -10,12 +10,16 @@ use super::settle::{GAIN_PER_VALUE, Question, Settled, refined, settle, simplifi
 use crate::effects::{SELDOM, Setting};
 use std::sync::atomic::AtomicUsize;
 
+/// By how much misfits of equally good models differ by chance, with loaded joints and with joints that
+/// rattle: there bias and noise come from six replicas, and settling the same model again changes its
+/// misfit by some 300 (measured on worn joints); twice that.
+const CHANCE: [f64; 2] = [10.0, 600.0];
+
 /// Drop of Σ of squares on data not used for the fit that an effect has to bring, with loaded joints and
 /// with joints that rattle, and how much more for each of its values. Twice the logarithm of the number
-/// of candidates, some 150 with their frequencies, is 10; where joints rattle, bias and noise come from
-/// a few replicas, and two sets of them differ by some tens. An effect three times as large as what
-/// hides it brings a thousand and more.
-const GAIN: [f64; 2] = [40.0, 100.0];
+/// of candidates, some 150 with their frequencies, is 10. An effect three times as large as what hides
+/// it brings a thousand and more.
+const GAIN: [f64; 2] = [40.0, 200.0];
 
 /// Gain through the lens from which a candidate is worth simulating, with loaded joints and with joints
 /// that rattle: there a lens shows little, in units of a noise that contains what is missing.
@@ -44,9 +48,9 @@ const EFFECTS: usize = 3;
 /// remains: what passes for an effect without being it rarely removes as much.
 const CERTAIN: f64 = 0.9;
 
-/// By how much misfits of equally good models differ by chance where joints rattle, as two sets of six
-/// replicas do (some 90, measured), twice; and what a seldom effect has to bring beyond a commoner one.
-pub const CHANCE: f64 = 200.0;
+/// Drop of Σ of squares through one and the same lens that tells two effects apart; and what a seldom effect
+/// has to bring beyond a commoner one.
+const APART: f64 = 10.0;
 const SELDOM_PRICE: f64 = 20.0;
 
 /// The least such share of an effect that is worth adding: of up to [`EFFECTS`] effects, one removes a
@@ -60,6 +64,15 @@ pub struct Round {
     pub ranking: Vec<Scored>,
     /// What was added, if anything was worth it.
     pub added: Option<Setting>,
+    /// What could have been added as well.
+    pub as_good: Vec<Setting>,
+}
+
+impl Round {
+    /// A round in which nothing was worth adding.
+    fn without_gain(ranking: Vec<Scored>) -> Self {
+        Self { ranking, added: None, as_good: Vec::new() }
+    }
 }
 
 /// A model and how it was come by.
@@ -83,6 +96,11 @@ impl Way {
     fn price(&self) -> f64 {
         let values = self.model.fit.effects.iter().map(|effect| effect.values().count());
         GAIN_PER_VALUE * values.sum::<usize>() as f64
+    }
+
+    /// What was added last.
+    fn added(&self) -> Option<&Setting> {
+        self.rounds.last()?.added.as_ref()
     }
 
     /// Its effects, whatever their order and values.
@@ -131,7 +149,7 @@ pub fn search(
         // What is noise already is not explained any better, only looked through for the record.
         if is_noise(&left(case, question, &best.model)) {
             let ranking = screen(case, question, &best.model).into_iter().map(|(scored, _)| scored);
-            best.rounds.push(Round { ranking: ranking.collect(), added: None });
+            best.rounds.push(Round::without_gain(ranking.collect()));
             break;
         }
         let mut next: Vec<Way> = Vec::new();
@@ -145,9 +163,7 @@ pub fn search(
             searched.push(round);
         }
         next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
-        if let Some(first) = nearest(case, question, &next) {
-            next[..=first].rotate_right(1);
-        }
+        told_apart(case, question, &mut next);
         let won = next.first().is_some_and(|first| first.cost() < best.cost() - threshold);
         if !won {
             best.rounds.extend(searched.into_iter().next());
@@ -189,25 +205,38 @@ pub fn search(
     Ok(Found { best, declared, certain, simulations })
 }
 
-/// Which of the best models, whose misfits differ by no more than chance, does best through the lens of
-/// the very best: there the data's rattle and the replicas' are the same for all.
-fn nearest(case: &Case, question: &Question, ways: &[Way]) -> Option<usize> {
-    let best = ways.first().filter(|best| best.model.baseline.rattles)?;
+/// Puts first which of the best models, whose misfits differ by no more than chance, is the best by a
+/// better measure, and tells it which are as good. Where joints rattle that is the lens of the very best:
+/// the data's rattle and the replicas' are the same for all of them there.
+fn told_apart(case: &Case, question: &Question, ways: &mut [Way]) {
+    let Some(best) = ways.first() else { return };
     let baseline = &best.model.baseline;
     let target = Target { case, baseline, on: question.hold, fixed: &[], blind: None };
     let left = |way: &Way| {
+        if !baseline.rattles {
+            return Some(way.cost());
+        }
         let effects = &way.model.fit.effects;
         let white = changed(&target, &best.model.fit.effects, effects)?;
-        let seldom = |effect: &&Setting| SELDOM.iter().any(|kind| kind.name == effect.kind.name);
-        Some(
-            white.norm_squared()
-                + way.price()
-                + SELDOM_PRICE * effects.iter().filter(seldom).count() as f64,
-        )
+        Some(white.norm_squared() + way.price())
     };
-    let near = ways.iter().take_while(|way| way.cost() < best.cost() + CHANCE);
-    let scored = near.enumerate().filter_map(|(i, way)| Some((i, left(way)?)));
-    scored.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
+    let reach = best.cost() + CHANCE[usize::from(baseline.rattles)];
+    let near = ways.iter().take_while(|way| way.cost() < reach).enumerate();
+    let near: Vec<(usize, f64)> = near.filter_map(|(i, way)| Some((i, left(way)?))).collect();
+    let seldom = |way: &Way| {
+        let known = |effect: &&Setting| SELDOM.iter().any(|kind| kind.name == effect.kind.name);
+        SELDOM_PRICE * way.model.fit.effects.iter().filter(known).count() as f64
+    };
+    let cost = |(i, left): &(usize, f64)| left + seldom(&ways[*i]);
+    let Some(&(first, least)) = near.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
+        return;
+    };
+    let others = near.iter().filter(|(i, left)| *i != first && left - least < APART);
+    let as_good: Vec<Setting> = others.filter_map(|(i, _)| ways[*i].added().cloned()).collect();
+    if let Some(round) = ways[first].rounds.last_mut() {
+        round.as_good = as_good;
+    }
+    ways[..=first].rotate_right(1);
 }
 
 /// The models that one more effect makes of one, its round, and the simulations it took. The first way
@@ -257,12 +286,12 @@ fn beside(
         let order = (b.simulated, b.gain).partial_cmp(&(a.simulated, a.gain));
         order.unwrap_or(std::cmp::Ordering::Equal)
     });
-    let round = Round { ranking, added: None };
+    let round = Round::without_gain(ranking);
     let worth = settled.into_iter().filter(|(scored, _)| scored.share > LEAST);
     let ways = worth.map(|(scored, model)| {
         let certain = way.certain && scored.share > CERTAIN;
         let added = Some(scored.effect);
-        let own = Round { added, ranking: round.ranking.clone() };
+        let own = Round { added, ..round.clone() };
         let rounds = way.rounds.iter().cloned().chain([own]).collect();
         Way { model, rounds, certain }
     });
