@@ -61,11 +61,13 @@ impl Case {
     ) -> Result<Baseline, SearchError> {
         let starts = like.map(|like| like.starts.as_slice());
         let Ensemble { starts, logs, rattles } = self.ensemble(effects, self.replicas, starts)?;
-        // The swing of a kicked start is not that of a release.
+        // The swing of a kicked start is not that of a release, and of two machines that rattle the one
+        // may swing where the other flies about.
         let kicked = |starts: &[Start]| -> Vec<bool> {
             starts.iter().map(|start| start.kicks.is_some()).collect()
         };
-        let like = like.filter(|like| kicked(&like.starts) == kicked(&starts));
+        let alike = |like: &&Baseline| kicked(&like.starts) == kicked(&starts);
+        let like = like.filter(|like| !rattles && !like.rattles).filter(alike);
         let still = if like.is_some() {
             Vec::new()
         } else {
