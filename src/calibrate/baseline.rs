@@ -33,8 +33,8 @@ struct Part {
     segment: Segment,
     bias: Vec<Vec<f64>>,
     noise: Noise,
-    /// What of the residual is the platform's swing, where joints stay loaded.
-    swing: Option<Vec<Vec<f64>>>,
+    /// What the noise has more of, as a logarithm of its determinant, for the recorded swing being lost.
+    lost: f64,
 }
 
 /// Draws of sensor noise from which a covariance is taken.
@@ -48,7 +48,7 @@ impl Case {
     /// The baseline of a model with these effects, from simulations of it.
     ///
     /// Where joints stay loaded the platform swings in their play, and a lens's fault is to see that
-    /// swing: what the same machine does without a swing tells where. Start and swing of a model that is
+    /// swing: what the same machine does without a swing tells where. The starts of a model that is
     /// `like` this one save time.
     ///
     /// # Errors
@@ -61,19 +61,8 @@ impl Case {
     ) -> Result<Baseline, SearchError> {
         let starts = like.map(|like| like.starts.as_slice());
         let Ensemble { starts, logs, rattles } = self.ensemble(effects, self.replicas, starts)?;
-        // The swing of a kicked start is not that of a release, and of two machines that rattle the one
-        // may swing where the other flies about.
-        let kicked = |starts: &[Start]| -> Vec<bool> {
-            starts.iter().map(|start| start.kicks.is_some()).collect()
-        };
-        let alike = |like: &&Baseline| kicked(&like.starts) == kicked(&starts);
-        let like = like.filter(|like| !rattles && !like.rattles).filter(alike);
-        let still = if like.is_some() {
-            Vec::new()
-        } else {
-            let still: Vec<Mechanism> = starts.iter().map(|start| start.still.clone()).collect();
-            self.logs(&still, 0..1)?
-        };
+        let still: Vec<Mechanism> = starts.iter().map(|start| start.still.clone()).collect();
+        let still = self.logs(&still, 0..1)?;
         let view = |log: &Log| Lens::new(log).expect("the channels of the recorded log");
         let views: Vec<Vec<Lens>> =
             logs.iter().map(|logs| logs.par_iter().map(view).collect()).collect();
@@ -94,19 +83,23 @@ impl Case {
                     difference(&look(&log), &without(&bias, &clean[index], clean.len()))
                 })
                 .collect();
-            let seen = still.get(segment.run).map(|logs| {
-                let mut swing = difference(&bias, &look(&logs[0]));
-                for (channel, swing) in swing.iter_mut().enumerate() {
-                    let share =
-                        if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { SWING };
-                    swing.iter_mut().for_each(|value| *value *= share);
-                }
-                swing
-            });
-            let known = || like?.parts.iter().find(|part| part.segment == *segment)?.swing.clone();
-            let swing = seen.or_else(known);
-            let noise = Noise::from_draws(&draws, swing.as_deref());
-            Part { segment: segment.clone(), bias, noise, swing }
+            let mut swing = difference(&bias, &look(&still[segment.run][0]));
+            for (channel, swing) in swing.iter_mut().enumerate() {
+                let share =
+                    if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { SWING };
+                swing.iter_mut().for_each(|value| *value *= share);
+            }
+            let own = Noise::from_draws(&draws, &swing);
+            let (noise, lost) = if starts[segment.run].shown {
+                (own, 0.0)
+            } else {
+                // Two swings of one size and any phase.
+                swing.iter_mut().flatten().for_each(|value| *value *= SQRT_2 / SWING);
+                let larger = Noise::from_draws(&draws, &swing);
+                let lost = larger.swinging() - own.swinging();
+                (larger, lost)
+            };
+            Part { segment: segment.clone(), bias, noise, lost }
         };
         let parts = segments.iter().map(part).collect();
         Ok(Baseline { parts, starts, rattles, views: Arc::new(views) })
@@ -163,6 +156,12 @@ impl Baseline {
     pub fn log_determinant(&self, on: &[Segment]) -> f64 {
         let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
         parts.map(|part| part.noise.log_determinant()).sum()
+    }
+
+    /// What a model pays on segments for having lost the recorded swing: its noise is larger.
+    pub fn lost(&self, on: &[Segment]) -> f64 {
+        let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
+        parts.map(|part| part.lost).sum()
     }
 
     /// Channel (servo, closure, dynamics of each leg) and frequency in Hz of each number of

@@ -169,24 +169,21 @@ pub fn search(
             best.rounds.extend(searched.into_iter().next());
             break;
         }
-        let winner = next.remove(0);
-        tell(&format!("settling {}", names(&winner.model.fit.effects)));
-        let like = Some(&winner.model.baseline);
-        let settles = SETTLES[usize::from(winner.model.baseline.rattles)];
-        let model = settle(case, question, &winner.model.fit.effects, settles, like)?;
-        simulations += model.times * case.simulations();
-        let mut model = simplified(case, question, model);
-        if Way::key(&model.fit.effects) != Way::key(&winner.model.fit.effects) {
-            // What a lens is wrong by depends on all values.
-            model = settle(case, question, &model.fit.effects, settles, like)?;
-            simulations += model.times * case.simulations();
-        }
-        if !model.baseline.rattles {
-            tell(&format!("settling {} point by point", names(&model.fit.effects)));
-            model = refined(case, question, model, &point_by_point)?;
-        }
         let before = best.cost();
-        best = Way { model, ..winner };
+        let winner = next.remove(0);
+        best = finished(case, question, winner, &mut simulations, &point_by_point, tell)?;
+        if !is_noise(&left(case, question, &best.model)) {
+            // A right model may have settled far off, behind a wrong one.
+            for way in next.iter_mut().take(WAYS - 1) {
+                tell(&format!("settling {} point by point", names(&way.model.fit.effects)));
+                way.model = refined(case, question, way.model.clone(), &point_by_point)?;
+            }
+            if let Some(better) = next.iter_mut().min_by(|a, b| a.cost().total_cmp(&b.cost()))
+                && better.cost() < best.cost()
+            {
+                std::mem::swap(better, &mut best);
+            }
+        }
         let drop = before - best.cost();
         ways = vec![best.clone()];
         certain.extend(next.iter().chain([&best]).filter(|way| way.certain).cloned());
@@ -203,6 +200,36 @@ pub fn search(
     };
     simulations += count + point_by_point.into_inner();
     Ok(Found { best, declared, certain, simulations })
+}
+
+/// A way whose values have settled, in its simplest variants.
+fn finished(
+    case: &Case,
+    question: &Question,
+    way: Way,
+    simulations: &mut usize,
+    point_by_point: &AtomicUsize,
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<Way, SearchError> {
+    let like = Some(&way.model.baseline);
+    let settles = SETTLES[usize::from(way.model.baseline.rattles)];
+    let mut settled = |effects: &[Setting]| {
+        tell(&format!("settling {}", names(effects)));
+        let model = settle(case, question, effects, settles, like)?;
+        *simulations += model.times * case.simulations();
+        Ok::<_, SearchError>(model)
+    };
+    let effects = &way.model.fit.effects;
+    let mut model = simplified(case, question, settled(effects)?);
+    if Way::key(&model.fit.effects) != Way::key(effects) {
+        // What a lens is wrong by depends on all values.
+        model = settled(&model.fit.effects)?;
+    }
+    if !model.baseline.rattles {
+        tell(&format!("settling {} point by point", names(&model.fit.effects)));
+        model = refined(case, question, model, point_by_point)?;
+    }
+    Ok(Way { model, ..way })
 }
 
 /// Puts first which of the best models, whose misfits differ by no more than chance, is the best by a

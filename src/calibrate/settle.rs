@@ -15,8 +15,10 @@ pub const GAIN_PER_VALUE: f64 = 2.0;
 /// The change of a value, in its standard deviations, that is no change.
 const SETTLED: f64 = 0.3;
 
-/// Mean square in units of noise beyond which a model lacks more than digits of its values.
-const HOPEFUL: f64 = 2.5;
+/// Mean square in units of noise through the lens beyond which a model lacks more than digits of its
+/// values. A mass and where it sits may settle as far off as 5: what the lens is wrong by changes with
+/// them as much as the residual does; whole simulations find them from there.
+const HOPEFUL: f64 = 8.0;
 
 /// A model that simulations of itself have been held against.
 #[derive(Clone, Debug)]
@@ -30,7 +32,7 @@ pub struct Settled {
     /// −2 log likelihood there, but for a constant: Σ of squares plus, where joints rattle, the logarithm
     /// of the noise's determinant: a model that rattles more is not better for explaining less. Where
     /// joints stay loaded the noise is the sensors' under every model; what their determinants differ by
-    /// is how well sixteen draws catch it.
+    /// is how well sixteen draws catch it, but for a swing that is not the recorded one.
     pub misfit: f64,
     /// How often it was simulated.
     pub times: usize,
@@ -85,8 +87,7 @@ pub fn settle(
         let held = held.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
         let change = change(&effects, &fit);
         effects.clone_from(&fit.effects);
-        let noisiness = if case.chaotic { baseline.log_determinant(question.hold) } else { 0.0 };
-        let misfit = held + noisiness;
+        let misfit = held + noisiness(case, question, &baseline);
         // Where joints rattle values never come to rest: each time the replicas' bias is another.
         let worse = |before: &Settled| baseline.rattles && before.misfit < misfit;
         if !settled.as_ref().is_some_and(worse) {
@@ -125,7 +126,14 @@ pub fn refined(
     let baseline = case.baseline(&fit.effects, &question.segments(), Some(&model.baseline))?;
     let target = Target { case, baseline: &baseline, on: question.hold, fixed: &[], blind: None };
     let held = target.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
-    Ok(Settled { fit, baseline, held, misfit: held, times: model.times + 1 })
+    let misfit = held + noisiness(case, question, &baseline);
+    Ok(Settled { fit, baseline, held, misfit, times: model.times + 1 })
+}
+
+/// What a model pays for being noisy.
+fn noisiness(case: &Case, question: &Question, baseline: &Baseline) -> f64 {
+    let own = if case.chaotic { baseline.log_determinant(question.hold) } else { 0.0 };
+    own + baseline.lost(question.hold)
 }
 
 /// Largest change of a value by a fit, in its standard deviations, each by itself.

@@ -60,6 +60,7 @@ pub struct Noise {
     /// Channels that reach each frequency.
     active: Vec<Vec<usize>>,
     log_determinant: f64,
+    swinging: f64,
 }
 
 /// The Cholesky factor of a covariance; of its diagonal alone, should rounding have made it indefinite.
@@ -78,12 +79,14 @@ const SHARE: f64 = 0.12;
 impl Noise {
     /// From coefficients of pure noise, several draws of it; and of a swing that comes on top, of which no
     /// more is known than its size.
-    pub fn from_draws(draws: &[Vec<Vec<f64>>], swing: Option<&[Vec<f64>]>) -> Self {
+    pub fn from_draws(draws: &[Vec<Vec<f64>>], swing: &[Vec<f64>]) -> Self {
         let channels = draws[0].len();
         let bins = draws[0].iter().map(Vec::len).max().unwrap_or(0);
         let mut factors = Vec::with_capacity(bins);
         let mut all_active = Vec::with_capacity(bins);
-        let mut log_determinant = 0.0;
+        let (mut log_determinant, mut with_swing) = (0.0, 0.0);
+        let logarithm =
+            |factor: &Cholesky<f64, Dyn>| 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
         for k in 0..bins {
             let active: Vec<usize> = (0..channels).filter(|&c| draws[0][c].len() > k).collect();
             let reach = NEIGHBOURS.max((SHARE * k as f64) as usize);
@@ -102,7 +105,7 @@ impl Noise {
                     count += 1.0;
                 }
                 // A swing is sharper than noise.
-                if let Some(swing) = swing.filter(|_| j.abs_diff(k) <= NEIGHBOURS) {
+                if j.abs_diff(k) <= NEIGHBOURS {
                     let vector = at(swing);
                     swinging.ger(1.0, &vector, &vector, 1.0);
                     places += 1.0;
@@ -114,14 +117,14 @@ impl Noise {
                 covariance[(i, i)] = covariance[(i, i)] * (1.0 + 1e-6) + 1e-30;
             }
             let alone = factor(covariance.clone());
-            log_determinant += 2.0 * alone.l_dirty().diagonal().map(f64::ln).sum();
-            factors.push(match swing {
-                None => alone,
-                Some(_) => factor(covariance + swinging / f64::max(places, 1.0)),
-            });
+            log_determinant += logarithm(&alone);
+            let whole = factor(covariance + swinging / f64::max(places, 1.0));
+            with_swing += logarithm(&whole);
+            factors.push(whole);
             all_active.push(active);
         }
-        Self { factors, active: all_active, log_determinant }
+        let swinging = with_swing - log_determinant;
+        Self { factors, active: all_active, log_determinant, swinging }
     }
 
     /// Coefficients in units of the noise: independent, of variance one, if they are noise.
@@ -140,6 +143,11 @@ impl Noise {
     /// noisy, where likelihoods are compared. The swing is known by one draw: its determinant is chance.
     pub fn log_determinant(&self) -> f64 {
         self.log_determinant
+    }
+
+    /// What the swing adds to the logarithm of the determinant.
+    pub fn swinging(&self) -> f64 {
+        self.swinging
     }
 
     /// Channel and frequency bin of each number that [`whiten`](Self::whiten) returns.

@@ -52,6 +52,11 @@ const RIDGE: f64 = 1e-3;
 pub const SHOWN: f64 = 1.1;
 const SLACK: f64 = 0.95;
 
+/// Share of the squares that a machine at rest and a released one leave together up to which kicks
+/// show the recorded swing. A model whose swing has another frequency lost its phase: kicks bring it
+/// nothing, rest leaves the recorded swing, a release two swings.
+const TRACKED: f64 = 0.25;
+
 /// Numbers of kicks of one start.
 pub const KICKS: usize = 3 * PULSES;
 
@@ -67,6 +72,8 @@ pub struct Start {
     pub machine: Mechanism,
     /// The machine at rest, without a swing.
     pub still: Mechanism,
+    /// Whether the machine swings as recorded, rather than with another frequency or phase.
+    pub shown: bool,
     /// What kicks change of what is seen: nearly the same for all models of a machine.
     response: Option<DMatrix<f64>>,
 }
@@ -78,12 +85,12 @@ impl Start {
     /// A run that broke down.
     pub fn let_go(machine: Mechanism, control: StepControl) -> Result<Self, Halt> {
         let still = still(&machine, control)?;
-        Ok(Self { kicks: None, still, machine, response: None })
+        Ok(Self { kicks: None, still, machine, shown: true, response: None })
     }
 
     /// The same with this machine, as it was let go.
     pub fn without_kicks(&self, machine: Mechanism) -> Self {
-        Self { kicks: None, still: self.still.clone(), machine, response: None }
+        Self { kicks: None, still: self.still.clone(), machine, shown: true, response: None }
     }
 }
 
@@ -187,6 +194,19 @@ impl Judge<'_> {
         });
         Ok(DMatrix::from_columns(&columns.collect::<Result<Vec<_>, Halt>>()?))
     }
+
+    /// Better kicks by one step, if they then show the recorded swing.
+    fn first(&self, released: &Start, kicks: Kicks) -> Result<Option<Kicks>, Halt> {
+        let Start { machine, still, .. } = released;
+        let square = |left: &DVector<f64>| left.norm_squared();
+        let limit = TRACKED * (square(&self.look(still)?) + square(&self.look(machine)?));
+        let left = self.look(&kicked(still, &kicks))?;
+        let better = kicks + step(&self.response(still, &kicks, &left)?, &left);
+        let there = self.look(&kicked(still, &better))?;
+        let (kicks, left) =
+            if there.norm() < left.norm() { (better, there) } else { (kicks, left) };
+        Ok((square(&left) < limit).then_some(kicks))
+    }
 }
 
 /// The step of Gauss and Newton.
@@ -196,8 +216,8 @@ fn step(response: &DMatrix<f64>, base: &DVector<f64>) -> Kicks {
     solved.map_or_else(Kicks::zeros, |step| Kicks::from_iterator(step.iter().copied()))
 }
 
-/// The start that a log shows: as let go, if that shows the recorded swing, else kicked; the same log's
-/// start under a model that is `like` this one saves most of the search.
+/// The start that a log shows: as let go, if that shows the recorded swing or no kicks do, else kicked;
+/// the same log's start under a model that is `like` this one saves most of the search.
 ///
 /// # Errors
 /// A run that broke down.
@@ -215,42 +235,34 @@ pub fn as_seen(
     };
     let whole = judge(SEEN);
     // Both at once: one core would wait for the other.
-    let known = || match like {
-        Some(Start { kicks: Some(kicks), .. }) => whole.look(&kicked(&still, kicks)).map(Some),
-        _ => Ok(None),
-    };
+    let like = like.and_then(|like| Some((like.kicks?, like.response.clone()?)));
+    let known = || like.as_ref().map(|(kicks, _)| whole.look(&kicked(&still, kicks))).transpose();
     let (let_go, known) = rayon::join(|| whole.look(&released), known);
     let (let_go, known) = (let_go?, known?);
-    let released = Start { kicks: None, machine: released, still, response: None };
-    if let_go.norm_squared() <= SHOWN * let_go.len() as f64 {
+    let (met, let_go) = (SHOWN * let_go.len() as f64, let_go.norm_squared());
+    let released = Start { kicks: None, machine: released, still, shown: true, response: None };
+    if let_go <= met {
         return Ok(released);
     }
+    let quiet = whole.look(&released.still)?.norm_squared();
+    let shown = |square: f64| square < TRACKED * (quiet + let_go);
+    let released = Start { shown: shown(let_go), ..released };
     let still = &released.still;
-    let (mut kicks, mut response) = match like {
-        Some(Start { kicks: Some(kicks), response, .. }) => (*kicks, response.clone()),
-        _ => (Kicks::zeros(), None),
-    };
-    if response.is_none() {
-        for seen in FIRST {
-            let judge = judge(seen);
-            let base = judge.look(&kicked(still, &kicks))?;
-            let change = step(&judge.response(still, &kicks, &base)?, &base);
-            if judge.look(&kicked(still, &(kicks + change)))?.norm() < base.norm() {
-                kicks += change;
+    let known = like.zip(known).filter(|(_, left)| shown(left.norm_squared()));
+    let (mut kicks, response, mut left) = match known {
+        Some(((kicks, response), left)) => (kicks, response, left),
+        None => {
+            let mut kicks = Kicks::zeros();
+            for judge in FIRST.map(judge) {
+                let Some(found) = judge.first(&released, kicks)? else { return Ok(released) };
+                kicks = found;
             }
+            let left = whole.look(&kicked(still, &kicks))?;
+            (kicks, whole.response(still, &kicks, &left)?, left)
         }
-    }
-    let mut left = match known {
-        Some(left) => left,
-        None => whole.look(&kicked(still, &kicks))?,
     };
     for _ in 0..STEPS {
-        let known = match response.take() {
-            Some(known) => known,
-            None => whole.response(still, &kicks, &left)?,
-        };
-        let change = step(&known, &left);
-        response = Some(known);
+        let change = step(&response, &left);
         let there = whole.look(&kicked(still, &(kicks + change)))?;
         let gain = 1.0 - there.norm_squared() / left.norm_squared();
         if gain > 0.0 {
@@ -260,11 +272,12 @@ pub fn as_seen(
             break;
         }
     }
-    if left.norm_squared() > SLACK * let_go.norm_squared() {
+    if left.norm_squared() > SLACK * let_go || !shown(left.norm_squared()) {
         return Ok(released);
     }
     let machine = kicked(still, &kicks);
-    Ok(Start { kicks: Some(kicks), machine, response, ..released })
+    let (kicks, response) = (Some(kicks), Some(response));
+    Ok(Start { kicks, machine, shown: true, response, ..released })
 }
 
 /// What a log's pose shows of a swing that a simulated one does not, in units of its sensors' noise.
