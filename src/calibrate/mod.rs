@@ -2,6 +2,7 @@
 //! Around it: [`recording`] and [`plausibility`] take files and refuse what cannot be right, [`rattle`]
 //! decides how often to simulate, [`result`] and [`predict`] write folders of results.
 
+pub mod axes;
 pub mod baseline;
 pub mod candidates;
 mod charts;

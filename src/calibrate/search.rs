@@ -191,13 +191,8 @@ pub fn search(
         next.truncate(WAYS - 1);
         ways.append(&mut next);
     }
-    let found = best.model.fit.effects.len();
-    let (kept, count) = needed(case, question, best.model, threshold, tell)?;
-    best.model = if kept.fit.effects.len() < found {
-        refined(case, question, kept, &point_by_point)?
-    } else {
-        kept
-    };
+    let (kept, count) = needed(case, question, best.model, threshold, &point_by_point, tell)?;
+    best.model = kept;
     simulations += count + point_by_point.into_inner();
     Ok(Found { best, declared, certain, simulations })
 }
@@ -331,6 +326,7 @@ fn needed(
     question: &Question,
     model: Settled,
     threshold: f64,
+    point_by_point: &AtomicUsize,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<(Settled, usize), SearchError> {
     let mut best = model;
@@ -342,6 +338,7 @@ fn needed(
         tell(&format!("doing without {}", name(&dropped)));
         let without = settle(case, question, &fewer, 2, Some(&best.baseline))?;
         simulations += without.times * case.simulations();
+        let without = refined(case, question, without, point_by_point)?;
         let values = dropped.values().count() as f64;
         if without.misfit - best.misfit - GAIN_PER_VALUE * values < threshold {
             best = without;

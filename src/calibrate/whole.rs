@@ -5,8 +5,9 @@
 //! a recording: one leg may be nearly unloaded for an instant, and when its journal crosses over hangs on
 //! the third digit of what loads it. The start is fitted with the values ([`super::start`]).
 
+use super::axes::Axes;
 use super::fit::{Fit, free, values, with_values};
-use super::least_squares::{Best, Free, jacobian, least_squares};
+use super::least_squares::{Free, jacobian, least_squares};
 use super::model::{Case, Segment};
 use super::rattle::noise;
 use super::replica;
@@ -40,9 +41,11 @@ struct Stage {
 /// First whatever the swing: its phase has many wrong answers for values that are off. Then it counts
 /// more and more: it pins values that are nearly right.
 const ROUGH: [Stage; 1] = [Stage { band: MOTION, share: 2.0, steps: 4, enough: 1.0 }];
-const CLOSE: [Stage; 3] = [
+/// The last one twice, for better axes.
+const CLOSE: [Stage; 4] = [
     Stage { band: BAND, share: 0.3, steps: 3, enough: 1.0 },
     Stage { band: BAND, share: 0.05, steps: 3, enough: 1.0 },
+    Stage { band: BAND, share: 0.0, steps: 6, enough: 0.1 },
     Stage { band: BAND, share: 0.0, steps: 6, enough: 0.1 },
 ];
 
@@ -112,15 +115,15 @@ fn from(
 ) -> Option<Fit> {
     let count = values(effects).len();
     let mut free: Vec<Free> = free(effects);
-    free.iter_mut().for_each(|free| free.step *= STEP);
     let mut now = values(effects);
     for kicks in on.iter().filter_map(|segment| starts[segment.run].kicks) {
         now.extend(kicks.iter());
-        free.extend([Free { step: STEP, bounds: [f64::NEG_INFINITY, f64::INFINITY] }; KICKS]);
+        free.extend([Free { step: 1.0, bounds: [f64::NEG_INFINITY, f64::INFINITY] }; KICKS]);
     }
+    let mut axes = Axes::along(&free, STEP / SIGMAS);
     let swings = on.iter().map(|segment| swing(case, segment, &starts[segment.run]));
     let swings: Vec<Spectra> = swings.collect::<Option<_>>()?;
-    let mut fit: Option<Best> = None;
+    let mut fit = None;
     for Stage { band, share, steps, enough } in stages {
         let look = |values: &[f64]| {
             let (own, mut rest) = values.split_at(count);
@@ -144,33 +147,33 @@ fn from(
             }
             Some(DVector::from_vec(white))
         };
-        let derivatives = match fit.and_then(|fit| fit.jacobian) {
-            Some(derivatives) => derivatives,
-            None => jacobian(&look, &free, &now, &look(&now)?)?,
-        };
-        for (free, column) in free.iter_mut().zip(derivatives.column_iter()) {
-            free.step = SIGMAS / column.norm().max(SIGMAS / free.step);
+        let along = |steps: &[f64]| look(&axes.values(&free, &now, steps));
+        let sigmas = vec![Free { step: SIGMAS, bounds: [-1e9, 1e9] }; now.len()];
+        if fit.is_none() {
+            let zero = vec![0.0; now.len()];
+            axes = axes.turned(&free, &jacobian(&along, &sigmas, &zero, &along(&zero)?)?);
         }
-        let best = least_squares(&look, &free, now, *steps, *enough)?;
+        let along = |steps: &[f64]| look(&axes.values(&free, &now, steps));
+        let best = least_squares(&along, &sigmas, vec![0.0; now.len()], *steps, *enough)?;
         if best.residual.norm_squared() > COMPLETE * best.residual.len() as f64 {
             return None;
         }
-        now = best.values.clone();
-        fit = Some(best);
+        now = axes.values(&free, &now, &best.values);
+        let derivatives = best.jacobian.as_ref()?;
+        let own = axes.derivatives(derivatives)?;
+        axes = axes.turned(&free, derivatives);
+        fit = Some((best.residual, own));
     }
-    let best = fit?;
-    let chi2 = best.residual.norm_squared();
+    let (residual, jacobian) = fit?;
+    let chi2 = residual.norm_squared();
     // What kicks could do as well tells nothing of values.
-    let jacobian = best.jacobian.map(|jacobian| {
-        let own = jacobian.columns(0, count).into_owned();
-        if jacobian.ncols() == count {
-            return own;
-        }
+    let mut own = jacobian.columns(0, count).into_owned();
+    if jacobian.ncols() > count {
         let others = jacobian.columns(count, jacobian.ncols() - count).into_owned().qr().q();
-        &own - &others * (others.transpose() * &own)
-    });
-    let effects = with_values(effects, &best.values[..count]);
-    Some(Fit { effects, chi2, white: best.residual, jacobian })
+        own -= &others * (others.transpose() * &own);
+    }
+    let effects = with_values(effects, &now[..count]);
+    Some(Fit { effects, chi2, white: residual, jacobian: Some(own) })
 }
 
 /// Recording less simulation on a segment in units of noise; none where the model cannot be simulated.
