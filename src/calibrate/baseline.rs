@@ -33,6 +33,8 @@ struct Part {
     segment: Segment,
     bias: Vec<Vec<f64>>,
     noise: Noise,
+    /// What of the residual is the platform's swing, by the share that may be missed.
+    swing: Vec<Vec<f64>>,
     /// What the noise has more of, as a logarithm of its determinant, for the recorded swing being lost.
     lost: f64,
 }
@@ -49,7 +51,7 @@ impl Case {
     ///
     /// Where joints stay loaded the platform swings in their play, and a lens's fault is to see that
     /// swing: what the same machine does without a swing tells where. The starts of a model that is
-    /// `like` this one save time.
+    /// `like` this one save time; where this one does not swing as recorded, that one's swing is noise.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -66,6 +68,10 @@ impl Case {
         let view = |log: &Log| Lens::new(log).expect("the channels of the recorded log");
         let views: Vec<Vec<Lens>> =
             logs.iter().map(|logs| logs.par_iter().map(view).collect()).collect();
+        let known = |segment: &Segment| {
+            let parts = &like.filter(|like| !like.rattles)?.parts;
+            Some(parts.iter().find(|part| part.segment == *segment)?.swing.clone())
+        };
         let part = |segment: &Segment| {
             let machine = &starts[segment.run].machine;
             let seen = |lens: &Lens| self.coefficients(lens, machine, segment);
@@ -89,17 +95,20 @@ impl Case {
                     if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { SWING };
                 swing.iter_mut().for_each(|value| *value *= share);
             }
-            let own = Noise::from_draws(&draws, &swing);
-            let (noise, lost) = if starts[segment.run].shown {
-                (own, 0.0)
-            } else {
-                // Two swings of one size and any phase.
-                swing.iter_mut().flatten().for_each(|value| *value *= SQRT_2 / SWING);
-                let larger = Noise::from_draws(&draws, &swing);
-                let lost = larger.swinging() - own.swinging();
-                (larger, lost)
-            };
-            Part { segment: segment.clone(), bias, noise, lost }
+            if rattles || starts[segment.run].shown {
+                let noise = Noise::from_draws(&draws, &swing);
+                return Part { segment: segment.clone(), bias, noise, swing, lost: 0.0 };
+            }
+            // Two swings of one size and any phase; the size that models beside it have, for they are
+            // compared.
+            let swing = known(segment).unwrap_or(swing);
+            let larger: Vec<Vec<f64>> = swing
+                .iter()
+                .map(|channel| channel.iter().map(|value| value * SQRT_2 / SWING).collect())
+                .collect();
+            let noise = Noise::from_draws(&draws, &larger);
+            let lost = noise.swinging() - Noise::from_draws(&draws, &swing).swinging();
+            Part { segment: segment.clone(), bias, noise, swing, lost }
         };
         let parts = segments.iter().map(part).collect();
         Ok(Baseline { parts, starts, rattles, views: Arc::new(views) })

@@ -169,8 +169,8 @@ pub fn search(
             best.rounds.extend(searched.into_iter().next());
             break;
         }
-        let before = best.cost();
         let winner = next.remove(0);
+        let near = best.cost() - WAY_SHARE * (best.cost() - winner.cost());
         best = finished(case, question, winner, &mut simulations, &point_by_point, tell)?;
         if !is_noise(&left(case, question, &best.model)) {
             // A right model may have settled far off, behind a wrong one.
@@ -184,10 +184,9 @@ pub fn search(
                 std::mem::swap(better, &mut best);
             }
         }
-        let drop = before - best.cost();
         ways = vec![best.clone()];
         certain.extend(next.iter().chain([&best]).filter(|way| way.certain).cloned());
-        next.retain(|way| before - way.cost() > WAY_SHARE * drop);
+        next.retain(|way| way.cost() < near);
         next.truncate(WAYS - 1);
         ways.append(&mut next);
     }

@@ -4,7 +4,7 @@ use super::baseline::Baseline;
 use super::fit::{self, Fit, Target};
 use super::instrument::unpulled;
 use super::model::{Case, SearchError, Segment};
-use super::whole::whole;
+use super::whole::{close, rough};
 use crate::effects::Setting;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -114,13 +114,18 @@ pub fn refined(
     model: Settled,
     simulated: &AtomicUsize,
 ) -> Result<Settled, SearchError> {
-    if model.baseline.rattles
-        || model.held > HOPEFUL * model.baseline.places(case, question.hold).len() as f64
-    {
+    let hopeless = HOPEFUL * model.baseline.places(case, question.hold).len() as f64;
+    if model.baseline.rattles || model.fit.effects.is_empty() || model.held > hopeless {
         return Ok(model);
     }
     let starts = &model.baseline.starts;
-    let fit = whole(case, question.on, &model.fit.effects, starts, simulated);
+    let effects = rough(case, question.on, &model.fit.effects, starts, simulated);
+    let Some(effects) = effects else { return Ok(model) };
+    // What the motion does not show, the lens does: how much play there is, from which the swing follows.
+    simulated.fetch_add(case.simulations(), Ordering::Relaxed);
+    let again = settle(case, question, &effects, 1, None)?;
+    let starts = &again.baseline.starts;
+    let fit = close(case, question.on, &again.fit.effects, starts, simulated);
     let Some(fit) = fit else { return Ok(model) };
     simulated.fetch_add(case.simulations(), Ordering::Relaxed);
     let baseline = case.baseline(&fit.effects, &question.segments(), Some(&model.baseline))?;

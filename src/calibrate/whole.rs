@@ -43,7 +43,7 @@ struct Stage {
 const ROUGH: [Stage; 1] = [Stage { band: MOTION, share: 2.0, steps: 4, enough: 1.0 }];
 /// The last one twice, for better axes.
 const CLOSE: [Stage; 4] = [
-    Stage { band: BAND, share: 0.3, steps: 3, enough: 1.0 },
+    Stage { band: BAND, share: 0.3, steps: 6, enough: 1.0 },
     Stage { band: BAND, share: 0.05, steps: 3, enough: 1.0 },
     Stage { band: BAND, share: 0.0, steps: 6, enough: 0.1 },
     Stage { band: BAND, share: 0.0, steps: 6, enough: 0.1 },
@@ -67,37 +67,48 @@ const NEIGHBOURS: usize = 8;
 /// Residuals by channel and frequency.
 type Spectra = Vec<Vec<f64>>;
 
-/// The values of a model near `effects`, whose runs start like `starts`, that meet segments point by
-/// point, with residual and derivatives from which intervals follow; none where joints rattle, or where
-/// no values make the model nearly complete.
+/// The values of a model near `effects` whose motion meets segments, whatever its swing; none where no
+/// values make the model nearly complete. `simulated` counts simulations.
+pub fn rough(
+    case: &Case,
+    on: &[Segment],
+    effects: &[Setting],
+    starts: &[Start],
+    simulated: &AtomicUsize,
+) -> Option<Vec<Setting>> {
+    let released = released(case, effects, starts)?;
+    Some(from(case, on, effects, &released, &ROUGH, simulated)?.effects)
+}
+
+/// The values of a model very near `effects`, whose runs start like `starts`, that meet segments point by
+/// point, with residual and derivatives from which intervals follow; none where no values make the model
+/// complete.
 ///
 /// With values that are right to a hundredth a release may swing unlike the recording, with right ones
 /// like it: kicks are taken only where the release does not do. `simulated` counts simulations.
-pub fn whole(
+pub fn close(
     case: &Case,
     on: &[Segment],
     effects: &[Setting],
     starts: &[Start],
     simulated: &AtomicUsize,
 ) -> Option<Fit> {
-    if values(effects).is_empty() {
-        return None;
-    }
-    let let_go: Vec<Start> = starts
-        .iter()
-        .zip(case.released(effects).ok()?)
-        .map(|(start, machine)| start.without_kicks(machine))
-        .collect();
-    let rough = from(case, on, effects, &let_go, &ROUGH, simulated)?;
-    let close = |starts: &[Start]| from(case, on, &rough.effects, starts, &CLOSE, simulated);
-    let mut best = close(&let_go);
+    let from = |starts: &[Start]| from(case, on, effects, starts, &CLOSE, simulated);
+    let mut best = from(&released(case, effects, starts)?);
     if mean_square(best.as_ref()) > SHOWN && starts.iter().any(|start| start.kicks.is_some()) {
-        let kicked = close(starts);
+        let kicked = from(starts);
         if mean_square(kicked.as_ref()) < mean_square(best.as_ref()) {
             best = kicked;
         }
     }
     best
+}
+
+/// The same starts with machines that are let go.
+fn released(case: &Case, effects: &[Setting], starts: &[Start]) -> Option<Vec<Start>> {
+    let machines = case.released(effects).ok()?;
+    let pairs = starts.iter().zip(machines);
+    Some(pairs.map(|(start, machine)| start.without_kicks(machine)).collect())
 }
 
 fn mean_square(fit: Option<&Fit>) -> f64 {
