@@ -151,7 +151,26 @@ impl Case {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn simulate(&self, effects: &[Setting]) -> Result<Vec<Vec<Log>>, SearchError> {
-        Ok(self.ensemble(effects, 2 * self.replicas, None)?.logs)
+        let Ensemble { starts, mut logs, rattles } =
+            self.ensemble(effects, 2 * self.replicas, None)?;
+        if rattles {
+            return Ok(logs);
+        }
+        // What is missing may rattle a machine that stays loaded as declared, if only a little: two
+        // replicas that soon are of one phase no more are as far from each other as from the recording.
+        let machines: Vec<Mechanism> = starts.into_iter().map(|start| start.machine).collect();
+        let second = self.logs(&machines, 1..2)?;
+        let seen = logs
+            .iter()
+            .zip(&second)
+            .map(|(first, second)| rattle::difference(&first[0], &second[0], &self.sensors).1);
+        if seen.fold(0.0, f64::max) > rattle::SEEN {
+            let others = self.logs(&machines, 2..2 * rattle::REPLICAS as u64)?;
+            for ((logs, second), others) in logs.iter_mut().zip(second).zip(others) {
+                logs.extend(second.into_iter().chain(others));
+            }
+        }
+        Ok(logs)
     }
 
     /// Noiseless logs of a model with these effects, so many of each run where its joints rattle. What the

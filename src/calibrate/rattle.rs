@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// Simulations that a floor and a bias are taken from where replicas differ: the mean of six misses
 /// the true one by 40 % of a replica's own scatter, and time grows with their number.
-const REPLICAS: usize = 6;
+pub const REPLICAS: usize = 6;
 
 /// Root mean square of the difference of two replicas, as a share of the sensor's noise, above which
 /// they differ by more than sensors see: a tenth of the noise's variance.

@@ -17,16 +17,20 @@ use crate::effects::Setting;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use nalgebra::DVector;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Highest frequencies in Hz that count: all that a platform does, and its motion alone. Where a leg is
 /// nearly unloaded its journal crosses over, which is a matter of milliseconds: a model whose values
 /// are off does so at another time.
 const BAND: f64 = 100.0;
+const ALL: f64 = f64::INFINITY;
 const MOTION: f64 = 15.0;
 
 /// A stage of a fit.
 struct Stage {
+    /// Time in s from the start of a segment in which the swing counts; thereafter only the motion does.
+    seen: f64,
     /// Highest frequency in Hz that counts.
     band: f64,
     /// Share of the swing by which it may be missed.
@@ -38,21 +42,22 @@ struct Stage {
     enough: f64,
 }
 
-/// First whatever the swing: its phase has many wrong answers for values that are off. Then it counts
-/// more and more: it pins values that are nearly right.
-const ROUGH: [Stage; 1] = [Stage { band: MOTION, share: 2.0, steps: 4, enough: 1.0 }];
-/// The last one twice, for better axes.
-const CLOSE: [Stage; 4] = [
-    Stage { band: BAND, share: 0.3, steps: 6, enough: 1.0 },
-    Stage { band: BAND, share: 0.05, steps: 3, enough: 1.0 },
-    Stage { band: BAND, share: 0.0, steps: 6, enough: 0.1 },
-    Stage { band: BAND, share: 0.0, steps: 6, enough: 0.1 },
+/// First whatever the swing: its phase has many wrong answers for values that are off.
+const ROUGH: [Stage; 1] = [Stage { seen: ALL, band: MOTION, share: 2.0, steps: 4, enough: 30.0 }];
+/// Then for so short a time that a frequency which is off has not lost a period, and longer and longer: the
+/// swing's phase pins values that are nearly right. The last one twice, for better axes.
+const CLOSE: [Stage; 5] = [
+    Stage { seen: 0.3, band: BAND, share: 0.1, steps: 4, enough: 1.0 },
+    Stage { seen: 1.0, band: BAND, share: 0.1, steps: 4, enough: 1.0 },
+    Stage { seen: ALL, band: BAND, share: 0.05, steps: 3, enough: 1.0 },
+    Stage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1 },
+    Stage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1 },
 ];
 
 /// Share of a parameter's step, or of a kick's size, by which derivatives are taken at first: the swing's
-/// phase bends what is straight through the lens. Then steps are a standard deviation each, which is
-/// above what simulations are wrong by, and small beside all that bends.
-const STEP: f64 = 0.01;
+/// phase bends what is straight through the lens, and a hundredth is less than simulations are wrong by
+/// where two values do nearly the same. Then steps are some standard deviations each.
+const STEP: f64 = 0.1;
 
 /// Standard deviations of a value by which derivatives are taken.
 const SIGMAS: f64 = 2.0;
@@ -60,6 +65,11 @@ const SIGMAS: f64 = 2.0;
 /// Mean square in units of noise, after any stage, beyond which a model is not complete: its values would
 /// make good what it lacks, and stages in which the swing counts more come no nearer.
 const COMPLETE: f64 = 1.2;
+
+/// How many times as large it may be after the first steps of a stage, and the share that further steps
+/// have to leave of it, for still further ones to be worth it.
+const SLOW: f64 = 6.0;
+const FALLING: f64 = 0.8;
 
 /// Half the number of neighbouring frequencies over which a swing's size is averaged.
 const NEIGHBOURS: usize = 8;
@@ -132,15 +142,28 @@ fn from(
         free.extend([Free { step: 1.0, bounds: [f64::NEG_INFINITY, f64::INFINITY] }; KICKS]);
     }
     let mut axes = Axes::along(&free, STEP / SIGMAS);
-    let swings = on.iter().map(|segment| swing(case, segment, &starts[segment.run]));
-    let swings: Vec<Spectra> = swings.collect::<Option<_>>()?;
+    let swings = on.iter().map(|segment| Swing::of(case, segment, &starts[segment.run]));
+    let swings: Vec<Swing> = swings.collect::<Option<_>>()?;
     let mut fit = None;
-    for Stage { band, share, steps, enough } in stages {
+    for Stage { seen, band, share, steps, enough } in stages {
+        let parts: Vec<Vec<Part>> = on
+            .iter()
+            .zip(&swings)
+            .map(|(segment, swing)| {
+                let interval = case.runs[segment.run].log.interval;
+                let rows = segment.rows.clone();
+                let end = ((seen / interval) as usize).saturating_add(rows.start).min(rows.end);
+                let whole = end == rows.end;
+                let first = Part::new(case, swing, rows.start..end, *band, *share)?;
+                let motion = || Part::new(case, swing, rows.clone(), MOTION, ROUGH[0].share);
+                Some(if whole { vec![first] } else { vec![first, motion()?] })
+            })
+            .collect::<Option<_>>()?;
         let look = |values: &[f64]| {
             let (own, mut rest) = values.split_at(count);
             let effects = with_values(effects, own);
             let mut white = Vec::new();
-            for (segment, swing) in on.iter().zip(&swings) {
+            for (segment, parts) in on.iter().zip(&parts) {
                 let mut machine = case.runs[segment.run].released(&case.rig, &effects).ok()?;
                 if starts[segment.run].kicks.is_some() {
                     let (own, others) = rest.split_at(KICKS);
@@ -149,11 +172,9 @@ fn from(
                     machine = kicked(&still, &Kicks::from_column_slice(own));
                 }
                 simulated.fetch_add(1, Ordering::Relaxed);
-                let missed = missed(case, segment, &machine)?;
-                for (missed, swing) in missed.iter().zip(swing) {
-                    let count = (missed.len() as f64 * band / BAND).ceil() as usize;
-                    let pairs = missed.iter().zip(swing).take(count);
-                    white.extend(pairs.map(|(r, swing)| r / (1.0 + share * share * swing).sqrt()));
+                let simulated = simulate(case, segment, &machine)?;
+                for part in parts {
+                    white.extend(part.missed(case, &case.runs[segment.run].log, &simulated)?);
                 }
             }
             Some(DVector::from_vec(white))
@@ -164,16 +185,25 @@ fn from(
             let zero = vec![0.0; now.len()];
             axes = axes.turned(&free, &jacobian(&along, &sigmas, &zero, &along(&zero)?)?);
         }
-        let along = |steps: &[f64]| look(&axes.values(&free, &now, steps));
-        let best = least_squares(&along, &sigmas, vec![0.0; now.len()], *steps, *enough)?;
-        if best.residual.norm_squared() > COMPLETE * best.residual.len() as f64 {
-            return None;
+        // With axes that were wrong a fit may have ended too soon.
+        let mut before = SLOW * COMPLETE;
+        loop {
+            let along = |steps: &[f64]| look(&axes.values(&free, &now, steps));
+            let best = least_squares(&along, &sigmas, vec![0.0; now.len()], *steps, *enough)?;
+            let left = best.residual.norm_squared() / best.residual.len() as f64;
+            if left > f64::max(COMPLETE, FALLING * before) {
+                return None;
+            }
+            now = axes.values(&free, &now, &best.values);
+            let derivatives = best.jacobian.as_ref()?;
+            let own = axes.derivatives(derivatives)?;
+            axes = axes.turned(&free, derivatives);
+            fit = Some((best.residual, own));
+            if left < COMPLETE {
+                break;
+            }
+            before = left;
         }
-        now = axes.values(&free, &now, &best.values);
-        let derivatives = best.jacobian.as_ref()?;
-        let own = axes.derivatives(derivatives)?;
-        axes = axes.turned(&free, derivatives);
-        fit = Some((best.residual, own));
     }
     let (residual, jacobian) = fit?;
     let chi2 = residual.norm_squared();
@@ -187,35 +217,70 @@ fn from(
     Some(Fit { effects, chi2, white: residual, jacobian: Some(own) })
 }
 
-/// Recording less simulation on a segment in units of noise; none where the model cannot be simulated.
-fn missed(case: &Case, segment: &Segment, machine: &Mechanism) -> Option<Spectra> {
+/// A machine on a segment, without sensor noise; none where it cannot be simulated.
+fn simulate(case: &Case, segment: &Segment, machine: &Mechanism) -> Option<Log> {
     let log = case.runs[segment.run].log.part(0..segment.rows.end);
-    let simulated = replica::simulate(machine, &case.sensors, case.control, &log, 0).ok()?;
-    difference(case, segment, &log, &simulated)
+    replica::simulate(machine, &case.sensors, case.control, &log, 0).ok()
 }
 
-/// Square of a start's swing in units of noise, smooth over frequency.
-fn swing(case: &Case, segment: &Segment, start: &Start) -> Option<Spectra> {
-    let log = case.runs[segment.run].log.part(0..segment.rows.end);
-    let simulate = |machine| replica::simulate(machine, &case.sensors, case.control, &log, 0).ok();
-    let (with, without) = rayon::join(|| simulate(&start.machine), || simulate(&start.still));
-    let swing = difference(case, segment, &with?, &without?)?;
-    let smooth = |channel: Vec<f64>| {
-        let mean = |k: usize| {
-            let near = k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(channel.len());
-            let count = near.len() as f64;
-            channel[near].iter().map(|value| value * value).sum::<f64>() / count
+/// A start's motion with and without its swing.
+struct Swing {
+    with: Log,
+    without: Log,
+}
+
+impl Swing {
+    fn of(case: &Case, segment: &Segment, start: &Start) -> Option<Self> {
+        let both = [&start.machine, &start.still];
+        let (with, without) =
+            rayon::join(|| simulate(case, segment, both[0]), || simulate(case, segment, both[1]));
+        Some(Self { with: with?, without: without? })
+    }
+
+    /// Its square on rows in units of noise, smooth over frequency.
+    fn squares(&self, case: &Case, rows: &Range<usize>) -> Option<Spectra> {
+        let smooth = |channel: Vec<f64>| {
+            let mean = |k: usize| {
+                let near = k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(channel.len());
+                let count = near.len() as f64;
+                channel[near].iter().map(|value| value * value).sum::<f64>() / count
+            };
+            (0..channel.len()).map(mean).collect()
         };
-        (0..channel.len()).map(mean).collect()
-    };
-    Some(swing.into_iter().map(smooth).collect())
+        let difference = difference(case, rows, &self.with, &self.without)?;
+        Some(difference.into_iter().map(smooth).collect())
+    }
 }
 
-/// Difference of two logs on a segment in units of noise.
-fn difference(case: &Case, segment: &Segment, a: &Log, b: &Log) -> Option<Spectra> {
+/// What counts of a segment: rows, and by how much each frequency of them may be missed.
+struct Part {
+    rows: Range<usize>,
+    noise: Spectra,
+}
+
+impl Part {
+    fn new(case: &Case, swing: &Swing, rows: Range<usize>, band: f64, share: f64) -> Option<Self> {
+        let mut noise = swing.squares(case, &rows)?;
+        for channel in &mut noise {
+            channel.truncate((channel.len() as f64 * band / BAND).ceil() as usize);
+            channel.iter_mut().for_each(|square| *square = (1.0 + share * share * *square).sqrt());
+        }
+        Some(Self { rows, noise })
+    }
+
+    /// Recording less simulation in units of what may be missed.
+    fn missed(&self, case: &Case, log: &Log, simulated: &Log) -> Option<Vec<f64>> {
+        let missed = difference(case, &self.rows, log, simulated)?;
+        let pairs = missed.iter().zip(&self.noise);
+        Some(pairs.flat_map(|(r, noise)| r.iter().zip(noise).map(|(r, noise)| r / noise)).collect())
+    }
+}
+
+/// Difference of two logs on rows in units of noise.
+fn difference(case: &Case, rows: &Range<usize>, a: &Log, b: &Log) -> Option<Spectra> {
     let signal = |channel: Channel| {
         let unit = noise(&case.sensors, channel)?;
-        let [a, b] = [a, b].map(|log| log.get(channel).map(|v| &v[segment.rows.clone()]));
+        let [a, b] = [a, b].map(|log| log.get(channel).map(|v| &v[rows.clone()]));
         let values = a?.iter().zip(b?).map(|(a, b)| (a - b) / unit).collect();
         Some(Signal { values, band: BAND })
     };
