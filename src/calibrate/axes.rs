@@ -35,16 +35,21 @@ impl Axes {
         Some(along * self.0.clone().try_inverse()?)
     }
 
-    /// The axes of the ellipsoid of errors that follows from derivatives along these.
-    pub fn turned(&self, free: &[Free], along: &DMatrix<f64>) -> Self {
-        let ellipsoid = (along.transpose() * along).symmetric_eigen();
+    /// The axes of the ellipsoid of errors that follows from derivatives along these; none where those
+    /// are no numbers.
+    pub fn turned(&self, free: &[Free], along: &DMatrix<f64>) -> Option<Self> {
+        let normal = along.transpose() * along;
+        if !normal.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        let ellipsoid = normal.symmetric_eigen();
         let mut axes = &self.0 * ellipsoid.eigenvectors;
         for (mut axis, square) in axes.column_iter_mut().zip(ellipsoid.eigenvalues.iter()) {
             let reach = axis.iter().zip(free).map(|(d, free)| (d / free.step).abs());
             let largest = reach.fold(f64::MIN_POSITIVE, f64::max);
             axis *= f64::min(1.0 / square.max(0.0).sqrt(), REACH / largest);
         }
-        Self(axes)
+        Some(Self(axes))
     }
 }
 
@@ -55,8 +60,8 @@ mod tests {
 
     #[test]
     fn the_long_axis_of_a_valley_is_found_though_looks_are_wrong_by_more_than_single_steps_show() {
-        // r = (a − b, 1e-3 (a + b)) / 1e-2, each wrong by up to 1e-2: the long axis is 7.07 m for one
-        // standard deviation, and a single value's step of 2e-2 moves the second row by 2e-3.
+        // r = (a − b, 1e-3 (a + b)) / 1e-2, each wrong by up to 1e-2: the long axis is 7.07 for one
+        // standard deviation, and a single value's step of 1e-2 moves the second row by 1e-3.
         let wrong = Cell::new(1.0);
         let look = |v: &[f64]| {
             wrong.set(-wrong.get() * 0.9);
@@ -79,17 +84,24 @@ mod tests {
             let own = axes.derivatives(&along).unwrap();
             let covariance = (own.transpose() * own).try_inverse().unwrap();
             longest = covariance[(0, 0)].sqrt();
-            axes = axes.turned(&free, &along);
+            axes = axes.turned(&free, &along).unwrap();
         }
         // Var(a) = (1e-2)² / 4 + (1e-2 / 1e-3)² / 4.
         assert!((longest / 5.0 - 1.0).abs() < 0.1, "{longest}");
     }
 
     #[test]
+    fn derivatives_that_are_no_numbers_have_no_axes() {
+        let free = [Free { step: 0.1, bounds: [-1.0, 1.0] }];
+        let along = DMatrix::from_element(2, 1, f64::NAN);
+        assert!(Axes::along(&free, 1.0).turned(&free, &along).is_none());
+    }
+
+    #[test]
     fn an_axis_that_nothing_depends_on_reaches_no_farther_than_its_steps() {
         let free = [Free { step: 0.1, bounds: [-1e6, 1e6] }; 2];
         let along = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0]);
-        let Axes(axes) = Axes::along(&free, 1.0).turned(&free, &along);
+        let Axes(axes) = Axes::along(&free, 1.0).turned(&free, &along).unwrap();
         assert!(axes.iter().all(|d| d.is_finite() && d.abs() <= 0.1 * REACH), "{axes}");
     }
 }

@@ -187,6 +187,7 @@ pub fn search(
         ways = vec![best.clone()];
         certain.extend(next.iter().chain([&best]).filter(|way| way.certain).cloned());
         next.retain(|way| way.cost() < near);
+        next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         next.truncate(WAYS - 1);
         ways.append(&mut next);
     }

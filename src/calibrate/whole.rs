@@ -183,7 +183,7 @@ fn from(
         let sigmas = vec![Free { step: SIGMAS, bounds: [-1e9, 1e9] }; now.len()];
         if fit.is_none() {
             let zero = vec![0.0; now.len()];
-            axes = axes.turned(&free, &jacobian(&along, &sigmas, &zero, &along(&zero)?)?);
+            axes = axes.turned(&free, &jacobian(&along, &sigmas, &zero, &along(&zero)?)?)?;
         }
         // With axes that were wrong a fit may have ended too soon.
         let mut before = SLOW * COMPLETE;
@@ -197,7 +197,7 @@ fn from(
             now = axes.values(&free, &now, &best.values);
             let derivatives = best.jacobian.as_ref()?;
             let own = axes.derivatives(derivatives)?;
-            axes = axes.turned(&free, derivatives);
+            axes = axes.turned(&free, derivatives)?;
             fit = Some((best.residual, own));
             if left < COMPLETE {
                 break;
