@@ -12,7 +12,7 @@ use freeplay::calibrate::recording;
 use freeplay::calibrate::report::{Report, Sources, calibrated};
 use freeplay::calibrate::result::{Prepared, case, prepare};
 use freeplay::calibrate::search::name;
-use freeplay::calibrate::self_test::{self, Trial};
+use freeplay::calibrate::self_test::{self, Trial, Value as Estimated};
 use freeplay::calibrate::settle::{Question, refined, settle};
 use freeplay::scenario::Scenario;
 use serde_json::Value;
@@ -172,12 +172,12 @@ fn rig_5() {
 /// verdict was `unexplained`.
 #[test]
 fn a_payload_that_nearly_unloads_a_leg_is_found() {
-    let hidden = vec!["payload"];
+    let hidden = vec!["payload".into()];
     let trial = Trial { hidden, size: 1.0, gravity: true, withheld: false, seed: 2000 };
     let result = self_test::run(&trial).unwrap();
     assert!(result.right, "{:?}: {:?}", result.verdict, result.found);
     assert_eq!(result.values.len(), 3);
-    for (name, truth, value, std) in result.values {
+    for Estimated { name, truth, value, std } in result.values {
         assert!(
             (value - truth).abs() < 0.03 * truth.abs(),
             "{name}: {value} ± {std}, hidden {truth}"
@@ -191,7 +191,7 @@ fn a_payload_that_nearly_unloads_a_leg_is_found() {
 /// the verdict was `unexplained`.
 #[test]
 fn a_worn_joint_that_rattles_settles_at_its_clearance() {
-    let hidden = vec!["joint-wear"];
+    let hidden = vec!["joint-wear".into()];
     let trial = Trial { hidden, size: 3.0, gravity: false, withheld: false, seed: 11_050 };
     let (case, hidden) = self_test::recorded(&trial).unwrap();
     let truth = hidden[0].value("clearance_m").unwrap();
@@ -206,15 +206,13 @@ fn a_worn_joint_that_rattles_settles_at_its_clearance() {
     assert!(is_noise(&left), "{left:?}");
 }
 
-/// An anchor moved along its leg and an encoder's wrong zero are one and the same where joints rattle. The
-/// difference of two noisy misfits decided, half of the time for what is seldom met.
 /// A regression: a model that is off swings with another frequency than the machine, so kicks found no
 /// start, but took the swing away; the swing then counted as residual, and was taken over from models of
 /// another frequency. The values of a payload and a worn joint stood still far off (the payload 30 mm
 /// beside its place), and an anchor offset was nearer.
 #[test]
 fn a_payload_and_a_worn_joint_settle_from_far_off() {
-    let hidden = vec!["payload", "joint-wear"];
+    let hidden = vec!["payload".into(), "joint-wear".into()];
     let trial = Trial { hidden, size: 3.0, gravity: true, withheld: false, seed: 16_000 };
     let (case, hidden) = self_test::recorded(&trial).unwrap();
     let [on, hold] = [0, 1].map(|run| vec![Segment { run, rows: case.runs[run].rows() }]);
@@ -233,9 +231,11 @@ fn a_payload_and_a_worn_joint_settle_from_far_off() {
     }
 }
 
+/// An anchor moved along its leg and an encoder's wrong zero are one and the same where joints rattle. The
+/// difference of two noisy misfits decided, half of the time for what is seldom met.
 #[test]
 fn of_two_effects_that_do_as_well_the_common_one_is_named_and_the_other_said() {
-    let hidden = vec!["anchor-offset"];
+    let hidden = vec!["anchor-offset".into()];
     let trial = Trial { hidden, size: 1.0, gravity: false, withheld: false, seed: 12_040 };
     let (case, hidden) = self_test::recorded(&trial).unwrap();
     let outcome = calibrate(&case, &[], &|_| {}).unwrap();

@@ -33,6 +33,8 @@ struct Part {
     segment: Segment,
     bias: Vec<Vec<f64>>,
     noise: Noise,
+    /// The draws from which the noise was taken, in its units.
+    draws: Vec<DVector<f64>>,
     /// What of the residual is the platform's swing, by the share that may be missed.
     swing: Vec<Vec<f64>>,
     /// What the noise has more of, as a logarithm of its determinant, for the recorded swing being lost.
@@ -95,9 +97,12 @@ impl Case {
                     if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { SWING };
                 swing.iter_mut().for_each(|value| *value *= share);
             }
+            let part = |noise: Noise, swing, lost| {
+                let draws = draws.iter().map(|draw| noise.whiten(draw)).collect();
+                Part { segment: segment.clone(), bias, noise, draws, swing, lost }
+            };
             if rattles || starts[segment.run].shown {
-                let noise = Noise::from_draws(&draws, &swing);
-                return Part { segment: segment.clone(), bias, noise, swing, lost: 0.0 };
+                return part(Noise::from_draws(&draws, &swing), swing, 0.0);
             }
             // Two swings of one size and any phase; the size that models beside it have, for they are
             // compared.
@@ -108,7 +113,7 @@ impl Case {
                 .collect();
             let noise = Noise::from_draws(&draws, &larger);
             let lost = noise.swinging() - Noise::from_draws(&draws, &swing).swinging();
-            Part { segment: segment.clone(), bias, noise, swing, lost }
+            part(noise, swing, lost)
         };
         let parts = segments.iter().map(part).collect();
         Ok(Baseline { parts, starts, rattles, views: Arc::new(views) })
@@ -171,6 +176,13 @@ impl Baseline {
     pub fn lost(&self, on: &[Segment]) -> f64 {
         let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
         parts.map(|part| part.lost).sum()
+    }
+
+    /// What noise alone may be like on segments: as [`Case::white`] would see it, draw by draw.
+    pub fn draws(&self, on: &[Segment]) -> Vec<DVector<f64>> {
+        let parts = || self.parts.iter().filter(|part| on.contains(&part.segment));
+        let of = |draw: usize| parts().flat_map(move |part| part.draws[draw].iter().copied());
+        (0..DRAWS).map(|draw| DVector::from_vec(of(draw).collect())).collect()
     }
 
     /// Channel (servo, closure, dynamics of each leg) and frequency in Hz of each number of

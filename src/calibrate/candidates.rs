@@ -2,16 +2,21 @@
 //! for its values.
 
 use super::fit::{self, Fit, Target};
-use crate::effects::{ALL, Joints, Kind, Range, Scan, Setting};
+use crate::effects::{ALL, CONTAINS, Joints, Kind, Range, Scan, Setting};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// An effect at its neutral point, to be added to a model.
+/// Every effect at its neutral point, to be added to a model; none of the kinds `without`, nor what
+/// contains them.
 pub fn all(mechanism: &Mechanism, without: &[&str]) -> Vec<Setting> {
     let mut found = Vec::new();
-    for kind in ALL.iter().filter(|kind| !without.contains(&kind.name)) {
+    let ruled_out = |kind: &Kind| {
+        let inner = CONTAINS.iter().filter(|(outer, _)| outer.name == kind.name);
+        inner.map(|(_, inner)| *inner).chain([kind]).any(|kind| without.contains(&kind.name))
+    };
+    for kind in ALL.iter().filter(|kind| !ruled_out(kind)) {
         let mut joints: Vec<Option<String>> =
             kind.joints_of(mechanism).into_iter().map(Some).collect();
         if matches!(kind.joints, Joints::None | Joints::RevoluteOrAll | Joints::PrismaticOrAll) {

@@ -9,11 +9,12 @@ use super::settle::{Question, Settled};
 use super::unnamed::{Described, describe};
 use crate::effects::{Scan, Setting, UNNAMED};
 use crate::measure::log::Log;
-use serde::Serialize;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
 /// What a calibration comes to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// Named effects bring the residual down to noise.
@@ -22,6 +23,17 @@ pub enum Verdict {
     NothingMissing,
     /// Something remains that no effect with a name explains.
     Unexplained,
+}
+
+impl Verdict {
+    /// As reports spell it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Explained => "explained",
+            Self::NothingMissing => "nothing-missing",
+            Self::Unexplained => "unexplained",
+        }
+    }
 }
 
 /// A fitted value.
@@ -103,7 +115,7 @@ pub fn calibrate(
     };
     let effects = last.fit.effects.iter().map(canonical).collect();
     let last = Settled { fit: Fit { effects, ..last.fit }, ..last };
-    let estimates = estimates(&last);
+    let estimates = estimates(&last, &on);
     tell("predicting the runs");
     let declared = case.simulate(&[])?;
     let predicted = case.simulate(&last.fit.effects)?;
@@ -177,30 +189,24 @@ const BASES: usize = 3;
 const WORTH_A_MAP: f64 = 0.05;
 
 /// Estimates of each effect's values: `(JᵀJ)⁻¹` in units of noise, wider where the fit's own residual
-/// is larger than noise.
-fn estimates(model: &Settled) -> Vec<Vec<Estimate>> {
+/// is larger than noise, and where rattle pulls the values further than noise of one frequency by itself.
+fn estimates(model: &Settled, on: &[Segment]) -> Vec<Vec<Estimate>> {
     let count = fit::values(&model.fit.effects).len();
     let mean_square = model.fit.chi2 / (model.fit.white.len().saturating_sub(count).max(1)) as f64;
-    let covariance = model.fit.jacobian.as_ref().filter(|_| count > 0).and_then(|jacobian| {
-        let scale = jacobian.column_iter().map(|c| c.norm().max(1e-300)).collect::<Vec<_>>();
-        let mut normal = jacobian.transpose() * jacobian;
-        for r in 0..scale.len() {
-            for c in 0..scale.len() {
-                normal[(r, c)] /= scale[r] * scale[c];
-            }
+    let jacobian = model.fit.jacobian.as_ref().filter(|_| count > 0);
+    let inverse = jacobian.and_then(inverse_normal);
+    let pull = match (jacobian, &inverse) {
+        (Some(jacobian), Some(inverse)) if model.baseline.rattles => {
+            pull(jacobian, inverse, &model.baseline.draws(on))
         }
-        let inverse = normal.pseudo_inverse(1e-12).ok()?;
-        Some(
-            (0..scale.len())
-                .map(|i| inverse[(i, i)].max(0.0).sqrt() / scale[i])
-                .collect::<Vec<_>>(),
-        )
-    });
+        _ => 1.0,
+    };
+    let factor = mean_square.max(pull).max(1.0).sqrt();
+    let deviation = |i: usize| inverse.as_ref().map(|inverse| inverse[(i, i)].max(0.0).sqrt());
     let mut index = 0;
     let mut next = || {
         index += 1;
-        let std = covariance.as_ref().and_then(|c| c.get(index - 1).copied());
-        std.unwrap_or(f64::NAN) * mean_square.max(1.0).sqrt()
+        deviation(index - 1).unwrap_or(f64::NAN) * factor
     };
     model
         .fit
@@ -210,4 +216,52 @@ fn estimates(model: &Settled) -> Vec<Vec<Estimate>> {
             effect.values().map(|(name, value)| Estimate { name, value, std: next() }).collect()
         })
         .collect()
+}
+
+/// `(JᵀJ)⁻¹`, of values of very different size.
+fn inverse_normal(jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let scale: Vec<f64> = jacobian.column_iter().map(|c| c.norm().max(1e-300)).collect();
+    let scaled = |matrix: DMatrix<f64>| {
+        DMatrix::from_fn(scale.len(), scale.len(), |r, c| matrix[(r, c)] / (scale[r] * scale[c]))
+    };
+    Some(scaled(scaled(jacobian.transpose() * jacobian).pseudo_inverse(1e-12).ok()?))
+}
+
+/// Mean square of what draws of noise do to values, in units of `(JᵀJ)⁻¹`: the noise is known frequency
+/// by frequency, and a rattle that hangs together over several pulls a value that all of them tell of
+/// further (a parametric bootstrap; Efron and Tibshirani, *An Introduction to the Bootstrap*, 1993, §6.5).
+fn pull(jacobian: &DMatrix<f64>, inverse: &DMatrix<f64>, draws: &[DVector<f64>]) -> f64 {
+    let squares = draws.iter().map(|draw| {
+        let along = jacobian.transpose() * draw;
+        along.dot(&(inverse * &along))
+    });
+    squares.sum::<f64>() / (draws.len() * jacobian.ncols()) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mean of n numbers that are noise each by itself is known to 1/√n; of noise that hangs together
+    /// (pairs of the same number) to √2/√n.
+    #[test]
+    fn noise_that_hangs_together_pulls_further() {
+        let jacobian = DMatrix::from_element(4, 1, 1.0);
+        let inverse = inverse_normal(&jacobian).unwrap();
+        assert!((inverse[(0, 0)] - 0.25).abs() < 1e-12);
+        let signs = |i: usize, k: u32| if i >> k & 1 == 0 { 1.0 } else { -1.0 };
+        let alone = (0..16).map(|i| DVector::from_fn(4, |r, _| signs(i, r as u32)));
+        assert!((pull(&jacobian, &inverse, &alone.collect::<Vec<_>>()) - 1.0).abs() < 1e-12);
+        let pairs = (0..4).map(|i| DVector::from_fn(4, |r, _| signs(i, r as u32 / 2)));
+        assert!((pull(&jacobian, &inverse, &pairs.collect::<Vec<_>>()) - 2.0).abs() < 1e-12);
+    }
+
+    /// A mass in kg and a clearance in m, told apart although one is a million times the other.
+    #[test]
+    fn values_of_different_size_have_their_own_deviations() {
+        let jacobian = DMatrix::from_row_slice(2, 2, &[1e-3, 0.0, 0.0, 1e9]);
+        let inverse = inverse_normal(&jacobian).unwrap();
+        assert!((inverse[(0, 0)] - 1e6).abs() < 1e-3);
+        assert!((inverse[(1, 1)] - 1e-18).abs() < 1e-27);
+    }
 }

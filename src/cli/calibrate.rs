@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
+use super::self_test::SelfTest;
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare};
@@ -40,19 +41,22 @@ pub(super) struct Arguments {
     /// Another recorded run, to validate on; may be given many times
     #[arg(long, value_name = "RUN.csv")]
     validate: Vec<PathBuf>,
-    /// Do not look for this kind of effect; may be given many times
+    /// Do not look for this kind of effect, nor for what contains it; may be given many times
     #[arg(long, value_name = "KIND")]
     without: Vec<String>,
     /// Instead of all this: hide known effects of random size in synthetic recordings, calibrate each,
     /// and print which effect was taken for which (hours; --hidden for a part)
     #[arg(long, conflicts_with_all = ["rig", "data", "validate", "without"])]
     self_test: bool,
-    /// Hide this kind of effect only, or `nothing`; may be given many times
+    /// Hide this kind of effect only, or `nothing`, or `a+b`; may be given many times
     #[arg(long, value_name = "KIND", requires = "self_test")]
     hidden: Vec<String>,
     /// Another set of random sizes, joints, motions and noise
     #[arg(long, value_name = "N", requires = "self_test", default_value_t = 1)]
     seed: u64,
+    /// Keep finished trials in this file, one JSON object a line, and go on from there
+    #[arg(long, value_name = "FILE.jsonl", requires = "self_test")]
+    trials: Option<PathBuf>,
     #[command(flatten)]
     sets: Sets,
     #[command(flatten)]
@@ -71,7 +75,9 @@ Examples:
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let (Some(rig), Some(data)) = (&arguments.rig, &arguments.data) else {
         let PrintOptions { json, quiet } = arguments.print;
-        return super::self_test::main(&arguments.hidden, arguments.seed, json, quiet);
+        let Arguments { hidden: only, seed, trials, .. } = arguments;
+        let test = SelfTest { only, seed: *seed, table: trials.as_deref(), json, quiet };
+        return super::self_test::main(&test);
     };
     let without = without(&arguments.without)?;
     let rig = Scenario::load(Some(rig), &arguments.sets.sets)?;

@@ -79,6 +79,11 @@ impl Spinner {
         self.bar.set_message(what.to_owned());
     }
 
+    /// Does something else with the terminal, and shows the line again below it.
+    pub fn aside<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.bar.suspend(work)
+    }
+
     /// Removes the line.
     pub fn clear(&self) {
         self.bar.finish_and_clear();

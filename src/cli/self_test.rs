@@ -3,131 +3,134 @@
 use super::failure::Failure;
 use super::output;
 use super::progress::Spinner;
-use crate::calibrate::search::names;
-use crate::calibrate::self_test::{Result as Tried, SIZES, Trial, kinds, run};
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
+use crate::calibrate::self_test::{Trial, Tried, rates, run, trials};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
 
-/// Rigs that lack nothing, with gravity and without: as many as it takes to see false alarms of one in
-/// ten.
-const LACKING_NOTHING: u64 = 5;
-
-/// Floors above which what is hidden must be found.
-const LARGE: f64 = 3.0;
-
-/// Tries every effect at every size with gravity and without, the same withheld from the candidates at
-/// the middle size, and rigs that lack nothing; prints what became of each and the confusion matrix.
-pub(super) fn main(only: &[String], seed: u64, json: bool, quiet: bool) -> Result<(), Failure> {
-    let trials = trials(only, seed);
-    let spinner = Spinner::new(quiet);
-    let mut results = Vec::new();
-    for (i, trial) in trials.iter().enumerate() {
-        let what = if trial.hidden.is_empty() { "nothing" } else { trial.hidden[0] };
-        spinner.tell(&format!("trial {} of {}: {what} hidden", i + 1, trials.len()));
-        let result = run(trial).map_err(|error| Failure::Other(error.to_string()))?;
-        spinner.clear();
-        if !json && !quiet {
-            output::print(&line(&result))?;
-        }
-        results.push(result);
-    }
-    spinner.clear();
-    if json {
-        let json = serde_json::to_string_pretty(&results)
-            .map_err(|error| Failure::Other(error.to_string()))?;
-        output::print(&(json + "\n"))?;
-    } else {
-        output::print(&matrix(&results))?;
-    }
-    Ok(())
+/// Which trials, and what becomes of them.
+#[derive(Debug)]
+pub(super) struct SelfTest<'a> {
+    /// Kinds to hide; all if empty.
+    pub only: &'a [String],
+    /// Everything random follows from it.
+    pub seed: u64,
+    /// Where finished trials are kept.
+    pub table: Option<&'a Path>,
+    pub json: bool,
+    pub quiet: bool,
 }
 
-fn trials(only: &[String], seed: u64) -> Vec<Trial> {
-    let wanted = |kind: &str| only.is_empty() || only.iter().any(|name| name == kind);
-    let mut trials = Vec::new();
-    for gravity in [true, false] {
-        let trial = |hidden: &[&'static str], size: f64, withheld: bool, number: u64| Trial {
-            hidden: hidden.to_vec(),
-            size,
-            gravity,
-            withheld,
-            seed: seed * 1000 + number,
-        };
-        if wanted("nothing") {
-            trials.extend((0..LACKING_NOTHING).map(|i| trial(&[], 0.0, false, 900 + i)));
-        }
-        for (i, kind) in kinds().enumerate().filter(|(_, kind)| wanted(kind)) {
-            let number = i as u64 * 10;
-            let sizes = SIZES.iter().zip(number..);
-            trials.extend(sizes.map(|(&size, number)| trial(&[kind], size, false, number)));
-            trials.push(trial(&[kind], SIZES[1], true, number + 5));
-        }
+/// Tries what is not in the table yet, prints what became of each and the rates.
+pub(super) fn main(test: &SelfTest) -> Result<(), Failure> {
+    let wanted = trials(test.only, test.seed);
+    if wanted.is_empty() {
+        let hidden = test.only.join(", ");
+        let message = format!(
+            "--hidden: {hidden} is hidden in no trial; expected `nothing`, the name of an effect \
+             that can be hidden, or two of them with a plus if this seed draws them"
+        );
+        return Err(Failure::Input(vec![message]));
     }
-    trials
+    let mut all = test.table.map(read).transpose()?.unwrap_or_default();
+    let done = |trial: &Trial| all.iter().find(|tried: &&Tried| tried.trial == *trial).cloned();
+    let known: Vec<Option<Tried>> = wanted.iter().map(done).collect();
+    let missing: Vec<usize> = (0..wanted.len()).filter(|&i| known[i].is_none()).collect();
+    let spinner = Spinner::new(test.quiet);
+    let finished = AtomicUsize::new(wanted.len() - missing.len());
+    let say = || {
+        let finished = finished.load(Ordering::Relaxed);
+        spinner.tell(&format!("{finished} of {} trials", wanted.len()));
+    };
+    say();
+    let next = AtomicUsize::new(0);
+    let results = Mutex::new((known, &mut all));
+    let work = || -> Result<(), Failure> {
+        while let Some(&i) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let tried = run(&wanted[i]).map_err(|error| Failure::Other(error.to_string()))?;
+            finished.fetch_add(1, Ordering::Relaxed);
+            let (found, all) = &mut *results.lock().unwrap_or_else(PoisonError::into_inner);
+            if !test.json && !test.quiet {
+                spinner.aside(|| output::print(&line(&tried)))?;
+            }
+            all.push(tried.clone());
+            found[i] = Some(tried);
+            if let Some(table) = test.table {
+                write(table, all)?;
+            }
+            say();
+        }
+        Ok(())
+    };
+    // What one of them cannot do the others need not try.
+    let worker = || work().inspect_err(|_| next.store(missing.len(), Ordering::Relaxed));
+    // Each of a trial's steps uses all cores that are free; trials beside each other leave none idle.
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
+        workers.into_iter().try_for_each(|worker| match worker.join() {
+            Ok(result) => result,
+            Err(panic) => std::panic::resume_unwind(panic),
+        })
+    })?;
+    spinner.clear();
+    let (found, _) = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let found: Vec<Tried> = found.into_iter().flatten().collect();
+    let text = if test.json {
+        serde_json::to_string_pretty(&found).map_err(|error| Failure::Other(error.to_string()))?
+            + "\n"
+    } else {
+        format!("\n{}", rates(&found))
+    };
+    Ok(output::print(&text)?)
 }
 
 /// One trial in a line.
-fn line(result: &Tried) -> String {
-    let verdict = format!("{:?}", result.verdict).to_lowercase();
-    let hidden =
-        if result.hidden.is_empty() { "nothing".to_owned() } else { names(&result.hidden) };
-    let found = if result.found.is_empty() { "nothing".to_owned() } else { names(&result.found) };
+fn line(tried: &Tried) -> String {
     format!(
-        "{} {}, {:.1} floors{}: hidden {hidden}; {verdict}: {found} ({} simulations)\n",
-        if result.right { "right" } else { "WRONG" },
-        if result.gravity { "gravity" } else { "no gravity" },
-        result.floors,
-        if result.withheld { ", withheld" } else { "" },
-        result.simulations
+        "{} {}, {:.1} floors{}: hidden {}; {}: {} ({} simulations)\n",
+        if tried.right { "right" } else { "WRONG" },
+        if tried.trial.gravity { "gravity" } else { "no gravity" },
+        tried.floors,
+        if tried.trial.withheld { ", withheld" } else { "" },
+        tried.lacks,
+        tried.verdict.word(),
+        tried.found,
+        tried.simulations
     )
 }
 
-/// Hidden against found, and what the rates come to.
-fn matrix(results: &[Tried]) -> String {
-    let mut cells: BTreeMap<(String, String), usize> = BTreeMap::new();
-    let kind = |effects: &[crate::effects::Setting]| match effects {
-        [] => "nothing".to_owned(),
-        [one] => one.kind.name.to_owned(),
-        _ => "several".to_owned(),
+/// The trials of a table; none if there is no such file yet.
+fn read(table: &Path) -> Result<Vec<Tried>, Failure> {
+    let text = match fs::read_to_string(table) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        text => text.map_err(|error| refused(table, &error))?,
     };
-    let named = results.iter().filter(|result| !result.withheld);
-    for result in named.clone() {
-        *cells.entry((kind(&result.hidden), kind(&result.found))).or_default() += 1;
-    }
-    let mut text = "\nhidden -> found: trials\n".to_owned();
-    for ((hidden, found), count) in &cells {
-        // Writing to a string cannot fail, here and below.
-        let _ = writeln!(text, "  {hidden:<20} -> {found:<20} {count:>4}");
-    }
-    let mut rate = |what: &str, of: Vec<bool>| {
-        if !of.is_empty() {
-            let right = of.iter().filter(|right| **right).count();
-            let share = 100.0 * right as f64 / of.len() as f64;
-            let _ = writeln!(text, "{what:<58} {right:>4} of {:<4} {share:>5.0} %", of.len());
-        }
+    let row = |(i, line)| {
+        serde_json::from_str(line).map_err(|error| {
+            let place = format!("{}:{}", table.display(), i + 1);
+            let message = format!("{place}: {error}; expected a table of --trials, or a new file");
+            Failure::Input(vec![message])
+        })
     };
-    for (gravity, where_from) in [(true, "with gravity"), (false, "without")] {
-        let own = || named.clone().filter(move |r| r.gravity == gravity);
-        let right = |of: &dyn Fn(&Tried) -> bool| {
-            own().filter(|result| of(result)).map(|result| result.right).collect::<Vec<_>>()
-        };
-        let large = |r: &Tried| !r.hidden.is_empty() && r.floors > LARGE;
-        let small = |r: &Tried| !r.hidden.is_empty() && r.floors <= LARGE;
-        rate(&format!("right effects where above three floors, {where_from}"), right(&large));
-        rate(&format!("right effects below three floors, {where_from}"), right(&small));
-        rate(
-            &format!("nothing found where nothing is hidden, {where_from}"),
-            right(&|r| r.hidden.is_empty()),
-        );
-    }
-    let withheld = results.iter().filter(|result| result.withheld);
-    rate("unexplained where the effect is no candidate", withheld.map(|r| r.right).collect());
-    let values = || results.iter().flat_map(|result| &result.values);
-    let near =
-        |(_, truth, value, _): &(String, f64, f64, f64)| (value - truth).abs() < 0.1 * truth.abs();
-    rate("values within 10 %", values().map(near).collect());
-    let covered =
-        |(_, truth, value, std): &(String, f64, f64, f64)| (value - truth).abs() < 1.96 * std;
-    rate("values inside their 95 % intervals", values().map(covered).collect());
-    text
+    text.lines().enumerate().map(row).collect()
+}
+
+/// Writes the table aside and gives it its name: at no time is there half a table.
+fn write(table: &Path, all: &[Tried]) -> Result<(), Failure> {
+    let rows: Result<Vec<String>, _> = all.iter().map(serde_json::to_string).collect();
+    let rows = rows.map_err(|error| Failure::Other(error.to_string()))?;
+    let mut aside = table.as_os_str().to_owned();
+    aside.push(".partial");
+    let aside = PathBuf::from(aside);
+    fs::write(&aside, rows.join("\n") + "\n")
+        .and_then(|()| fs::rename(&aside, table))
+        .map_err(|error| refused(table, &error))
+}
+
+fn refused(table: &Path, error: &std::io::Error) -> Failure {
+    Failure::Input(vec![format!("cannot use `{}`: {error}", table.display())])
 }

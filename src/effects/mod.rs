@@ -84,6 +84,12 @@ pub const SELDOM: &[&Kind] = &[
     &sensor_offset::KIND,
 ];
 
+/// Effects that contain another, which they become at some of their values: who rules that out rules them
+/// out too.
+pub const CONTAINS: &[(&Kind, &Kind)] =
+    // With as much friction near rest as in motion.
+    &[(&stribeck_friction::KIND, &actuator_friction::KIND)];
+
 /// The effect called `name`.
 pub fn named(name: &str) -> Option<&'static Kind> {
     ALL.iter().find(|kind| kind.name == name).copied()

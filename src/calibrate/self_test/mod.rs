@@ -1,0 +1,133 @@
+//! The method held against what it should find: known effects of random size, hidden in synthetic
+//! recordings.
+
+mod grid;
+mod hidden;
+mod rates;
+mod rig;
+
+pub use grid::trials;
+pub use hidden::kinds;
+pub use rates::rates;
+pub use rig::recorded;
+
+use super::model::SearchError;
+use super::outcome::{Outcome, Verdict, calibrate};
+use super::search::names;
+use crate::effects::Setting;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// One rig to be understood.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Hidden effects by name; none in a rig that lacks nothing.
+    pub hidden: Vec<String>,
+    /// Their size, in units of about three floors.
+    pub size: f64,
+    /// Whether gravity keeps the joints loaded.
+    pub gravity: bool,
+    /// Whether the hidden effects are no candidates.
+    pub withheld: bool,
+    /// Everything random follows from it.
+    pub seed: u64,
+}
+
+/// What became of a trial: a row of the self-test's table.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Tried {
+    /// The trial.
+    #[serde(flatten)]
+    pub trial: Trial,
+    /// Hidden effects with their joints, in words.
+    pub lacks: String,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// Effects found, in words.
+    pub found: String,
+    /// Whether the verdict and the names are right.
+    pub right: bool,
+    /// Hidden values that were found by name.
+    pub values: Vec<Value>,
+    /// How large what is hidden is: the declared model's largest error on the validation run, in floors.
+    pub floors: f64,
+    /// The same of the calibrated model.
+    pub worst_ratio: f64,
+    /// Simulations it took.
+    pub simulations: usize,
+    /// Version of the program.
+    pub version: String,
+}
+
+/// A hidden value and its estimate, in SI units.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Value {
+    /// `effect.parameter`.
+    pub name: String,
+    /// As hidden.
+    pub truth: f64,
+    /// As found.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: f64,
+}
+
+/// Hides, calibrates, compares.
+///
+/// # Errors
+/// A rig that cannot be simulated.
+pub fn run(trial: &Trial) -> Result<Tried, SearchError> {
+    let (case, hidden) = recorded(trial)?;
+    let hidden_names: Vec<&str> = trial.hidden.iter().map(String::as_str).collect();
+    let without = if trial.withheld { &hidden_names[..] } else { &[] };
+    let outcome = calibrate(&case, without, &|_| {})?;
+    Ok(judge(trial, &hidden, &outcome))
+}
+
+fn judge(trial: &Trial, hidden: &[Setting], outcome: &Outcome) -> Tried {
+    let found: Vec<Setting> = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
+    let named = || outcome.effects.iter().filter(|(effect, _)| effect.map().is_none());
+    let right = if trial.withheld {
+        outcome.verdict == Verdict::Unexplained
+    } else if hidden.is_empty() {
+        outcome.verdict == Verdict::NothingMissing
+    } else {
+        outcome.verdict == Verdict::Explained
+            && named().count() == hidden.len()
+            && hidden.iter().all(|h| named().any(|(effect, _)| effect.is(h)))
+    };
+    let mut values = Vec::new();
+    for lacking in hidden {
+        let Some((_, estimates)) = named().find(|(effect, _)| effect.is(lacking)) else {
+            continue;
+        };
+        for (name, truth) in lacking.values() {
+            if let Some(e) = estimates.iter().find(|e| e.name == name) {
+                // Phases on both sides of a whole turn are near each other.
+                let turns = match name {
+                    "phase_rad" => ((e.value - truth) / TAU).round(),
+                    _ => 0.0,
+                };
+                let name = format!("{}.{name}", lacking.kind.name);
+                values.push(Value { name, truth, value: e.value - turns * TAU, std: e.std });
+            }
+        }
+    }
+    let validation = || outcome.errors.iter().filter(|error| error.role == "validation");
+    let words = |effects: &[Setting]| match effects {
+        [] => "nothing".to_owned(),
+        effects => names(effects),
+    };
+    Tried {
+        trial: trial.clone(),
+        lacks: words(hidden),
+        verdict: outcome.verdict,
+        found: words(&found),
+        right,
+        values,
+        floors: validation().map(|e| e.before / e.floor).fold(0.0, f64::max),
+        worst_ratio: validation().map(|e| e.after / e.floor).fold(0.0, f64::max),
+        simulations: outcome.simulations,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+    }
+}

@@ -1,0 +1,10 @@
+//! `freeplay calibrate` and `freeplay predict`, the real binary: what they write, and that they refuse
+//! recordings that cannot be right.
+
+#[path = "../cli_common/mod.rs"]
+mod cli_common;
+mod predictions;
+mod recording;
+mod refusals;
+mod results;
+mod self_test;

@@ -1,0 +1,95 @@
+//! Predictions: what they take, what they write, what they refuse.
+
+use crate::cli_common::Place;
+use crate::recording::{Break, Table, assert_number, rig};
+use serde_json::Value;
+
+#[test]
+fn a_prediction_takes_what_was_measured() {
+    let place = Place::new();
+    let mut table = Table::of_rig("run-b.csv");
+    table.rows.truncate(1200);
+    let rig_file = rig("rig.toml").display().to_string();
+    for (file, dropped, channels) in [
+        ("whole.csv", &[][..], 9),
+        ("no-pose.csv", &["x", "y", "phi"], 6),
+        ("no-forces.csv", &["F1", "F2", "F3"], 6),
+        ("commands.csv", &["q1", "q2", "q3", "F1", "F2", "F3", "x", "y", "phi"], 0),
+    ] {
+        let mut table = table.clone();
+        table.drop(dropped);
+        place.write(file, &table.text());
+        let out = place.good(&format!("predict {rig_file} --data {file} --out {file}-out --json"));
+        assert_eq!(out, place.read(&format!("{file}-out/errors.json")));
+        let json: Value = serde_json::from_str(&out).unwrap();
+        let errors = json["errors"].as_array().unwrap();
+        assert_eq!(errors.len(), channels, "{file}");
+        for error in errors {
+            assert!(error["before"].is_null(), "the declared model has no effects");
+            assert_number(&error["after"], "after");
+            assert_number(&error["floor"], "floor");
+        }
+        let predicted = place.read(&format!("{file}-out/predicted.csv"));
+        let header: Vec<&str> = predicted.lines().next().unwrap().split(',').collect();
+        assert_eq!(header[..table.header.len()], table.header, "{file}");
+        assert_eq!(header.len(), 13, "what was not measured is predicted too");
+        assert_eq!(predicted.lines().count(), 1201);
+    }
+    // A pose shows how the machine swung; without one it starts as it was let go, whatever else was
+    // measured.
+    let last = |file: &str| {
+        let text = place.read(&format!("{file}-out/predicted.csv"));
+        let mut cells: Vec<(String, f64)> = text
+            .lines()
+            .next()
+            .unwrap()
+            .split(',')
+            .map(str::to_owned)
+            .zip(text.lines().last().unwrap().split(',').map(|cell| cell.parse().unwrap()))
+            .collect();
+        cells.sort_by(|a, b| a.0.cmp(&b.0));
+        cells
+    };
+    for ((name, one), (_, other)) in last("no-pose.csv").iter().zip(&last("commands.csv")) {
+        assert!((one - other).abs() < 1e-6 + 1e-3 * one.abs(), "{name}: {one} {other}");
+    }
+}
+
+#[test]
+fn predictions_refuse_what_cannot_be_right() {
+    let place = Place::new();
+    let rig_file = rig("rig.toml").display().to_string();
+    let good = Table::of_rig("run-b.csv");
+    let breaks: [Break; 4] = [
+        (
+            "no command",
+            |t| t.drop(&["q2_cmd"]),
+            &["bad.csv:1: no column `q2_cmd`", "predict needs"],
+        ),
+        ("time in ms", |t| t.scale(&["t"], 1e3), &["at least 100 a second", "in ms"]),
+        ("forces in kN", |t| t.scale(&["F1", "F2", "F3"], 1e-3), &["column `F1`", "in kN"]),
+        (
+            "commands alone, in mm",
+            |t| {
+                t.drop(&["q1", "q2", "q3", "F1", "F2", "F3", "x", "y", "phi"]);
+                t.scale(&["q1_cmd", "q2_cmd", "q3_cmd"], 1e3);
+            },
+            &["column `q1_cmd` starts with 368", "in mm"],
+        ),
+    ];
+    for (name, broken, fragments) in breaks {
+        let mut table = good.clone();
+        broken(&mut table);
+        place.write("bad.csv", &table.text());
+        println!("{name}");
+        place.refused(&format!("predict {rig_file} --data bad.csv"), fragments);
+    }
+    let mut commands = good.clone();
+    commands.drop(&["q1", "q2", "q3", "F1", "F2", "F3", "x", "y", "phi"]);
+    place.write("bad.csv", &commands.text());
+    place.refused(
+        &format!("predict {rig_file} --data bad.csv --set mechanism.base_side=2"),
+        &["no pose of the machine has the lengths of the first row", "base_side 2 m"],
+    );
+    place.refused("predict none.toml --data bad.csv", &["none.toml: cannot be read"]);
+}

@@ -1,0 +1,160 @@
+//! Recordings and rigs that cannot be calibrated.
+
+use crate::cli_common::Place;
+use crate::recording::{Break, Table, rig};
+
+const BROKEN: &[Break] = &[
+    (
+        "a renamed command",
+        |t| t.rename("q1_cmd", "q1cmd"),
+        &["bad.csv:1: ", "unknown column `q1cmd`", "did you mean `q1_cmd`?"],
+    ),
+    ("a small letter", |t| t.rename("F1", "f1"), &["unknown column `f1`", "did you mean `F1`?"]),
+    ("a foreign column", |t| t.rename("F1", "torque"), &["unknown column `torque`", "q1_cmd"]),
+    ("a column twice", |t| t.rename("F2", "F1"), &["bad.csv:1: ", "column `F1` twice"]),
+    ("no force", |t| t.drop(&["F3"]), &["bad.csv:1: no column `F3`", "actuator forces"]),
+    (
+        "no forces",
+        |t| t.drop(&["F1", "F2", "F3"]),
+        &["no column `F1`, `F2`, `F3`", "freeplay predict"],
+    ),
+    ("no pose", |t| t.drop(&["x", "y", "phi"]), &["no column `x`, `y`, `phi`", "pose (x y, m"]),
+    ("no time", |t| t.drop(&["t"]), &["bad.csv:1: no column `t`"]),
+    (
+        "a gap",
+        |t| drop(t.rows.drain(1000..1100)),
+        &["bad.csv:1002: a step of 0.101", "constant rate"],
+    ),
+    ("a repeated row", |t| t.rows[700] = t.rows[699].clone(), &["bad.csv:702: ", "is repeated"]),
+    ("rows exchanged", |t| t.rows.swap(700, 710), &["bad.csv:703: time runs backwards"]),
+    ("not a number", |t| t.set(500, "x", "NaN"), &["bad.csv:502: column `x` holds NaN"]),
+    ("infinity", |t| t.set(500, "F2", "inf"), &["bad.csv:502: column `F2` holds inf"]),
+    ("an empty cell", |t| t.set(500, "q3", ""), &["bad.csv:502: column `q3` holds nothing"]),
+    ("a word", |t| t.set(500, "phi", "n/a"), &["bad.csv:502: column `phi` holds n/a"]),
+    ("a short row", |t| drop(t.rows[500].pop()), &["bad.csv:502: ", "as many values as"]),
+    ("no rows", |t| t.rows.clear(), &["bad.csv", "0 row(s)"]),
+    (
+        "a dead force sensor",
+        |t| (0..t.rows.len()).for_each(|row| t.set(row, "F2", "0.000")),
+        &["bad.csv: column `F2` never changes while the commands do", "connected"],
+    ),
+    (
+        "a dead tracker",
+        |t| (0..t.rows.len()).for_each(|row| t.set(row, "y", "0.01")),
+        &["column `y` never changes"],
+    ),
+    ("900 ms", |t| t.rows.truncate(900), &["bad.csv: lasts 0.8990 s", "at least 1 s"]),
+    ("x in mm", |t| t.scale(&["x"], 1e3), &["column `x` starts with", "in mm", "by 0.001"]),
+    ("y in mm", |t| t.scale(&["x", "y"], 1e3), &["column `x` starts", "column `y` starts"]),
+    ("phi in mrad", |t| t.scale(&["phi"], 1e3), &["column `phi` starts with 521", "in mrad"]),
+    ("phi in degrees", |t| t.scale(&["phi"], 57.295_779_5), &["column `phi`", "in degrees"]),
+    ("q2 in mm", |t| t.scale(&["q2"], 1e3), &["column `q2` starts with 332", "in mm"]),
+    (
+        "commands in mm",
+        |t| t.scale(&["q1_cmd", "q2_cmd", "q3_cmd"], 1e3),
+        &["column `q1_cmd` starts with 332", "column `q2_cmd`", "column `q3_cmd`", "by 0.001"],
+    ),
+    (
+        "every length in mm",
+        |t| t.scale(&["q1_cmd", "q2_cmd", "q3_cmd", "q1", "q2", "q3", "x", "y"], 1e3),
+        &["column `q1_cmd`", "column `q3`", "column `x`", "in mm"],
+    ),
+    (
+        "forces in kN",
+        |t| t.scale(&["F1", "F2", "F3"], 1e-3),
+        &["bad.csv: column `F1` is of the order of", "in kN", "multiply by 1000"],
+    ),
+    ("forces in mN", |t| t.scale(&["F1", "F2", "F3"], 1e3), &["column `F3`", "in mN"]),
+    ("time in ms", |t| t.scale(&["t"], 1e3), &["rows are 1.0000 s apart", "in ms, write it in s"]),
+    (
+        "a low rate",
+        |t| {
+            let mut row = 0;
+            t.rows.retain(|_| {
+                row += 1;
+                row % 10 == 1
+            });
+        },
+        &["rows are 0.0100 s apart", "at least 300 a second"],
+    ),
+    (
+        "lengths exchanged",
+        |t| {
+            t.rename("q1", "q");
+            t.rename("q2", "q1");
+            t.rename("q", "q2");
+        },
+        &["do not close", "columns exchanged"],
+    ),
+    (
+        "commands exchanged",
+        |t| {
+            t.rename("q1_cmd", "q");
+            t.rename("q2_cmd", "q1_cmd");
+            t.rename("q", "q2_cmd");
+        },
+        &["columns `q1_cmd` and `q1` differ by"],
+    ),
+];
+
+#[test]
+fn broken_recordings_are_refused() {
+    let place = Place::new();
+    let good = Table::of_rig("run-a.csv");
+    let line = format!("calibrate --rig {} --data bad.csv --out c", rig("rig.toml").display());
+    for (name, broken, fragments) in BROKEN {
+        let mut table = good.clone();
+        broken(&mut table);
+        place.write("bad.csv", &table.text());
+        println!("{name}");
+        place.refused(&line, fragments);
+    }
+}
+
+#[test]
+fn a_broken_validation_run_is_refused() {
+    let place = Place::new();
+    let mut table = Table::of_rig("run-b.csv");
+    table.scale(&["F1", "F2", "F3"], 1e-3);
+    place.write("bad.csv", &table.text());
+    std::fs::copy(rig("run-a.csv"), place.path("copy.csv")).unwrap();
+    let line = format!(
+        "calibrate --rig {} --data {}",
+        rig("rig.toml").display(),
+        rig("run-a.csv").display()
+    );
+    place.refused(&format!("{line} --validate bad.csv"), &["bad.csv: column `F1`", "in kN"]);
+    let copied = &["copy.csv: holds the same samples as", "run-a.csv", "another run"];
+    place.refused(&format!("{line} --validate copy.csv"), copied);
+    place.refused(&format!("{line} --validate none.csv"), &["none.csv: cannot be read"]);
+}
+
+#[test]
+fn rigs_that_do_not_fit_are_refused() {
+    let place = Place::new();
+    let toml = std::fs::read_to_string(rig("rig.toml")).unwrap();
+    let data = rig("run-a.csv").display().to_string();
+    let without_sensors = &toml[..toml.find("[sensors]").unwrap()];
+    place.write("no-sensors.toml", without_sensors);
+    place.write("effect.toml", &format!("{toml}\n[[effect]]\nkind = \"payload\"\nmass_kg = 0.1\n"));
+    place.write("rig.toml", &toml);
+    for (rig, options, fragments) in [
+        ("no-sensors.toml", "", &["no-sensors.toml: sensors: is missing", "pose_std", "exact"][..]),
+        ("effect.toml", "", &["effect.toml:", "effect", "holds 1 effect", "freeplay predict"]),
+        ("none.toml", "", &["none.toml: cannot be read"]),
+        ("rig.toml", "--set sensors.pose_std=0", &["sensors.pose_std", "is 0 m, exact"]),
+        ("rig.toml", "--set sensors.pose_sd=1", &["did you mean `pose_std`?"]),
+        ("rig.toml", "--set contact.law=native", &["contact.law: is \"native\"", "hertz-step"]),
+        (
+            "rig.toml",
+            "--set mechanism.base_side=0.7",
+            &["run-a.csv: columns `q", "do not close", "base_side 0.7 m", "is this the rig"],
+        ),
+        ("rig.toml", "--without payloads", &["--without: `payloads`", "did you mean `payload`?"]),
+        ("rig.toml", "--without zzz", &["`zzz` is not an effect; known: payload, "]),
+    ] {
+        place.refused(&format!("calibrate --rig {rig} --data {data} {options}"), fragments);
+    }
+    assert_eq!(place.freeplay(&format!("calibrate --data {data}")).code, 2);
+    assert_eq!(place.freeplay("calibrate --rig rig.toml").code, 2);
+}

@@ -1,0 +1,109 @@
+//! The folder of a calibration.
+
+use crate::cli_common::{Place, names};
+use crate::recording::{Table, assert_number, rig};
+use serde_json::Value;
+
+/// Half a minute: a short recording, and few effects to try.
+#[test]
+fn a_calibration_writes_everything_that_was_promised() {
+    let place = Place::new();
+    let mut table = Table::of_rig("run-a.csv");
+    table.rows.truncate(1500);
+    place.write("run.csv", &table.text());
+    let effects: Value = serde_json::from_str(&place.good("effects --json")).unwrap();
+    let tried = ["payload", "actuator-friction", "drag"];
+    let without: String = effects
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|effect| effect["name"].as_str().unwrap())
+        .filter(|name| !tried.contains(name))
+        .map(|name| format!(" --without {name}"))
+        .collect();
+    let rig_file = rig("rig.toml").display().to_string();
+    let line = format!("calibrate --rig {rig_file} --data run.csv{without} --json --out c");
+    let out = place.good(&line);
+    assert_eq!(out, place.read("c/report.json"));
+
+    let json: Value = serde_json::from_str(&out).unwrap();
+    let mut files: Vec<String> = json["files"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|file| file.as_str().unwrap().to_owned())
+        .collect();
+    files.sort();
+    assert_eq!(names(&place.path("c")), files);
+    for file in ["calibrated.toml", "index.html", "predicted-run.csv", "report.json"] {
+        assert!(files.iter().any(|name| name == file), "{file}");
+    }
+    assert_eq!(json["program"], "freeplay");
+    // Halves of 1.5 s need not tell whether anything else is missing; what is certain they tell.
+    assert_ne!(json["verdict"], "nothing-missing", "{out}");
+    let effect = &json["effects"][0];
+    assert_eq!((&effect["kind"], &effect["joint"]), (&"actuator-friction".into(), &"P2".into()));
+    assert!(effect["evidence"].as_str().unwrap().starts_with("removes "));
+    for (name, fitted) in effect["params"].as_object().unwrap() {
+        let [low, value, high] =
+            [&fitted["ci95"][0], &fitted["value"], &fitted["ci95"][1]].map(|v| v.as_f64().unwrap());
+        assert!(low < value && value < high && fitted["std"].as_f64().unwrap() > 0.0, "{name}");
+    }
+    let errors = json["errors"].as_array().unwrap();
+    let channels: Vec<&str> = errors.iter().map(|e| e["channel"].as_str().unwrap()).collect();
+    assert_eq!(channels, ["q1", "q2", "q3", "F1", "F2", "F3", "x", "y", "phi"]);
+    for error in errors {
+        assert_eq!((&error["run"], &error["role"]), (&"run.csv".into(), &"calibration".into()));
+        for key in ["before", "after", "floor"] {
+            assert_number(&error[key], key);
+        }
+    }
+    let force = &errors[4];
+    assert_eq!(force["unit"], "N");
+    assert!(force["before"].as_f64().unwrap() > 10.0 * force["after"].as_f64().unwrap());
+    let ranking = json["ranking"].as_array().unwrap();
+    assert!(ranking.len() > 4);
+    for candidate in ranking {
+        let score = candidate["validation_score"].as_f64().unwrap();
+        assert!((0.0..=1.0).contains(&score), "{candidate}");
+        let kind = candidate["kind"].as_str().unwrap();
+        assert!(tried.contains(&kind), "--without {kind} was not heeded");
+    }
+    let kept: Vec<&Value> = ranking.iter().filter(|c| c["kept"] == true).collect();
+    assert_eq!((kept.len(), &kept[0]["kind"]), (1, &"actuator-friction".into()));
+    for key in ["simulations", "wall_s"] {
+        assert_number(&json[key], key);
+    }
+    assert!(json["rapier_version"].is_string() && json["scenario_hash"].is_string());
+    let residuals = json["residuals"].as_array().unwrap();
+    assert_eq!(residuals.len(), 3);
+    assert!(
+        residuals[2]["mean_square_before"].as_f64() > residuals[2]["mean_square_after"].as_f64()
+    );
+
+    let (predicted, log) = (place.read("c/predicted-run.csv"), table.text());
+    assert_eq!(predicted.lines().count(), log.lines().count());
+    assert_eq!(predicted.lines().next(), log.lines().next());
+
+    let page = place.read("c/index.html");
+    let verdict = json["verdict"].as_str().unwrap();
+    assert!(page.contains(&format!("Calibration of rig-2: {verdict}")) && !page.contains("NaN"));
+    for id in ["facts", "effects", "errors", "depends-on", "candidates", "residuals", "provenance"]
+    {
+        assert!(page.contains(&format!("id=\"{id}\"")), "{id}");
+    }
+
+    // The calibrated model is a scenario like any other.
+    place
+        .good("run c/calibrated.toml --set simulation.settle=0.01 --duration 0.03 --out r --quiet");
+    let predicted = place.good("predict c/calibrated.toml --data run.csv --out p --json");
+    let predicted: Value = serde_json::from_str(&predicted).unwrap();
+    for (one, other) in predicted["errors"].as_array().unwrap().iter().zip(errors) {
+        for key in ["channel", "unit", "before", "after", "floor"] {
+            assert_eq!(one[key], other[key], "{key} of {}", one["channel"]);
+        }
+    }
+
+    let again = format!("calibrate --rig {rig_file} --data run.csv --out c");
+    place.refused(&again, &["`c` already holds a result", "--force"]);
+}
