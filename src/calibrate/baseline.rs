@@ -2,12 +2,12 @@
 
 use super::lens::Lens;
 use super::model::{Case, Ensemble, SearchError, Segment};
+use super::rattle;
 use super::replica;
 use super::spectrum::Noise;
 use super::start::Start;
 use crate::effects::Setting;
 use crate::measure::log::Log;
-use crate::mechanism::Mechanism;
 use crate::scenario::Problem;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -37,7 +37,8 @@ struct Part {
     draws: Vec<DVector<f64>>,
     /// What of the residual is the platform's swing, by the share that may be missed.
     swing: Vec<Vec<f64>>,
-    /// What the noise has more of, as a logarithm of its determinant, for the recorded swing being lost.
+    /// What the noise has more of, as a logarithm of its determinant, for the recorded swing being lost, or
+    /// for joints that rattle although they stay loaded as declared.
     lost: f64,
 }
 
@@ -64,9 +65,8 @@ impl Case {
         like: Option<&Baseline>,
     ) -> Result<Baseline, SearchError> {
         let starts = like.map(|like| like.starts.as_slice());
-        let Ensemble { starts, logs, rattles } = self.ensemble(effects, self.replicas, starts)?;
-        let still: Vec<Mechanism> = starts.iter().map(|start| start.still.clone()).collect();
-        let still = self.logs(&still, 0..1)?;
+        let Ensemble { starts, logs, still, rattles } =
+            self.ensemble(effects, rattle::REPLICAS, starts)?;
         let view = |log: &Log| Lens::new(log).expect("the channels of the recorded log");
         let views: Vec<Vec<Lens>> =
             logs.iter().map(|logs| logs.par_iter().map(view).collect()).collect();
@@ -91,7 +91,7 @@ impl Case {
                     difference(&look(&log), &without(&bias, &clean[index], clean.len()))
                 })
                 .collect();
-            let mut swing = difference(&bias, &look(&still[segment.run][0]));
+            let mut swing = difference(&bias, &look(&still[segment.run]));
             for (channel, swing) in swing.iter_mut().enumerate() {
                 let share =
                     if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { SWING };
@@ -101,6 +101,18 @@ impl Case {
                 let draws = draws.iter().map(|draw| noise.whiten(draw)).collect();
                 Part { segment: segment.clone(), bias, noise, draws, swing, lost }
             };
+            if rattles && !self.chaotic {
+                // Beside models whose noise is the sensors' alone.
+                let draw = |draw| {
+                    let noisy = replica::with_noise(&logs[0], &self.sensors, draw as u64 + 1000);
+                    difference(&look(&noisy), &clean[0])
+                };
+                let sensors: Vec<_> = (0..DRAWS).into_par_iter().map(draw).collect();
+                let sensors = Noise::from_draws(&sensors, &swing).log_determinant();
+                let noise = Noise::from_draws(&draws, &swing);
+                let lost = noise.log_determinant() - sensors;
+                return part(noise, swing, lost);
+            }
             if rattles || starts[segment.run].shown {
                 return part(Noise::from_draws(&draws, &swing), swing, 0.0);
             }
@@ -172,7 +184,8 @@ impl Baseline {
         parts.map(|part| part.noise.log_determinant()).sum()
     }
 
-    /// What a model pays on segments for having lost the recorded swing: its noise is larger.
+    /// What a model pays on segments for having lost the recorded swing, or for a rattle that the declared
+    /// machine has not: its noise is larger.
     pub fn lost(&self, on: &[Segment]) -> f64 {
         let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
         parts.map(|part| part.lost).sum()

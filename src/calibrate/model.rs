@@ -85,6 +85,11 @@ pub fn released(
     Ok(machine)
 }
 
+/// More replicas of each run.
+fn extend(logs: &mut [Vec<Log>], more: Vec<Vec<Log>>) {
+    logs.iter_mut().zip(more).for_each(|(logs, more)| logs.extend(more));
+}
+
 /// Why a search cannot go on.
 #[derive(Debug, thiserror::Error)]
 pub enum SearchError {
@@ -128,6 +133,8 @@ pub(super) struct Ensemble {
     pub starts: Vec<Start>,
     /// Noiseless logs: `[run][replica]`.
     pub logs: Vec<Vec<Log>>,
+    /// Noiseless logs of each run's machine without a swing.
+    pub still: Vec<Log>,
     /// Whether replicas differ by more than sensors see; there is one of each run if not.
     pub rattles: bool,
 }
@@ -151,26 +158,7 @@ impl Case {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn simulate(&self, effects: &[Setting]) -> Result<Vec<Vec<Log>>, SearchError> {
-        let Ensemble { starts, mut logs, rattles } =
-            self.ensemble(effects, 2 * self.replicas, None)?;
-        if rattles {
-            return Ok(logs);
-        }
-        // What is missing may rattle a machine that stays loaded as declared, if only a little: two
-        // replicas that soon are of one phase no more are as far from each other as from the recording.
-        let machines: Vec<Mechanism> = starts.into_iter().map(|start| start.machine).collect();
-        let second = self.logs(&machines, 1..2)?;
-        let seen = logs
-            .iter()
-            .zip(&second)
-            .map(|(first, second)| rattle::difference(&first[0], &second[0], &self.sensors).1);
-        if seen.fold(0.0, f64::max) > rattle::SEEN {
-            let others = self.logs(&machines, 2..2 * rattle::REPLICAS as u64)?;
-            for ((logs, second), others) in logs.iter_mut().zip(second).zip(others) {
-                logs.extend(second.into_iter().chain(others));
-            }
-        }
-        Ok(logs)
+        Ok(self.ensemble(effects, 2 * rattle::REPLICAS, None)?.logs)
     }
 
     /// Noiseless logs of a model with these effects, so many of each run where its joints rattle. What the
@@ -185,22 +173,47 @@ impl Case {
         count: usize,
         like: Option<&[Start]>,
     ) -> Result<Ensemble, SearchError> {
+        let replicas = 2..count as u64;
+        let still = |starts: &[Start]| {
+            let machines: Vec<Mechanism> = starts.iter().map(|start| start.still.clone()).collect();
+            Ok::<_, Halt>(self.logs(&machines, 0..1)?.into_iter().flatten().collect::<Vec<Log>>())
+        };
         if self.chaotic {
             let machines = self.released(effects)?;
             let mut logs = self.logs(&machines, 0..2)?;
-            let seen = |logs: &Vec<Log>| rattle::difference(&logs[0], &logs[1], &self.sensors).1;
-            if logs.iter().map(seen).fold(0.0, f64::max) > rattle::SEEN {
-                let others = self.logs(&machines, 2..count as u64)?;
-                logs.iter_mut().zip(others).for_each(|(logs, others)| logs.extend(others));
+            if self.differ(&logs) {
+                extend(&mut logs, self.logs(&machines, replicas)?);
                 let start = |machine| Start::let_go(machine, self.control);
-                let starts = machines.into_par_iter().map(start).collect::<Result<_, _>>()?;
-                return Ok(Ensemble { starts, logs, rattles: true });
+                let starts: Vec<Start> =
+                    machines.into_par_iter().map(start).collect::<Result<_, _>>()?;
+                return Ok(Ensemble { still: still(&starts)?, starts, logs, rattles: true });
             }
         }
         let starts = self.starts(effects, like)?;
         let machines: Vec<Mechanism> = starts.iter().map(|start| start.machine.clone()).collect();
-        let logs = self.logs(&machines, 0..1)?;
-        Ok(Ensemble { starts, logs, rattles: false })
+        let mut logs = self.logs(&machines, 0..1)?;
+        let still = still(&starts)?;
+        // What is missing may rattle a machine that stays loaded as declared, if only a little: replicas
+        // that soon are of one phase no more are as far from each other as from the recording.
+        let lasts =
+            |(logs, still): (&Vec<Log>, &Log)| rattle::swing_lasts(&logs[0], still, &self.sensors);
+        let suspect = !self.chaotic && logs.iter().zip(&still).any(lasts);
+        if suspect {
+            extend(&mut logs, self.logs(&machines, 1..2)?);
+        }
+        let rattles = suspect && self.differ(&logs);
+        if rattles {
+            extend(&mut logs, self.logs(&machines, replicas)?);
+        } else {
+            logs.iter_mut().for_each(|logs| logs.truncate(1));
+        }
+        Ok(Ensemble { starts, logs, still, rattles })
+    }
+
+    /// Whether the first two replicas of a run differ by more than sensors see.
+    fn differ(&self, logs: &[Vec<Log>]) -> bool {
+        let seen = |logs: &Vec<Log>| rattle::difference(&logs[0], &logs[1], &self.sensors).1;
+        logs.iter().map(seen).fold(0.0, f64::max) > rattle::SEEN
     }
 
     /// Noiseless logs of a model, these replicas of each run.

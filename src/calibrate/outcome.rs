@@ -195,10 +195,13 @@ fn estimates(model: &Settled, on: &[Segment]) -> Vec<Vec<Estimate>> {
     let mean_square = model.fit.chi2 / (model.fit.white.len().saturating_sub(count).max(1)) as f64;
     let jacobian = model.fit.jacobian.as_ref().filter(|_| count > 0);
     let inverse = jacobian.and_then(inverse_normal);
-    let pull = match (jacobian, &inverse) {
-        (Some(jacobian), Some(inverse)) if model.baseline.rattles => {
-            pull(jacobian, inverse, &model.baseline.draws(on))
-        }
+    // Whole simulations are fitted sample by sample, where there is next to no rattle.
+    let through_the_lens = |jacobian: &&DMatrix<f64>, draws: &[DVector<f64>]| {
+        model.baseline.rattles && draws[0].len() == jacobian.nrows()
+    };
+    let draws = model.baseline.draws(on);
+    let pull = match (jacobian.filter(|j| through_the_lens(j, &draws)), &inverse) {
+        (Some(jacobian), Some(inverse)) => pull(jacobian, inverse, &draws),
         _ => 1.0,
     };
     let factor = mean_square.max(pull).max(1.0).sqrt();
