@@ -93,3 +93,31 @@ pub fn noise(sensors: &Sensors, channel: Channel) -> Option<f64> {
     };
     Some(if declared > 0.0 { declared } else { exact })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// A log of 3 s whose `x` swings at 40 Hz with this amplitude in m over time in s.
+    fn swinging(amplitude: impl Fn(f64) -> f64) -> Log {
+        let x = (0..3000).map(|i| f64::from(i) * 1e-3);
+        let x = x.map(|t| amplitude(t) * (TAU * 40.0 * t).sin()).collect();
+        Log::new("swing.csv", 0.0, 1e-3, vec![(Channel::Pose(0), x)])
+    }
+
+    #[test]
+    fn a_swing_that_dies_is_told_from_one_that_lasts() {
+        let sensors = Sensors { pose_std: 1e-6, ..Sensors::default() };
+        let still = swinging(|_| 0.0);
+        // As dies, hardly seen, not yet dead, and driven for ever.
+        for (log, lasts) in [
+            (swinging(|t| 1e-4 * (-3.0 * t).exp()), false),
+            (swinging(|_| 2e-7), false),
+            (swinging(|t| 1e-4 * (-t).exp()), false),
+            (swinging(|_| 1e-5), true),
+        ] {
+            assert_eq!(swing_lasts(&log, &still, &sensors), lasts);
+        }
+    }
+}

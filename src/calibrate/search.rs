@@ -253,12 +253,35 @@ fn told_apart(case: &Case, question: &Question, ways: &mut [Way]) {
     let Some(&(first, least)) = near.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
         return;
     };
+    let first = simplest(case, question, ways, near.iter().map(|(i, _)| *i), first);
     let others = near.iter().filter(|(i, left)| *i != first && left - least < APART);
     let as_good: Vec<Setting> = others.filter_map(|(i, _)| ways[*i].added().cloned()).collect();
     if let Some(round) = ways[first].rounds.last_mut() {
         round.as_good = as_good;
     }
     ways[..=first].rotate_right(1);
+}
+
+/// Which of the ways that are `near` has the effects of the `first` in variants with the fewest values, and
+/// still is noise, where joints rattle: what rattle leaves open between variants is more than values
+/// that are none take up.
+fn simplest(
+    case: &Case,
+    question: &Question,
+    ways: &[Way],
+    near: impl Iterator<Item = usize>,
+    first: usize,
+) -> usize {
+    if !ways[first].model.baseline.rattles {
+        return first;
+    }
+    let effects = |i: usize| &ways[i].model.fit.effects;
+    let values = |i: usize| effects(i).iter().map(|effect| effect.values().count()).sum::<usize>();
+    let simpler = near.filter(|&i| {
+        let same = names(effects(i)) == names(effects(first)) && values(i) < values(first);
+        same && is_noise(&left(case, question, &ways[i].model))
+    });
+    simpler.min_by_key(|&i| values(i)).unwrap_or(first)
 }
 
 /// The models that one more effect makes of one, its round, and the simulations it took. The first way

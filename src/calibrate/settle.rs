@@ -2,7 +2,7 @@
 
 use super::baseline::Baseline;
 use super::fit::{self, Fit, Target};
-use super::instrument::unpulled;
+use super::instrument::{changed, unpulled};
 use super::model::{Case, SearchError, Segment};
 use super::whole::{close, rough};
 use crate::effects::Setting;
@@ -166,15 +166,21 @@ pub fn simplified(case: &Case, question: &Question, model: Settled) -> Settled {
             effects[i] = simpler;
             let baseline = best.baseline.clone();
             let on = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
-            let Some(mut fit) = fit::fit(&on, &effects, 8) else { continue };
-            let Some(held) = (Target { on: question.hold, ..on }).look(&fit.effects) else {
-                continue;
+            let held = Target { on: question.hold, ..on };
+            let rattles = baseline.rattles;
+            let Some(fit) = fit::fit(&on, &effects, 8) else { continue };
+            let fit = if rattles { unpulled(&on, fit) } else { fit };
+            let white = match rattles {
+                // The data's rattle speaks for the variant that was fitted to it.
+                true => changed(&held, &best.fit.effects, &fit.effects),
+                false => held.look(&fit.effects).map(|there| there.white),
             };
+            let Some(held) = white.map(|white| white.norm_squared()) else { continue };
             let fewer = (effect.values().count() - names.len()) as f64;
-            if held.chi2 - best.held < 2.0 * GAIN_PER_VALUE * fewer + 4.0 {
-                fit.jacobian = fit::jacobian(&on, &fit);
-                let misfit = best.misfit + held.chi2 - best.held;
-                best = Settled { fit, held: held.chi2, misfit, ..best };
+            if held - best.held < 2.0 * GAIN_PER_VALUE * fewer + 4.0 {
+                let jacobian = if rattles { fit.jacobian } else { fit::jacobian(&on, &fit) };
+                let misfit = best.misfit + held - best.held;
+                best = Settled { fit: Fit { jacobian, ..fit }, held, misfit, ..best };
                 break;
             }
         }
