@@ -178,6 +178,7 @@ fn a_payload_that_nearly_unloads_a_leg_is_found() {
     assert!(result.right, "{:?}: {:?}", result.verdict, result.found);
     assert_eq!(result.values.len(), 3);
     for Estimated { name, truth, value, std } in result.values {
+        let std = std.unwrap();
         assert!(
             (value - truth).abs() < 0.03 * truth.abs(),
             "{name}: {value} ± {std}, hidden {truth}"
@@ -261,6 +262,7 @@ fn a_machine_that_rattles_under_what_it_lacks_is_understood() {
     assert!(result.worst_ratio < 1.3, "{} floors", result.worst_ratio);
     assert_eq!(result.values.len(), 3);
     for Estimated { name, truth, value, std } in result.values {
+        let std = std.unwrap();
         assert!((value - truth).abs() < 4.0 * std, "{name}: {value} ± {std}, hidden {truth}");
     }
 }

@@ -297,11 +297,14 @@ fn beside(
     let rattles = usize::from(model.baseline.rattles);
     let mut ranking = screen(case, question, model);
     let best = ranking.first().map_or(0.0, |(scored, _)| scored.gain);
+    // What shows in the swing alone, as friction that damps it, a lens does not see: then any candidate is
+    // as good a guess as the first.
+    let blind = ranking.first().is_some_and(|(scored, _)| scored.share < LEAST);
     let rivals: Vec<usize> = (0..ranking.len())
         .filter(|&i| {
             let (scored, effects) = &ranking[i];
             let reach = f64::min(RIVAL_SHARE * best, best - REACH[rattles]);
-            let worth = scored.gain > WORTH[rattles] && scored.gain > reach;
+            let worth = scored.gain > WORTH[rattles] && (blind || scored.gain > reach);
             worth && !tried.contains(&Way::key(effects))
         })
         .take(RIVALS[usize::from(!model.fit.effects.is_empty())])

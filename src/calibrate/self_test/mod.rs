@@ -68,8 +68,8 @@ pub struct Value {
     pub truth: f64,
     /// As found.
     pub value: f64,
-    /// Its standard deviation.
-    pub std: f64,
+    /// Its standard deviation, if the fit says one.
+    pub std: Option<f64>,
 }
 
 /// Hides, calibrates, compares.
@@ -109,7 +109,8 @@ fn judge(trial: &Trial, hidden: &[Setting], outcome: &Outcome) -> Tried {
                     _ => 0.0,
                 };
                 let name = format!("{}.{name}", lacking.kind.name);
-                values.push(Value { name, truth, value: e.value - turns * TAU, std: e.std });
+                let std = Some(e.std).filter(|std| std.is_finite());
+                values.push(Value { name, truth, value: e.value - turns * TAU, std });
             }
         }
     }

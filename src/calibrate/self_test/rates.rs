@@ -84,7 +84,7 @@ fn near(value: &Value) -> bool {
 }
 
 fn covered(value: &Value) -> bool {
-    (value.value - value.truth).abs() < 1.96 * value.std
+    value.std.is_some_and(|std| (value.value - value.truth).abs() < 1.96 * std)
 }
 
 /// `9 of 10 (90 %, 60–98)`.
