@@ -256,3 +256,38 @@ fn mean(draws: &[Vec<Vec<f64>>]) -> Vec<Vec<f64>> {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// Six replicas of one channel that swing alike, and differ by a rattle of this size besides.
+    fn replicas(swing: f64, rattle: f64) -> Vec<Vec<Vec<f64>>> {
+        let of = |replica: usize| {
+            let value = |k: usize| {
+                // Tones that stand at right angles to each other and to the swing.
+                let own = (TAU * (20.0 + replica as f64) * k as f64 / 200.0).sin();
+                swing * (TAU * 3.0 * k as f64 / 200.0).sin() + rattle * own
+            };
+            vec![(0..200).map(value).collect()]
+        };
+        (0..6).map(of).collect()
+    }
+
+    fn share(swing: f64, rattle: f64) -> f64 {
+        let replicas = replicas(swing, rattle);
+        // The machine at rest does not move.
+        let swing = mean(&replicas).remove(0);
+        coherence(&replicas, 0, &swing)
+    }
+
+    #[test]
+    fn what_replicas_have_in_common_is_a_swing() {
+        assert!((share(1.0, 0.0) - 1.0).abs() < 1e-12);
+        assert!(share(0.0, 1.0) == 0.0);
+        // Rattle of amplitude 0.5: of the difference 1 + 0.25/6 is the mean's and 0.25 (1 + 1/6) rattle's.
+        let expected = f64::sqrt(1.0 - 0.25 * (1.0 + 1.0 / 6.0) / (1.0 + 0.25 / 6.0));
+        assert!((share(1.0, 0.5) - expected).abs() < 1e-9);
+    }
+}
