@@ -15,6 +15,7 @@ pub mod least_squares;
 pub mod left;
 pub mod lens;
 pub mod model;
+pub mod needed;
 pub mod outcome;
 mod page;
 pub mod plausibility;

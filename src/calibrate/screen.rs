@@ -21,7 +21,9 @@ pub struct Scored {
     pub effect: Setting,
     /// Drop of Σ of squares on the held-out segments, less what its number of values may bring.
     pub gain: f64,
-    /// Share of the excess above noise that it removes there, 0…1.
+    /// Drop of Σ of squares on the segments that it was fitted on.
+    pub fitted: f64,
+    /// Share of the excess above noise that it removes on the held-out segments, 0…1.
     pub share: f64,
     /// Whether it was simulated, rather than looked at through the lens alone.
     pub simulated: bool,
@@ -66,9 +68,10 @@ pub fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored,
             let own = Target { fixed: &others, blind: blind.as_ref(), ..target };
             let plain = own.look(&[])?;
             let tuned = candidates::tune(&own, &plain, candidate)?;
+            let fitted = plain.chi2 - tuned.chi2;
             let mut effects = [others, tuned.effects.clone()].concat();
             // All values together, where it is worth the time.
-            if plain.chi2 - tuned.chi2 > WORTH && (effects.len() > 1 || baseline.rattles) {
+            if fitted > WORTH && (effects.len() > 1 || baseline.rattles) {
                 let fit = fit::fit(&target, &effects, 3)?;
                 let fit = if baseline.rattles { unpulled(&target, fit) } else { fit };
                 effects = fit.effects;
@@ -82,7 +85,7 @@ pub fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored,
             let effect = effects.last()?.clone();
             let gain = model.held - left - GAIN_PER_VALUE * effect.values().count() as f64;
             let share = share(model.held, left, case, question, baseline);
-            Some((Scored { effect, gain, share, simulated: false }, effects))
+            Some((Scored { effect, gain, fitted, share, simulated: false }, effects))
         })
         .collect();
     scored.sort_by(|a, b| b.0.gain.total_cmp(&a.0.gain));

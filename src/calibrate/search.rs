@@ -5,6 +5,7 @@ use super::fit::Target;
 use super::instrument::changed;
 use super::left::{is_noise, left};
 use super::model::{Case, SearchError};
+use super::needed::{contains, needed};
 use super::screen::{Scored, screen, share};
 use super::settle::{GAIN_PER_VALUE, Question, Settled, refined, settle, simplified};
 use crate::effects::{SELDOM, Setting};
@@ -33,12 +34,17 @@ const REACH: [f64; 2] = [0.0, 500.0];
 const RIVALS: [usize; 2] = [6, 3];
 const RIVAL_SHARE: f64 = 0.6;
 
+/// Candidates that are simulated for what they explain of the data they were fitted to, where a lens sees
+/// next to nothing that holds on other data.
+const FITTED: usize = 3;
+
 /// Models that are followed at once while none of them is noise, and the share of the best one's drop
 /// that makes another worth following.
 const WAYS: usize = 4;
 const WAY_SHARE: f64 = 0.9;
 
-/// Simulations after which values have settled, at most; where joints rattle the best of so many counts.
+/// Simulations after which values have settled, at most; where the declared machine's joints rattle the best
+/// of so many counts. Where they rattle under what is missing alone, a first guess is far off.
 const SETTLES: [usize; 2] = [7, 4];
 
 /// Most effects that are added.
@@ -192,6 +198,10 @@ pub fn search(
         ways.append(&mut next);
     }
     let (kept, count) = needed(case, question, best.model, threshold, &point_by_point, tell)?;
+    for added in best.rounds.iter_mut().filter_map(|round| round.added.as_mut()) {
+        let inner = kept.fit.effects.iter().find(|effect| contains(added, effect));
+        *added = inner.unwrap_or(added).clone();
+    }
     best.model = kept;
     simulations += count + point_by_point.into_inner();
     Ok(Found { best, declared, certain, simulations })
@@ -207,7 +217,7 @@ fn finished(
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Way, SearchError> {
     let like = Some(&way.model.baseline);
-    let settles = SETTLES[usize::from(way.model.baseline.rattles)];
+    let settles = SETTLES[usize::from(case.chaotic)];
     let mut settled = |effects: &[Setting]| {
         tell(&format!("settling {}", names(effects)));
         let model = settle(case, question, effects, settles, like)?;
@@ -297,18 +307,30 @@ fn beside(
     let rattles = usize::from(model.baseline.rattles);
     let mut ranking = screen(case, question, model);
     let best = ranking.first().map_or(0.0, |(scored, _)| scored.gain);
-    // What shows in the swing alone, as friction that damps it, a lens does not see: then any candidate is
-    // as good a guess as the first.
+    // What shows in the swing alone, as friction that damps it, a lens does not see, nor what makes joints
+    // rattle that stay loaded without: then any candidate is as good a guess as the first, and so are those
+    // that explain what they were fitted to.
     let blind = ranking.first().is_some_and(|(scored, _)| scored.share < LEAST);
-    let rivals: Vec<usize> = (0..ranking.len())
-        .filter(|&i| {
-            let (scored, effects) = &ranking[i];
-            let reach = f64::min(RIVAL_SHARE * best, best - REACH[rattles]);
-            let worth = scored.gain > WORTH[rattles] && (blind || scored.gain > reach);
-            worth && !tried.contains(&Way::key(effects))
-        })
+    let reach = f64::min(RIVAL_SHARE * best, best - REACH[rattles]);
+    let untried = |&i: &usize| !tried.contains(&Way::key(&ranking[i].1));
+    let worth = |&i: &usize| {
+        let gain = ranking[i].0.gain;
+        gain > WORTH[rattles] && (blind || gain > reach)
+    };
+    let mut rivals: Vec<usize> = (0..ranking.len())
+        .filter(worth)
+        .filter(untried)
         .take(RIVALS[usize::from(!model.fit.effects.is_empty())])
         .collect();
+    if blind {
+        let fitted = |i: &usize| ranking[*i].0.fitted;
+        let mut others: Vec<usize> = (0..ranking.len())
+            .filter(|i| fitted(i) > WORTH[rattles] && !rivals.contains(i))
+            .filter(untried)
+            .collect();
+        others.sort_by(|a, b| fitted(b).total_cmp(&fitted(a)));
+        rivals.extend(others.into_iter().take(FITTED));
+    }
     let mut simulations = 0;
     let mut settled = Vec::new();
     for &i in &rivals {
@@ -344,35 +366,6 @@ fn beside(
         Way { model, rounds, certain }
     });
     Ok((ways.collect(), round, simulations))
-}
-
-/// The model without those effects that the others have made needless, and the simulations it took.
-fn needed(
-    case: &Case,
-    question: &Question,
-    model: Settled,
-    threshold: f64,
-    point_by_point: &AtomicUsize,
-    tell: &(dyn Fn(&str) + Sync),
-) -> Result<(Settled, usize), SearchError> {
-    let mut best = model;
-    let mut simulations = 0;
-    let mut i = 0;
-    while best.fit.effects.len() > 1 && i < best.fit.effects.len() {
-        let mut fewer = best.fit.effects.clone();
-        let dropped = fewer.remove(i);
-        tell(&format!("doing without {}", name(&dropped)));
-        let without = settle(case, question, &fewer, 2, Some(&best.baseline))?;
-        simulations += without.times * case.simulations();
-        let without = refined(case, question, without, point_by_point)?;
-        let values = dropped.values().count() as f64;
-        if without.misfit - best.misfit - GAIN_PER_VALUE * values < threshold {
-            best = without;
-        } else {
-            i += 1;
-        }
-    }
-    Ok((best, simulations))
 }
 
 /// An effect in words: `joint-wear at A2`.
