@@ -1,6 +1,6 @@
 //! A model simulated as a recording was made, through the same sensors.
 
-use crate::engine::{Halt, Schedule, StepControl, run};
+use crate::engine::{Halt, LONGEST_STEP, Schedule, StepControl, run};
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
@@ -12,8 +12,8 @@ use rand_distr::{Distribution, StandardNormal, StandardUniform};
 use std::f64::consts::{PI, TAU};
 
 /// Longest time between two samples of a simulated force in s: a fine grid for the sensors'
-/// low-pass. It is also the longest step under error control, so that such rows cost nothing.
-const FINE: f64 = 2e-4;
+/// low-pass.
+const FINE: f64 = 2.5e-4;
 
 /// Speed in m/s by which starts of replicas differ: far below what any sensor sees, and after some
 /// e-foldings of a rattling machine its rattle is another.
@@ -38,7 +38,8 @@ pub fn simulate(
     let direction = Vector2::from_fn(|_, _| sample(&mut random));
     let output = mechanism.output;
     mechanism.bodies[output].start.twist += (direction * START_SPREAD).push(0.0);
-    let fine = (log.interval / FINE).ceil().max(1.0) as usize;
+    let longest = mechanism.longest_servo_step().map_or(LONGEST_STEP, |s| s.min(LONGEST_STEP));
+    let fine = fine_rows(log.interval, longest);
     let interval = log.interval / fine as f64;
     // The log's rows fall on rows of the simulation: the epoch is a whole number of them.
     let lead = (-mechanism.epoch / interval).round() as usize;
@@ -95,6 +96,14 @@ pub fn simulate(
     Ok(Log::new(&log.name, log.start, log.interval, channels))
 }
 
+/// Rows of a simulation in one of a log: on a fine grid, and steps up to the `longest` reach from row to row
+/// without slivers. All times in s.
+fn fine_rows(interval: f64, longest: f64) -> usize {
+    let least = (interval / FINE).ceil().max(1.0) as usize;
+    let steps = |rows: &usize| rows * (interval / (*rows as f64 * longest)).ceil() as usize;
+    (least..=2 * least).min_by_key(steps).unwrap_or(least)
+}
+
 /// The log with the sensors' noise and rounding.
 pub fn with_noise(clean: &Log, sensors: &Sensors, seed: u64) -> Log {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -125,4 +134,19 @@ pub fn with_noise(clean: &Log, sensors: &Sensors, seed: u64) -> Log {
 /// A standard normal number.
 fn sample(random: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(random)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_as_far_apart_as_steps_reach() {
+        // 1 ms in 8 steps of 125 µs, 5 of 200 µs, 7 of 143 µs; at 4 kHz each row is one.
+        for (interval, longest, rows) in
+            [(1e-3, 1.26e-4, 4), (1e-3, 2e-4, 5), (1e-3, 1.5e-4, 7), (2.5e-4, 2e-4, 1)]
+        {
+            assert_eq!(fine_rows(interval, longest), rows, "{longest}");
+        }
+    }
 }

@@ -19,8 +19,9 @@ use nalgebra::Vector3;
 /// Inner nodes of the four-point Lobatto rule on [0, 1]: ½(1 ∓ 1/√5); weights 1, 5, 5, 1 over 12.
 const NODES: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];
 
-/// Longest step in s: a journal at 0.3 m/s crosses 60 µm in it, so that no hit is stepped over.
-const LONGEST_STEP: f64 = 2e-4;
+/// Longest step in s under error control: a journal at 0.3 m/s crosses 60 µm in it, so that no hit is
+/// stepped over.
+pub const LONGEST_STEP: f64 = 2e-4;
 
 /// First step in s, before anything is known of the error.
 const FIRST_STEP: f64 = 1e-6;

@@ -18,6 +18,7 @@ mod run;
 mod tests;
 mod world;
 
+pub use adaptive::LONGEST_STEP;
 pub use clearance_joints::{ClearanceJoint, ClearanceJoints};
 pub use colliders::{JointColliders, Solver};
 pub use dispatcher::RingDispatcher;

@@ -44,7 +44,14 @@ impl CubicSpline {
         if t > self.t[last] {
             return [self.value[last], 0.0, 0.0];
         }
-        let i = self.t.partition_point(|&knot| knot <= t).clamp(1, last);
+        // Samples mostly are equally far apart: a logarithmic search takes 3 % of a simulation.
+        let share = (t - self.t[0]) / (self.t[last] - self.t[0]);
+        let guess = ((share * last as f64) as usize + 1).min(last);
+        let i = if (self.t[guess - 1]..self.t[guess]).contains(&t) {
+            guess
+        } else {
+            self.t.partition_point(|&knot| knot <= t).clamp(1, last)
+        };
         let h = self.t[i] - self.t[i - 1];
         let (a, b) = ((self.t[i] - t) / h, (t - self.t[i - 1]) / h);
         let (y0, y1) = (self.value[i - 1], self.value[i]);
