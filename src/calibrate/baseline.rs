@@ -1,7 +1,7 @@
 //! What simulations of a model say of its own residuals.
 
 use super::lens::Lens;
-use super::model::{Case, Ensemble, SearchError, Segment};
+use super::model::{Case, Ensemble, Known, SearchError, Segment};
 use super::rattle;
 use super::replica;
 use super::spectrum::Noise;
@@ -26,6 +26,25 @@ pub struct Baseline {
     pub rattles: bool,
     /// Its noiseless logs, prepared to be looked at: `[run][replica]`.
     views: Arc<Vec<Vec<Lens>>>,
+    /// Noiseless logs of its machines without a swing, run by run.
+    still: Arc<Vec<Log>>,
+}
+
+/// A baseline that saves time, for a model of which much is known.
+#[derive(Clone, Copy, Debug)]
+pub enum Like<'a> {
+    /// Of a model with other effects: its swing is found from that one's.
+    Beside(&'a Baseline),
+    /// Of the same model at values nearby: where joints stay loaded its swing is as large.
+    Same(&'a Baseline),
+}
+
+impl<'a> Like<'a> {
+    fn baseline(self) -> &'a Baseline {
+        match self {
+            Self::Beside(baseline) | Self::Same(baseline) => baseline,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -53,8 +72,8 @@ impl Case {
     /// The baseline of a model with these effects, from simulations of it.
     ///
     /// Where joints stay loaded the platform swings in their play, and a lens's fault is to see that
-    /// swing: what the same machine does without a swing tells where. The starts of a model that is
-    /// `like` this one save time; where this one does not swing as recorded, that one's swing is noise.
+    /// swing: what the same machine does without a swing tells where. Where this one does not swing as
+    /// recorded, the swing of the model that is `like` it is noise.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -62,15 +81,23 @@ impl Case {
         &self,
         effects: &[Setting],
         segments: &[Segment],
-        like: Option<&Baseline>,
+        like: Option<Like>,
     ) -> Result<Baseline, SearchError> {
-        let starts = like.map(|like| like.starts.as_slice());
+        let same = match like {
+            Some(Like::Same(like)) if !like.rattles => Some(like),
+            _ => None,
+        };
+        let like = like.map(Like::baseline);
+        let known = Known {
+            starts: like.map(|like| like.starts.as_slice()),
+            still: same.map(|same| &same.still),
+        };
         let Ensemble { starts, logs, still, rattles } =
-            self.ensemble(effects, rattle::REPLICAS, starts)?;
+            self.ensemble(effects, rattle::REPLICAS, known)?;
         let view = |log: &Log| Lens::new(log).expect("the channels of the recorded log");
         let views: Vec<Vec<Lens>> =
             logs.iter().map(|logs| logs.par_iter().map(view).collect()).collect();
-        let known = |segment: &Segment| {
+        let known = |like: Option<&Baseline>, segment: &Segment| {
             let parts = &like.filter(|like| !like.rattles)?.parts;
             Some(parts.iter().find(|part| part.segment == *segment)?.swing.clone())
         };
@@ -91,12 +118,17 @@ impl Case {
                     difference(&look(&log), &without(&bias, &clean[index], clean.len()))
                 })
                 .collect();
-            let mut swing = difference(&bias, &look(&still[segment.run]));
-            for (channel, swing) in swing.iter_mut().enumerate() {
-                let share =
-                    if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { SWING };
-                swing.iter_mut().for_each(|value| *value *= share);
-            }
+            let seen_swing = || {
+                let mut swing = difference(&bias, &look(&still[segment.run]));
+                for (channel, swing) in swing.iter_mut().enumerate() {
+                    let share =
+                        if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { SWING };
+                    swing.iter_mut().for_each(|value| *value *= share);
+                }
+                swing
+            };
+            let same = known(same.filter(|_| !rattles), segment);
+            let swing = same.unwrap_or_else(seen_swing);
             let part = |noise: Noise, swing, lost| {
                 let draws = draws.iter().map(|draw| noise.whiten(draw)).collect();
                 Part { segment: segment.clone(), bias, noise, draws, swing, lost }
@@ -118,7 +150,7 @@ impl Case {
             }
             // Two swings of one size and any phase; the size that models beside it have, for they are
             // compared.
-            let swing = known(segment).unwrap_or(swing);
+            let swing = known(like, segment).unwrap_or(swing);
             let larger: Vec<Vec<f64>> = swing
                 .iter()
                 .map(|channel| channel.iter().map(|value| value * SQRT_2 / SWING).collect())
@@ -128,7 +160,7 @@ impl Case {
             part(noise, swing, lost)
         };
         let parts = segments.iter().map(part).collect();
-        Ok(Baseline { parts, starts, rattles, views: Arc::new(views) })
+        Ok(Baseline { parts, starts, rattles, views: Arc::new(views), still })
     }
 
     /// Residuals of the data under a model in units of noise, of all segments in a row.

@@ -1,7 +1,7 @@
 //! Values of effects fitted to residuals in units of noise.
 
 use super::baseline::Baseline;
-use super::least_squares::{self, Free, least_squares};
+use super::least_squares::{self, Effort, Free, least_squares};
 use super::model::{Case, Segment};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
@@ -87,7 +87,8 @@ const ENOUGH: f64 = 1e-3;
 /// built at its start.
 pub fn fit(target: &Target, effects: &[Setting], iterations: usize) -> Option<Fit> {
     let look = |values: &[f64]| Some(target.look(&with_values(effects, values))?.white);
-    let best = least_squares(&look, &free(effects), values(effects), iterations, ENOUGH)?;
+    let effort = Effort { steps: iterations, enough: ENOUGH, secant: false };
+    let best = least_squares(&look, &free(effects), values(effects), effort)?;
     Some(Fit {
         effects: with_values(effects, &best.values),
         chi2: best.residual.norm_squared(),

@@ -19,7 +19,7 @@ pub struct Best {
     pub values: Vec<f64>,
     /// The residual there, in units of noise.
     pub residual: DVector<f64>,
-    /// Its derivative by each value, from the last step but one, if the fit got so far.
+    /// Its derivative by each value, from before the last step, if the fit got so far.
     pub jacobian: Option<DMatrix<f64>>,
 }
 
@@ -44,44 +44,87 @@ pub fn jacobian(
     (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
 }
 
-/// Least squares from the given values on, at most `iterations` steps, until one brings no more than
-/// `enough` and as many parts of a thousand; none where there is no model at its start.
-pub fn least_squares(
-    look: Look,
-    free: &[Free],
-    start: Vec<f64>,
-    iterations: usize,
-    enough: f64,
-) -> Option<Best> {
+/// When a fit ends, and how it comes by derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Steps, at most.
+    pub steps: usize,
+    /// Drop of the sum of squares, beside as many parts of a thousand of it, that is none.
+    pub enough: f64,
+    /// Whether derivatives are those of the step before, corrected by what it found (Broyden), as long as
+    /// steps bring what they promise: where a look costs a simulation.
+    pub secant: bool,
+}
+
+/// Share of the promised drop from which a step has brought what it promised.
+const PROMISED: f64 = 0.25;
+
+/// Least squares from the given values on; none where there is no model at its start.
+pub fn least_squares(look: Look, free: &[Free], start: Vec<f64>, effort: Effort) -> Option<Best> {
     let residual = look(&start)?;
     let mut best = Best { values: start, residual, jacobian: None };
     let mut damping = 1e-6;
-    for _ in 0..iterations {
-        let Some(jacobian) = jacobian(look, free, &best.values, &best.residual) else { break };
+    let mut known = None;
+    for _ in 0..effort.steps {
+        let old = known.is_some();
+        let renewed = || jacobian(look, free, &best.values, &best.residual);
+        let Some(jacobian) = known.take().or_else(renewed) else { break };
         let scaled = DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |r, c| {
             jacobian[(r, c)] * free[c].step
         });
         let normal = scaled.transpose() * &scaled;
         let gradient = scaled.transpose() * &best.residual;
         let before = best.residual.norm_squared();
-        best.jacobian = Some(jacobian);
-        let mut now = before;
-        for _ in 0..6 {
+        let worth = |drop: f64| drop >= effort.enough * (1.0 + 1e-3 * before);
+        let mut done = true;
+        // What derivatives of before do not lead to, new ones may.
+        for _ in 0..if old { 1 } else { 6 } {
             let trial = step(free, &best.values, &normal, &gradient, damping);
+            let change = change(&best.values, &trial);
+            let expected = &best.residual + &jacobian * &change;
+            let promised = before - expected.norm_squared();
+            if effort.secant && !worth(promised) {
+                break;
+            }
             let there = look(&trial).filter(|there| there.norm_squared() < before);
+            done = !old;
             if let Some(residual) = there {
-                now = residual.norm_squared();
+                let drop = before - residual.norm_squared();
+                let kept = effort.secant && drop > PROMISED * promised;
+                known = kept.then(|| secant(&jacobian, &change, &residual - expected, free));
+                done = !worth(drop) && (kept || !old);
                 best = Best { values: trial, residual, ..best };
                 damping = (damping * 0.1).max(1e-9);
                 break;
             }
             damping = (damping * 10.0).max(1e-4);
         }
-        if before - now < enough * (1.0 + 1e-3 * before) {
+        best.jacobian = Some(jacobian);
+        if done {
             break;
         }
     }
     Some(best)
+}
+
+/// By how much values differ.
+fn change(before: &[f64], now: &[f64]) -> DVector<f64> {
+    let pairs = now.iter().zip(before);
+    DVector::from_iterator(now.len(), pairs.map(|(now, before)| now - before))
+}
+
+/// Derivatives that meet what a step found, which they `missed` by Δr − J Δx:
+/// `J + (Δr − J Δx) Δxᵀ/(Δxᵀ Δx)` in units of the values' steps (Broyden, *Math. Comp.* 19, 1965).
+fn secant(
+    jacobian: &DMatrix<f64>,
+    change: &DVector<f64>,
+    missed: DVector<f64>,
+    free: &[Free],
+) -> DMatrix<f64> {
+    let unit = free.iter().zip(change.iter()).map(|(free, change)| change / free.step.powi(2));
+    let along = DVector::from_iterator(change.len(), unit);
+    let length = along.dot(change).max(f64::MIN_POSITIVE);
+    jacobian + missed * along.transpose() / length
 }
 
 /// The values a damped step further. Those that lie on a bound and would leave it are held.
@@ -126,8 +169,10 @@ fn step(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     const WIDE: [f64; 2] = [-1e3, 1e3];
+    const NEW: Effort = Effort { steps: 100, enough: 1e-12, secant: false };
 
     #[test]
     fn a_curved_valley_is_followed_to_its_end() {
@@ -135,8 +180,29 @@ mod tests {
         let look =
             |v: &[f64]| Some(DVector::from_vec(vec![10.0 * (v[1] - v[0] * v[0]), 1.0 - v[0]]));
         let free = [Free { step: 1e-6, bounds: WIDE }; 2];
-        let best = least_squares(&look, &free, vec![-1.2, 1.0], 100, 1e-12).expect("a model");
+        let best = least_squares(&look, &free, vec![-1.2, 1.0], NEW).expect("a model");
         assert!(best.values.iter().all(|v| (v - 1.0).abs() < 1e-5), "{:?}", best.values);
+    }
+
+    #[test]
+    fn corrected_derivatives_save_looks() {
+        // Five values that bend each other a little: exp(x_i) + x_{i+1}/4 = exp(1) + 1/4.
+        let looks = AtomicUsize::new(0);
+        let look = |v: &[f64]| {
+            looks.fetch_add(1, Ordering::Relaxed);
+            let row = |i: usize| (v[i].exp() - 1f64.exp()) + 0.25 * (v[(i + 1) % 5] - 1.0);
+            Some(DVector::from_iterator(5, (0..5).map(row)))
+        };
+        let free = [Free { step: 1e-6, bounds: WIDE }; 5];
+        let count = |secant| {
+            looks.store(0, Ordering::Relaxed);
+            let effort = Effort { secant, ..NEW };
+            let best = least_squares(&look, &free, vec![0.9; 5], effort).expect("a model");
+            assert!(best.values.iter().all(|v| (v - 1.0).abs() < 1e-5), "{:?}", best.values);
+            looks.load(Ordering::Relaxed)
+        };
+        let (secant, new) = (count(true), count(false));
+        assert!(2 * secant < new + 5, "{secant} {new}");
     }
 
     #[test]
@@ -144,14 +210,14 @@ mod tests {
         // (a + b − 3)² + (a − b − 1)² without bounds: a = 2, b = 1; with a ≤ 1: b = 1.
         let look = |v: &[f64]| Some(DVector::from_vec(vec![v[0] + v[1] - 3.0, v[0] - v[1] - 1.0]));
         let free = [Free { step: 1e-3, bounds: [0.0, 1.0] }, Free { step: 1e-3, bounds: WIDE }];
-        let best = least_squares(&look, &free, vec![0.5, 0.0], 50, 1e-12).expect("a model");
+        let best = least_squares(&look, &free, vec![0.5, 0.0], NEW).expect("a model");
         assert!((best.values[0] - 1.0).abs() < 1e-9 && (best.values[1] - 1.0).abs() < 1e-6);
     }
 
     #[test]
     fn a_model_that_cannot_be_is_not_fitted() {
         let free = [Free { step: 1.0, bounds: WIDE }];
-        assert!(least_squares(&|_| None, &free, vec![0.0], 5, 0.1).is_none());
+        assert!(least_squares(&|_| None, &free, vec![0.0], NEW).is_none());
         assert!(jacobian(&|_| None, &[], &[], &DVector::zeros(1)).is_none(), "nothing to change");
     }
 }

@@ -16,6 +16,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Time in s for which the machine was held at its first command before a log begins.
 pub const LEAD: f64 = 0.25;
@@ -121,10 +122,10 @@ pub struct Case {
     pub runs: Vec<Run>,
     /// How to step simulations.
     pub control: StepControl,
-    /// Simulations of each run that a floor and a bias of a model that rattles are taken from.
-    pub replicas: usize,
     /// Whether the declared machine's joints rattle: replicas then differ by more than sensors see.
     pub chaotic: bool,
+    /// Runs that were simulated so far, but for the searches for starts.
+    simulated: AtomicUsize,
 }
 
 /// Simulations of a model.
@@ -134,12 +135,48 @@ pub(super) struct Ensemble {
     /// Noiseless logs: `[run][replica]`.
     pub logs: Vec<Vec<Log>>,
     /// Noiseless logs of each run's machine without a swing.
-    pub still: Vec<Log>,
+    pub still: Arc<Vec<Log>>,
     /// Whether replicas differ by more than sensors see; there is one of each run if not.
     pub rattles: bool,
 }
 
+/// What saves time in simulating a model.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Known<'a> {
+    /// The starts of a model like it.
+    pub starts: Option<&'a [Start]>,
+    /// The logs of the same model without a swing at values nearby.
+    pub still: Option<&'a Arc<Vec<Log>>>,
+}
+
 impl Case {
+    /// A rig and its recorded runs; whether its joints rattle is for the caller to find out.
+    pub fn new(rig: Scenario, sensors: Sensors, runs: Vec<Run>, control: StepControl) -> Self {
+        let simulated = AtomicUsize::new(0);
+        Self { rig, sensors, runs, control, chaotic: false, simulated }
+    }
+
+    /// Simulations of each run that a floor and a bias of the declared machine are taken from.
+    pub fn replicas(&self) -> usize {
+        if self.chaotic { rattle::REPLICAS } else { 1 }
+    }
+
+    /// Runs that were simulated so far, but for the searches for starts.
+    pub fn simulated(&self) -> usize {
+        self.simulated.load(Ordering::Relaxed)
+    }
+
+    /// A machine simulated as a log was recorded, which counts.
+    pub(super) fn replica(
+        &self,
+        machine: &Mechanism,
+        log: &Log,
+        replica: u64,
+    ) -> Result<Log, Halt> {
+        self.simulated.fetch_add(1, Ordering::Relaxed);
+        replica::simulate(machine, &self.sensors, self.control, log, replica)
+    }
+
     /// Coefficients of the residuals of a log under a mechanism.
     pub(super) fn coefficients(
         &self,
@@ -158,12 +195,11 @@ impl Case {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn simulate(&self, effects: &[Setting]) -> Result<Vec<Vec<Log>>, SearchError> {
-        Ok(self.ensemble(effects, 2 * rattle::REPLICAS, None)?.logs)
+        Ok(self.ensemble(effects, 2 * rattle::REPLICAS, Known::default())?.logs)
     }
 
     /// Noiseless logs of a model with these effects, so many of each run where its joints rattle. What the
     /// declared machine does says little of it: a tether may keep joints loaded that rattle without.
-    /// What is known of a model that is `like` this one saves time.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -171,12 +207,13 @@ impl Case {
         &self,
         effects: &[Setting],
         count: usize,
-        like: Option<&[Start]>,
+        known: Known,
     ) -> Result<Ensemble, SearchError> {
         let replicas = 2..count as u64;
         let still = |starts: &[Start]| {
             let machines: Vec<Mechanism> = starts.iter().map(|start| start.still.clone()).collect();
-            Ok::<_, Halt>(self.logs(&machines, 0..1)?.into_iter().flatten().collect::<Vec<Log>>())
+            let logs = self.logs(&machines, 0..1)?;
+            Ok::<_, Halt>(Arc::new(logs.into_iter().flatten().collect::<Vec<Log>>()))
         };
         if self.chaotic {
             let machines = self.released(effects)?;
@@ -189,25 +226,29 @@ impl Case {
                 return Ok(Ensemble { still: still(&starts)?, starts, logs, rattles: true });
             }
         }
-        let starts = self.starts(effects, like)?;
+        let starts = self.starts(effects, known)?;
         let machines: Vec<Mechanism> = starts.iter().map(|start| start.machine.clone()).collect();
         let mut logs = self.logs(&machines, 0..1)?;
-        let still = still(&starts)?;
+        let mut quiet =
+            known.still.map_or_else(|| still(&starts), |known| Ok(Arc::clone(known)))?;
         // What is missing may rattle a machine that stays loaded as declared, if only a little: replicas
         // that soon are of one phase no more are as far from each other as from the recording.
         let lasts =
             |(logs, still): (&Vec<Log>, &Log)| rattle::swing_lasts(&logs[0], still, &self.sensors);
-        let suspect = !self.chaotic && logs.iter().zip(&still).any(lasts);
+        let suspect = !self.chaotic && logs.iter().zip(quiet.iter()).any(lasts);
         if suspect {
             extend(&mut logs, self.logs(&machines, 1..2)?);
         }
         let rattles = suspect && self.differ(&logs);
         if rattles {
             extend(&mut logs, self.logs(&machines, replicas)?);
+            if known.still.is_some() {
+                quiet = still(&starts)?;
+            }
         } else {
             logs.iter_mut().for_each(|logs| logs.truncate(1));
         }
-        Ok(Ensemble { starts, logs, still, rattles })
+        Ok(Ensemble { starts, logs, still: quiet, rattles })
     }
 
     /// Whether the first two replicas of a run differ by more than sensors see.
@@ -228,18 +269,10 @@ impl Case {
             .collect();
         let logs: Result<Vec<Log>, Halt> = jobs
             .into_par_iter()
-            .map(|(run, replica)| {
-                let log = &self.runs[run].log;
-                replica::simulate(&machines[run], &self.sensors, self.control, log, replica)
-            })
+            .map(|(run, replica)| self.replica(&machines[run], &self.runs[run].log, replica))
             .collect();
         let mut logs = logs?.into_iter();
         Ok(self.runs.iter().map(|_| logs.by_ref().take(count).collect()).collect())
-    }
-
-    /// Simulations that a baseline takes, at most.
-    pub fn simulations(&self) -> usize {
-        self.runs.len() * if self.chaotic { self.replicas } else { self.replicas + 1 }
     }
 
     /// The machine of each run, with these effects, let go.
@@ -251,15 +284,12 @@ impl Case {
     }
 
     /// How each run's machine with these effects starts where joints stay loaded: as its log shows, which
-    /// is soon found from those of a model that is `like` this one.
-    fn starts(
-        &self,
-        effects: &[Setting],
-        like: Option<&[Start]>,
-    ) -> Result<Vec<Start>, SearchError> {
+    /// is soon found from those that are known.
+    fn starts(&self, effects: &[Setting], known: Known) -> Result<Vec<Start>, SearchError> {
         let machines = self.released(effects)?.into_par_iter().zip(&self.runs).enumerate();
         let start = |(i, (machine, run)): (usize, (Mechanism, &Run))| {
-            as_seen(machine, &run.log, &self.sensors, self.control, like.map(|starts| &starts[i]))
+            let like = known.starts.map(|starts| &starts[i]);
+            as_seen(machine, &run.log, &self.sensors, self.control, like)
         };
         Ok(machines.map(start).collect::<Result<_, Halt>>()?)
     }

@@ -2,13 +2,12 @@
 
 use super::model::{Case, SearchError};
 use super::search::{name, names};
-use super::settle::{GAIN_PER_VALUE, Question, Settled, refined, settle};
+use super::settle::{GAIN_PER_VALUE, HOPEFUL, Question, Settled, compared, refined};
 use crate::effects::{CONTAINS, Setting};
-use std::sync::atomic::AtomicUsize;
 
 /// The model without those effects that the others have made needless, and with effects that another
-/// contains in place of that other where they do as well; and the simulations it took. What a model loses
-/// has to raise the misfit by `threshold` to be kept.
+/// contains in place of that other where they do as well. What a model loses has to raise the misfit by
+/// `threshold` to be kept.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
@@ -17,19 +16,20 @@ pub fn needed(
     question: &Question,
     model: Settled,
     threshold: f64,
-    point_by_point: &AtomicUsize,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<(Settled, usize), SearchError> {
+) -> Result<Settled, SearchError> {
     let mut best = model;
-    let mut simulations = 0;
     let mut i = 0;
     while i < best.fit.effects.len() {
         let mut found = None;
         for less in lesser(&best.fit.effects, i) {
             tell(&format!("doing without {}: {}", name(&best.fit.effects[i]), names(&less)));
-            let model = settle(case, question, &less, 2, Some(&best.baseline))?;
-            simulations += model.times * case.simulations();
-            let model = refined(case, question, model, point_by_point)?;
+            let hopeful =
+                best.held + HOPEFUL * best.baseline.places(case, question.hold).len() as f64;
+            let hopeful = |less: &Settled| less.held < hopeful;
+            let like = Some(&best.baseline);
+            let model = compared(case, question, &less, like, hopeful)?;
+            let model = refined(case, question, model)?;
             let values = count(&best.fit.effects) as f64 - count(&less) as f64;
             if model.misfit - best.misfit - GAIN_PER_VALUE * values < threshold {
                 found = Some(model);
@@ -41,7 +41,7 @@ pub fn needed(
             None => i += 1,
         }
     }
-    Ok((best, simulations))
+    Ok(best)
 }
 
 fn count(effects: &[Setting]) -> usize {

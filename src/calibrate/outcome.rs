@@ -75,7 +75,7 @@ pub struct Outcome {
     pub predictions: Vec<Log>,
     /// What the declared model predicts, run by run.
     pub declared: Vec<Log>,
-    /// Simulations it took.
+    /// Runs that were simulated, but for the searches for starts.
     pub simulations: usize,
 }
 
@@ -100,7 +100,8 @@ pub fn calibrate(
         count => (vec![whole(0)], (1..count).map(whole).collect()),
     };
     let question = Question { on: &on, hold: &hold, without };
-    let Found { best, declared, certain, mut simulations } = search(case, &question, tell)?;
+    let simulated = case.simulated();
+    let Found { best, declared, certain } = search(case, &question, tell)?;
     let before = left(case, &question, &declared);
     let after = left(case, &question, &best.model);
     let (verdict, described, Way { model: last, rounds, .. }) = if !is_noise(&after) {
@@ -119,7 +120,6 @@ pub fn calibrate(
     tell("predicting the runs");
     let declared = case.simulate(&[])?;
     let predicted = case.simulate(&last.fit.effects)?;
-    simulations += declared.iter().chain(&predicted).map(Vec::len).sum::<usize>();
     let role = |run: usize| if run == 0 { "calibration" } else { "validation" };
     let errors = case.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| {
         errors::of_run(case, &run.log, role(i), &declared[i], &predicted[i])
@@ -134,7 +134,7 @@ pub fn calibrate(
         errors: errors.collect(),
         predictions: predicted.iter().map(|logs| errors::ensemble(logs)).collect(),
         declared: declared.iter().map(|logs| errors::ensemble(logs)).collect(),
-        simulations,
+        simulations: case.simulated() - simulated,
     })
 }
 

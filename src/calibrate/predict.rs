@@ -122,14 +122,7 @@ pub fn into_folder(
         Some(simulate(self::machine(&declared, &log)?)?)
     };
     // What errors are counted against is the model's instruments alone.
-    let case = Case {
-        rig: model.clone(),
-        sensors,
-        runs: Vec::new(),
-        control,
-        replicas: rattle.replicas,
-        chaotic: rattle.chaotic,
-    };
+    let case = Case::new(model.clone(), sensors, Vec::new(), control);
     let reference = before.as_deref().unwrap_or(&after);
     let mut errors = errors::of_run(&case, &recording.log, "prediction", reference, &after);
     for error in &mut errors {

@@ -113,7 +113,7 @@ pub fn prepare(rig: Scenario, recordings: Vec<Recording>) -> Result<Prepared, Ca
         paths.push(path);
     }
     let control = control(&rig);
-    Ok(Prepared { case: Case { rig, sensors, runs, control, replicas: 1, chaotic: false }, paths })
+    Ok(Prepared { case: Case::new(rig, sensors, runs, control), paths })
 }
 
 /// A finished calibration.
@@ -207,7 +207,7 @@ pub fn case(prepared: Prepared) -> Result<(Case, Rattle), CalibrateError> {
     }
     refuse(found)?;
     let worst = worst.ok_or_else(|| CalibrateError::Input(vec!["no run was given".to_owned()]))?;
-    (case.chaotic, case.replicas) = (worst.chaotic, worst.replicas);
+    case.chaotic = worst.chaotic;
     Ok((case, worst))
 }
 

@@ -7,9 +7,10 @@ use super::left::{is_noise, left};
 use super::model::{Case, SearchError};
 use super::needed::{contains, needed};
 use super::screen::{Scored, screen, share};
-use super::settle::{GAIN_PER_VALUE, Question, Settled, refined, settle, simplified};
+use super::settle::{
+    GAIN_PER_VALUE, Question, SETTLED, Settled, compared, refined, settle, settle_while, simplified,
+};
 use crate::effects::{SELDOM, Setting};
-use std::sync::atomic::AtomicUsize;
 
 /// By how much misfits of equally good models differ by chance, with loaded joints and with joints that
 /// rattle: there bias and noise come from six replicas, and settling the same model again changes its
@@ -38,10 +39,15 @@ const RIVAL_SHARE: f64 = 0.6;
 /// next to nothing that holds on other data.
 const FITTED: usize = 3;
 
-/// Models that are followed at once while none of them is noise, and the share of the best one's drop
-/// that makes another worth following.
+/// Models that are followed at once while none of them is noise; the share of the best one's drop that
+/// makes another worth following, and how many times as much of it may stand above noise.
 const WAYS: usize = 4;
 const WAY_SHARE: f64 = 0.9;
+const WAY_REST: f64 = 5.0;
+
+/// Share of the best rival's drop that one has to bring at its first guess, for its values to be worth
+/// settling.
+const PROMISING: f64 = 0.6;
 
 /// Simulations after which values have settled, at most; where the declared machine's joints rattle the best
 /// of so many counts. Where they rattle under what is missing alone, a first guess is far off.
@@ -49,6 +55,10 @@ const SETTLES: [usize; 2] = [7, 4];
 
 /// Most effects that are added.
 const EFFECTS: usize = 3;
+
+/// Runs simulated after which no third effect is looked for, and rivals are taken at their first guess: half
+/// of what two cores simulate in two minutes, for runs of three seconds.
+const BUDGET: usize = 220;
 
 /// Share of what stands above noise that an effect has to remove to be believed where something else
 /// remains: what passes for an effect without being it rarely removes as much.
@@ -130,8 +140,6 @@ pub struct Found {
     pub declared: Settled,
     /// Models whose effects are certain, should the best one not be noise.
     pub certain: Vec<Way>,
-    /// Simulations it took.
-    pub simulations: usize,
 }
 
 /// Searches for what the declared model lacks; `tell` hears what is being tried.
@@ -144,14 +152,15 @@ pub fn search(
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Found, SearchError> {
     tell("simulating the model as declared");
-    let mut simulations = case.simulations();
-    let point_by_point = AtomicUsize::new(0);
     let declared = settle(case, question, &[], 1, None)?;
     let threshold = GAIN[usize::from(case.chaotic)];
     let mut best = Way { model: declared.clone(), rounds: Vec::new(), certain: true };
     let mut ways = vec![best.clone()];
     let mut certain = Vec::new();
-    while best.model.fit.effects.len() < EFFECTS {
+    let until = case.simulated() + BUDGET;
+    while best.model.fit.effects.len() < EFFECTS
+        && (best.rounds.len() < 2 || case.simulated() < until)
+    {
         // What is noise already is not explained any better, only looked through for the record.
         if is_noise(&left(case, question, &best.model)) {
             let ranking = screen(case, question, &best.model).into_iter().map(|(scored, _)| scored);
@@ -163,8 +172,7 @@ pub fn search(
         let mut tried: Vec<Vec<String>> = Vec::new();
         for way in &ways {
             tell(&format!("trying every effect beside {}", names(&way.model.fit.effects)));
-            let (found, round, count) = beside(case, question, way, &mut tried, tell)?;
-            simulations += count;
+            let (found, round) = beside(case, question, way, &next, &mut tried, until, tell)?;
             next.extend(found);
             searched.push(round);
         }
@@ -177,12 +185,13 @@ pub fn search(
         }
         let winner = next.remove(0);
         let near = best.cost() - WAY_SHARE * (best.cost() - winner.cost());
-        best = finished(case, question, winner, &mut simulations, &point_by_point, tell)?;
+        best = finished(case, question, winner, tell)?;
+        let noise = best.model.baseline.places(case, question.hold).len() as f64;
         if !is_noise(&left(case, question, &best.model)) {
             // A right model may have settled far off, behind a wrong one.
             for way in next.iter_mut().take(WAYS - 1) {
                 tell(&format!("settling {} point by point", names(&way.model.fit.effects)));
-                way.model = refined(case, question, way.model.clone(), &point_by_point)?;
+                way.model = refined(case, question, way.model.clone())?;
             }
             if let Some(better) = next.iter_mut().min_by(|a, b| a.cost().total_cmp(&b.cost()))
                 && better.cost() < best.cost()
@@ -192,19 +201,22 @@ pub fn search(
         }
         ways = vec![best.clone()];
         certain.extend(next.iter().chain([&best]).filter(|way| way.certain).cloned());
-        next.retain(|way| way.cost() < near);
+        let rest = |way: &Way| way.model.held - noise;
+        let most = WAY_REST * rest(&best).max(noise);
+        next.retain(|way| way.cost() < near && rest(way) < most);
         next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         next.truncate(WAYS - 1);
         ways.append(&mut next);
     }
-    let (kept, count) = needed(case, question, best.model, threshold, &point_by_point, tell)?;
-    for added in best.rounds.iter_mut().filter_map(|round| round.added.as_mut()) {
-        let inner = kept.fit.effects.iter().find(|effect| contains(added, effect));
-        *added = inner.unwrap_or(added).clone();
+    if is_noise(&left(case, question, &best.model)) {
+        best.model = needed(case, question, best.model, threshold, tell)?;
+        let kept = &best.model.fit.effects;
+        for added in best.rounds.iter_mut().filter_map(|round| round.added.as_mut()) {
+            let inner = kept.iter().find(|effect| contains(added, effect));
+            *added = inner.unwrap_or(added).clone();
+        }
     }
-    best.model = kept;
-    simulations += count + point_by_point.into_inner();
-    Ok(Found { best, declared, certain, simulations })
+    Ok(Found { best, declared, certain })
 }
 
 /// A way whose values have settled, in its simplest variants.
@@ -212,17 +224,25 @@ fn finished(
     case: &Case,
     question: &Question,
     way: Way,
-    simulations: &mut usize,
-    point_by_point: &AtomicUsize,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Way, SearchError> {
     let like = Some(&way.model.baseline);
     let settles = SETTLES[usize::from(case.chaotic)];
-    let mut settled = |effects: &[Setting]| {
+    let settled = |effects: &[Setting]| {
         tell(&format!("settling {}", names(effects)));
-        let model = settle(case, question, effects, settles, like)?;
-        *simulations += model.times * case.simulations();
-        Ok::<_, SearchError>(model)
+        let (mut least, mut in_vain) = (f64::INFINITY, 0);
+        settle_while(case, question, effects, settles, like, |model, change| {
+            in_vain = if model.misfit < least { 0 } else { in_vain + 1 };
+            least = model.misfit;
+            // Where joints rattle values never come to rest; of what may be the last model the best of
+            // replicas that differ are taken.
+            let patience = match case.chaotic {
+                true if is_noise(&left(case, question, model)) => settles,
+                true => 1,
+                false => 2,
+            };
+            change > SETTLED && (!model.baseline.rattles || in_vain < patience)
+        })
     };
     let effects = &way.model.fit.effects;
     let mut model = simplified(case, question, settled(effects)?);
@@ -232,7 +252,7 @@ fn finished(
     }
     if !model.baseline.rattles {
         tell(&format!("settling {} point by point", names(&model.fit.effects)));
-        model = refined(case, question, model, point_by_point)?;
+        model = refined(case, question, model)?;
     }
     Ok(Way { model, ..way })
 }
@@ -294,15 +314,18 @@ fn simplest(
     simpler.min_by_key(|&i| values(i)).unwrap_or(first)
 }
 
-/// The models that one more effect makes of one, its round, and the simulations it took. The first way
+/// The models that one more effect makes of one, and its round. Values of rivals are settled up to so many
+/// simulated runs, and if they may be as good as what was found `before` beside other models. The first way
 /// has its best rivals simulated even if another way has come to the same.
 fn beside(
     case: &Case,
     question: &Question,
     way: &Way,
+    before: &[Way],
     tried: &mut Vec<Vec<String>>,
+    until: usize,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<(Vec<Way>, Round, usize), SearchError> {
+) -> Result<(Vec<Way>, Round), SearchError> {
     let model = &way.model;
     let rattles = usize::from(model.baseline.rattles);
     let mut ranking = screen(case, question, model);
@@ -322,7 +345,7 @@ fn beside(
         .filter(untried)
         .take(RIVALS[usize::from(!model.fit.effects.is_empty())])
         .collect();
-    if blind {
+    if blind && before.is_empty() {
         let fitted = |i: &usize| ranking[*i].0.fitted;
         let mut others: Vec<usize> = (0..ranking.len())
             .filter(|i| fitted(i) > WORTH[rattles] && !rivals.contains(i))
@@ -331,15 +354,23 @@ fn beside(
         others.sort_by(|a, b| fitted(b).total_cmp(&fitted(a)));
         rivals.extend(others.into_iter().take(FITTED));
     }
-    let mut simulations = 0;
-    let mut settled = Vec::new();
+    let mut settled: Vec<(Scored, Settled)> = Vec::new();
     for &i in &rivals {
         let (scored, effects) = &ranking[i];
         tried.push(Way::key(effects));
         tell(&format!("simulating {}", names(effects)));
         let like = Some(&model.baseline);
-        let Ok(rival) = settle(case, question, effects, 2, like) else { continue };
-        simulations += rival.times * case.simulations();
+        let others =
+            before.iter().map(|way| &way.model).chain(settled.iter().map(|(_, model)| model));
+        let best = others.map(|other| other.misfit).fold(model.misfit, f64::min);
+        let enough = model.misfit - PROMISING * (model.misfit - best) + CHANCE[rattles];
+        let promises = |rival: &Settled| {
+            // What rattles under a guess may be far off with right values.
+            let far_off = rival.baseline.rattles != model.baseline.rattles;
+            let hopeful = rival.misfit < enough || best == model.misfit || far_off;
+            hopeful && case.simulated() < until
+        };
+        let Ok(rival) = compared(case, question, effects, like, promises) else { continue };
         let values = scored.effect.values().count() as f64;
         let (scored, _) = &mut ranking[i];
         let drop = model.misfit - rival.misfit;
@@ -365,7 +396,7 @@ fn beside(
         let rounds = way.rounds.iter().cloned().chain([own]).collect();
         Way { model, rounds, certain }
     });
-    Ok((ways.collect(), round, simulations))
+    Ok((ways.collect(), round))
 }
 
 /// An effect in words: `joint-wear at A2`.

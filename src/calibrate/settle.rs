@@ -1,24 +1,25 @@
 //! Values of a model that agree with simulations of it.
 
-use super::baseline::Baseline;
+use super::baseline::{Baseline, Like};
 use super::fit::{self, Fit, Target};
 use super::instrument::{changed, unpulled};
 use super::model::{Case, SearchError, Segment};
 use super::whole::{close, rough};
 use crate::effects::Setting;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How much more than nothing each value of an effect has to bring: Akaike's price of a parameter in
 /// units of −2 log likelihood.
 pub const GAIN_PER_VALUE: f64 = 2.0;
 
-/// The change of a value, in its standard deviations, that is no change.
-const SETTLED: f64 = 0.3;
+/// The change of a value, in its standard deviations, that is no change: of a model that may be the last,
+/// and of one that is compared with others.
+pub const SETTLED: f64 = 0.3;
+const NEARLY: f64 = 3.0;
 
 /// Mean square in units of noise through the lens beyond which a model lacks more than digits of its
 /// values. A mass and where it sits may settle as far off as 5: what the lens is wrong by changes with
 /// them as much as the residual does; whole simulations find them from there.
-const HOPEFUL: f64 = 8.0;
+pub const HOPEFUL: f64 = 8.0;
 
 /// A model that simulations of itself have been held against.
 #[derive(Clone, Debug)]
@@ -34,8 +35,6 @@ pub struct Settled {
     /// joints stay loaded the noise is the sensors' under every model; what their determinants differ by
     /// is how well sixteen draws catch it, but for a swing that is not the recorded one.
     pub misfit: f64,
-    /// How often it was simulated.
-    pub times: usize,
 }
 
 /// Which data count for the fits and which are held out, and what must not be found.
@@ -67,14 +66,45 @@ pub fn settle(
     times: usize,
     like: Option<&Baseline>,
 ) -> Result<Settled, SearchError> {
+    settle_while(case, question, effects, times, like, |_, change| change > SETTLED)
+}
+
+/// The same of a model that is compared with others: simulated twice only where that may make it the better
+/// one, as its misfit `promises`.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn compared(
+    case: &Case,
+    question: &Question,
+    effects: &[Setting],
+    like: Option<&Baseline>,
+    promises: impl Fn(&Settled) -> bool,
+) -> Result<Settled, SearchError> {
+    settle_while(case, question, effects, 2, like, |model, change| {
+        change > NEARLY && promises(model)
+    })
+}
+
+/// The same as long as the best model and the largest change of its values, in standard deviations, say.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn settle_while(
+    case: &Case,
+    question: &Question,
+    effects: &[Setting],
+    times: usize,
+    like: Option<&Baseline>,
+    mut go_on: impl FnMut(&Settled, f64) -> bool,
+) -> Result<Settled, SearchError> {
     let segments = question.segments();
     let mut effects = effects.to_vec();
     let mut settled: Option<Settled> = None;
-    let mut done = 0;
-    for time in 1..=times.max(1) {
-        let like = settled.as_ref().map_or(like, |settled| Some(&settled.baseline));
+    for _ in 0..times.max(1) {
+        let same = settled.as_ref().map(|settled| Like::Same(&settled.baseline));
+        let like = same.or(like.map(Like::Beside));
         let baseline = case.baseline(&effects, &segments, like)?;
-        done = time;
         let target = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
         let iterations = if effects.is_empty() { 0 } else { 6 };
         let Some(mut fit) = fit::fit(&target, &effects, iterations) else { break };
@@ -91,48 +121,40 @@ pub fn settle(
         // Where joints rattle values never come to rest: each time the replicas' bias is another.
         let worse = |before: &Settled| baseline.rattles && before.misfit < misfit;
         if !settled.as_ref().is_some_and(worse) {
-            settled = Some(Settled { fit, baseline, held, misfit, times: time });
+            settled = Some(Settled { fit, baseline, held, misfit });
         }
-        if change < SETTLED {
+        if !settled.as_ref().is_some_and(|settled| go_on(settled, change)) {
             break;
         }
     }
-    let settled = settled.map(|settled| Settled { times: done, ..settled });
     settled.ok_or_else(|| {
         case.rig.problem("effect", "gives a machine that cannot be", "other values").into()
     })
 }
 
 /// The model with values from whole simulations, where the joints stay loaded and it is nearly complete.
-/// `simulated` counts simulations.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
-pub fn refined(
-    case: &Case,
-    question: &Question,
-    model: Settled,
-    simulated: &AtomicUsize,
-) -> Result<Settled, SearchError> {
+pub fn refined(case: &Case, question: &Question, model: Settled) -> Result<Settled, SearchError> {
     let hopeless = HOPEFUL * model.baseline.places(case, question.hold).len() as f64;
     if model.baseline.rattles || model.fit.effects.is_empty() || model.held > hopeless {
         return Ok(model);
     }
     let starts = &model.baseline.starts;
-    let effects = rough(case, question.on, &model.fit.effects, starts, simulated);
+    let effects = rough(case, question.on, &model.fit.effects, starts);
     let Some(effects) = effects else { return Ok(model) };
     // What the motion does not show, the lens does: how much play there is, from which the swing follows.
-    simulated.fetch_add(case.simulations(), Ordering::Relaxed);
     let again = settle(case, question, &effects, 1, None)?;
     let starts = &again.baseline.starts;
-    let fit = close(case, question.on, &again.fit.effects, starts, simulated);
+    let fit = close(case, question.on, &again.fit.effects, starts);
     let Some(fit) = fit else { return Ok(model) };
-    simulated.fetch_add(case.simulations(), Ordering::Relaxed);
-    let baseline = case.baseline(&fit.effects, &question.segments(), Some(&model.baseline))?;
+    let baseline =
+        case.baseline(&fit.effects, &question.segments(), Some(Like::Beside(&model.baseline)))?;
     let target = Target { case, baseline: &baseline, on: question.hold, fixed: &[], blind: None };
     let held = target.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
     let misfit = held + noisiness(case, question, &baseline);
-    Ok(Settled { fit, baseline, held, misfit, times: model.times + 1 })
+    Ok(Settled { fit, baseline, held, misfit })
 }
 
 /// What a model pays for being noisy.

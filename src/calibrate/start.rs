@@ -74,8 +74,25 @@ pub struct Start {
     pub still: Mechanism,
     /// Whether the machine swings as recorded, rather than with another frequency or phase.
     pub shown: bool,
-    /// What kicks change of what is seen: nearly the same for all models of a machine.
-    response: Option<DMatrix<f64>>,
+    /// What else is known of kicks.
+    seen: Option<Seen>,
+}
+
+/// What is nearly the same for all models of a machine that is kicked.
+#[derive(Clone, Debug)]
+struct Seen {
+    /// What kicks change of what is not met of the recorded swing.
+    response: DMatrix<f64>,
+    /// Squares of what a release and a machine at rest leave of it.
+    let_go: f64,
+    quiet: f64,
+}
+
+impl Seen {
+    /// Whether a start that leaves so much, as a square, swings as recorded.
+    fn shown(&self, left: f64) -> bool {
+        left < TRACKED * (self.quiet + self.let_go)
+    }
 }
 
 impl Start {
@@ -85,12 +102,13 @@ impl Start {
     /// A run that broke down.
     pub fn let_go(machine: Mechanism, control: StepControl) -> Result<Self, Halt> {
         let still = still(&machine, control)?;
-        Ok(Self { kicks: None, still, machine, shown: true, response: None })
+        Ok(Self { kicks: None, still, machine, shown: true, seen: None })
     }
 
     /// The same with this machine, as it was let go.
     pub fn without_kicks(&self, machine: Mechanism) -> Self {
-        Self { kicks: None, still: self.still.clone(), machine, shown: true, response: None }
+        let still = self.still.clone();
+        Self { kicks: None, still, machine, shown: true, seen: None }
     }
 }
 
@@ -207,6 +225,37 @@ impl Judge<'_> {
             if there.norm() < left.norm() { (better, there) } else { (kicks, left) };
         Ok((square(&left) < limit).then_some(kicks))
     }
+
+    /// The start with better kicks than these, which leave so much; none where no kicks show the recorded
+    /// swing, or a release does not less.
+    fn nearer(
+        &self,
+        still: &Mechanism,
+        mut kicks: Kicks,
+        mut left: DVector<f64>,
+        seen: Seen,
+    ) -> Result<Option<Start>, Halt> {
+        for _ in 0..STEPS {
+            let change = step(&seen.response, &left);
+            let there = self.look(&kicked(still, &(kicks + change)))?;
+            let gain = 1.0 - there.norm_squared() / left.norm_squared();
+            if gain > 0.0 {
+                (left, kicks) = (there, kicks + change);
+            }
+            if gain < WORTH {
+                break;
+            }
+        }
+        let left = left.norm_squared();
+        let better = left <= SLACK * seen.let_go && seen.shown(left);
+        Ok(better.then(|| Start {
+            kicks: Some(kicks),
+            machine: kicked(still, &kicks),
+            still: still.clone(),
+            shown: true,
+            seen: Some(seen),
+        }))
+    }
 }
 
 /// The step of Gauss and Newton.
@@ -234,50 +283,31 @@ pub fn as_seen(
         Judge { log, sensors, control }
     };
     let whole = judge(SEEN);
-    // Both at once: one core would wait for the other.
-    let like = like.and_then(|like| Some((like.kicks?, like.response.clone()?)));
-    let known = || like.as_ref().map(|(kicks, _)| whole.look(&kicked(&still, kicks))).transpose();
-    let (let_go, known) = rayon::join(|| whole.look(&released), known);
-    let (let_go, known) = (let_go?, known?);
-    let (met, let_go) = (SHOWN * let_go.len() as f64, let_go.norm_squared());
-    let released = Start { kicks: None, machine: released, still, shown: true, response: None };
-    if let_go <= met {
+    if let Some((kicks, seen)) = like.and_then(|like| Some((like.kicks?, like.seen.clone()?))) {
+        let left = whole.look(&kicked(&still, &kicks))?;
+        if seen.shown(left.norm_squared())
+            && let Some(start) = whole.nearer(&still, kicks, left, seen)?
+        {
+            return Ok(start);
+        }
+    }
+    let left = whole.look(&released)?;
+    let released = Start { kicks: None, machine: released, still, shown: true, seen: None };
+    if left.norm_squared() <= SHOWN * left.len() as f64 {
         return Ok(released);
     }
-    let quiet = whole.look(&released.still)?.norm_squared();
-    let shown = |square: f64| square < TRACKED * (quiet + let_go);
-    let released = Start { shown: shown(let_go), ..released };
+    let (let_go, quiet) = (left.norm_squared(), whole.look(&released.still)?.norm_squared());
+    let seen = Seen { response: DMatrix::zeros(0, 0), let_go, quiet };
+    let released = Start { shown: seen.shown(let_go), ..released };
     let still = &released.still;
-    let known = like.zip(known).filter(|(_, left)| shown(left.norm_squared()));
-    let (mut kicks, response, mut left) = match known {
-        Some(((kicks, response), left)) => (kicks, response, left),
-        None => {
-            let mut kicks = Kicks::zeros();
-            for judge in FIRST.map(judge) {
-                let Some(found) = judge.first(&released, kicks)? else { return Ok(released) };
-                kicks = found;
-            }
-            let left = whole.look(&kicked(still, &kicks))?;
-            (kicks, whole.response(still, &kicks, &left)?, left)
-        }
-    };
-    for _ in 0..STEPS {
-        let change = step(&response, &left);
-        let there = whole.look(&kicked(still, &(kicks + change)))?;
-        let gain = 1.0 - there.norm_squared() / left.norm_squared();
-        if gain > 0.0 {
-            (left, kicks) = (there, kicks + change);
-        }
-        if gain < WORTH {
-            break;
-        }
+    let mut kicks = Kicks::zeros();
+    for judge in FIRST.map(judge) {
+        let Some(found) = judge.first(&released, kicks)? else { return Ok(released) };
+        kicks = found;
     }
-    if left.norm_squared() > SLACK * let_go || !shown(left.norm_squared()) {
-        return Ok(released);
-    }
-    let machine = kicked(still, &kicks);
-    let (kicks, response) = (Some(kicks), Some(response));
-    Ok(Start { kicks, machine, shown: true, response, ..released })
+    let left = whole.look(&kicked(still, &kicks))?;
+    let seen = Seen { response: whole.response(still, &kicks, &left)?, ..seen };
+    Ok(whole.nearer(still, kicks, left, seen)?.unwrap_or(released))
 }
 
 /// What a log's pose shows of a swing that a simulated one does not, in units of its sensors' noise.

@@ -7,10 +7,9 @@
 
 use super::axes::Axes;
 use super::fit::{Fit, free, values, with_values};
-use super::least_squares::{Free, jacobian, least_squares};
+use super::least_squares::{Effort, Free, jacobian, least_squares};
 use super::model::{Case, Segment};
 use super::rattle::noise;
-use super::replica;
 use super::spectrum::{Signal, transform};
 use super::start::{KICKS, Kicks, SHOWN, Start, kicked, still};
 use crate::effects::Setting;
@@ -18,7 +17,6 @@ use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use nalgebra::DVector;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Highest frequencies in Hz that count: all that a platform does, and its motion alone. Where a leg is
 /// nearly unloaded its journal crosses over, which is a matter of milliseconds: a model whose values
@@ -78,16 +76,15 @@ const NEIGHBOURS: usize = 8;
 type Spectra = Vec<Vec<f64>>;
 
 /// The values of a model near `effects` whose motion meets segments, whatever its swing; none where no
-/// values make the model nearly complete. `simulated` counts simulations.
+/// values make the model nearly complete.
 pub fn rough(
     case: &Case,
     on: &[Segment],
     effects: &[Setting],
     starts: &[Start],
-    simulated: &AtomicUsize,
 ) -> Option<Vec<Setting>> {
     let released = released(case, effects, starts)?;
-    Some(from(case, on, effects, &released, &ROUGH, simulated)?.effects)
+    Some(from(case, on, effects, &released, &ROUGH)?.effects)
 }
 
 /// The values of a model very near `effects`, whose runs start like `starts`, that meet segments point by
@@ -95,15 +92,9 @@ pub fn rough(
 /// complete.
 ///
 /// With values that are right to a hundredth a release may swing unlike the recording, with right ones
-/// like it: kicks are taken only where the release does not do. `simulated` counts simulations.
-pub fn close(
-    case: &Case,
-    on: &[Segment],
-    effects: &[Setting],
-    starts: &[Start],
-    simulated: &AtomicUsize,
-) -> Option<Fit> {
-    let from = |starts: &[Start]| from(case, on, effects, starts, &CLOSE, simulated);
+/// like it: kicks are taken only where the release does not do.
+pub fn close(case: &Case, on: &[Segment], effects: &[Setting], starts: &[Start]) -> Option<Fit> {
+    let from = |starts: &[Start]| from(case, on, effects, starts, &CLOSE);
     let mut best = from(&released(case, effects, starts)?);
     if mean_square(best.as_ref()) > SHOWN && starts.iter().any(|start| start.kicks.is_some()) {
         let kicked = from(starts);
@@ -132,7 +123,6 @@ fn from(
     effects: &[Setting],
     starts: &[Start],
     stages: &[Stage],
-    simulated: &AtomicUsize,
 ) -> Option<Fit> {
     let count = values(effects).len();
     let mut free: Vec<Free> = free(effects);
@@ -171,7 +161,6 @@ fn from(
                     let still = still(&machine, case.control).ok()?;
                     machine = kicked(&still, &Kicks::from_column_slice(own));
                 }
-                simulated.fetch_add(1, Ordering::Relaxed);
                 let simulated = simulate(case, segment, &machine)?;
                 for part in parts {
                     white.extend(part.missed(case, &case.runs[segment.run].log, &simulated)?);
@@ -189,7 +178,8 @@ fn from(
         let mut before = SLOW * COMPLETE;
         loop {
             let along = |steps: &[f64]| look(&axes.values(&free, &now, steps));
-            let best = least_squares(&along, &sigmas, vec![0.0; now.len()], *steps, *enough)?;
+            let effort = Effort { steps: *steps, enough: *enough, secant: true };
+            let best = least_squares(&along, &sigmas, vec![0.0; now.len()], effort)?;
             let left = best.residual.norm_squared() / best.residual.len() as f64;
             if left > f64::max(COMPLETE, FALLING * before) {
                 return None;
@@ -220,7 +210,7 @@ fn from(
 /// A machine on a segment, without sensor noise; none where it cannot be simulated.
 fn simulate(case: &Case, segment: &Segment, machine: &Mechanism) -> Option<Log> {
     let log = case.runs[segment.run].log.part(0..segment.rows.end);
-    replica::simulate(machine, &case.sensors, case.control, &log, 0).ok()
+    case.replica(machine, &log, 0).ok()
 }
 
 /// A start's motion with and without its swing.

@@ -78,13 +78,10 @@ pub fn recorded(trial: &Trial) -> Result<(Case, Vec<Setting>), SearchError> {
     });
     let templates: Vec<Log> = runs.collect();
     let control = StepControl::Tolerance(1e-5);
-    let chaotic = !trial.gravity;
-    let replicas = if chaotic { 6 } else { 1 };
     let mut logs = Vec::new();
     for (i, template) in templates.into_iter().enumerate() {
         let runs = vec![Run::new(template).map_err(missing)?];
-        let case =
-            Case { rig: rig.clone(), sensors: sensors.clone(), runs, control, replicas, chaotic };
+        let case = Case::new(rig.clone(), sensors.clone(), runs, control);
         let machine = case.released(&hidden)?.remove(0);
         let log = &case.runs[0].log;
         // Another start of the rattle than any replica's.
@@ -94,7 +91,9 @@ pub fn recorded(trial: &Trial) -> Result<(Case, Vec<Setting>), SearchError> {
     }
     let runs =
         logs.into_iter().map(|log| Run::new(log).map_err(missing)).collect::<Result<_, _>>()?;
-    Ok((Case { rig, sensors, runs, control, replicas, chaotic }, hidden))
+    let mut case = Case::new(rig, sensors, runs, control);
+    case.chaotic = !trial.gravity;
+    Ok((case, hidden))
 }
 
 fn missing(channel: Channel) -> SearchError {
