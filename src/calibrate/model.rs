@@ -289,7 +289,8 @@ impl Case {
         let machines = self.released(effects)?.into_par_iter().zip(&self.runs).enumerate();
         let start = |(i, (machine, run)): (usize, (Mechanism, &Run))| {
             let like = known.starts.map(|starts| &starts[i]);
-            as_seen(machine, &run.log, &self.sensors, self.control, like)
+            let same = known.still.is_some();
+            as_seen(machine, &run.log, &self.sensors, self.control, like, same)
         };
         Ok(machines.map(start).collect::<Result<_, Halt>>()?)
     }

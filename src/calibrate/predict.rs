@@ -107,7 +107,7 @@ pub fn into_folder(
     tell("predicting the run");
     let simulate = |mut machine: Mechanism| {
         if !rattle.chaotic {
-            machine = as_seen(machine, &recording.log, &sensors, control, None)?.machine;
+            machine = as_seen(machine, &recording.log, &sensors, control, None, false)?.machine;
         }
         let replicas = (0..rattle.replicas as u64).into_par_iter();
         let logs = replicas.map(|r| replica::simulate(&machine, &sensors, control, &log, r));

@@ -266,7 +266,9 @@ fn step(response: &DMatrix<f64>, base: &DVector<f64>) -> Kicks {
 }
 
 /// The start that a log shows: as let go, if that shows the recorded swing or no kicks do, else kicked;
-/// the same log's start under a model that is `like` this one saves most of the search.
+/// the same log's start under a model that is `like` this one saves most of the search. Of the `same` model
+/// at values nearby a release that did not show the swing is not tried again; a model that is complete
+/// at last must be seen to show it, better than any kicks.
 ///
 /// # Errors
 /// A run that broke down.
@@ -276,6 +278,7 @@ pub fn as_seen(
     sensors: &Sensors,
     control: StepControl,
     like: Option<&Start>,
+    same: bool,
 ) -> Result<Start, Halt> {
     let still = still(&released, control)?;
     let judge = |seen: f64| {
@@ -283,7 +286,12 @@ pub fn as_seen(
         Judge { log, sensors, control }
     };
     let whole = judge(SEEN);
-    if let Some((kicks, seen)) = like.and_then(|like| Some((like.kicks?, like.seen.clone()?))) {
+    let known = like.and_then(|like| Some((like.kicks?, like.seen.clone()?)));
+    let met = |left: &DVector<f64>| left.norm_squared() <= SHOWN * left.len() as f64;
+    let release = if same && known.is_some() { None } else { Some(whole.look(&released)?) };
+    if let Some((kicks, seen)) = known
+        && !release.as_ref().is_some_and(met)
+    {
         let left = whole.look(&kicked(&still, &kicks))?;
         if seen.shown(left.norm_squared())
             && let Some(start) = whole.nearer(&still, kicks, left, seen)?
@@ -291,9 +299,9 @@ pub fn as_seen(
             return Ok(start);
         }
     }
-    let left = whole.look(&released)?;
+    let left = release.map_or_else(|| whole.look(&released), Ok)?;
     let released = Start { kicks: None, machine: released, still, shown: true, seen: None };
-    if left.norm_squared() <= SHOWN * left.len() as f64 {
+    if met(&left) {
         return Ok(released);
     }
     let (let_go, quiet) = (left.norm_squared(), whole.look(&released.still)?.norm_squared());
