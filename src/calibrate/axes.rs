@@ -35,6 +35,11 @@ impl Axes {
         Some(along * self.0.clone().try_inverse()?)
     }
 
+    /// Derivatives along the axes from those by values.
+    pub fn along_these(&self, own: &DMatrix<f64>) -> DMatrix<f64> {
+        own * &self.0
+    }
+
     /// The axes of the ellipsoid of errors that follows from derivatives along these; none where those
     /// are no numbers.
     pub fn turned(&self, free: &[Free], along: &DMatrix<f64>) -> Option<Self> {

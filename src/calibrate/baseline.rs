@@ -5,7 +5,7 @@ use super::model::{Case, Ensemble, Known, SearchError, Segment};
 use super::rattle;
 use super::replica;
 use super::spectrum::Noise;
-use super::start::Start;
+use super::start::{MISSED, Start};
 use crate::effects::Setting;
 use crate::measure::log::Log;
 use crate::scenario::Problem;
@@ -26,6 +26,8 @@ pub struct Baseline {
     pub rattles: bool,
     /// Its noiseless logs, prepared to be looked at: `[run][replica]`.
     views: Arc<Vec<Vec<Lens>>>,
+    /// Those logs.
+    pub logs: Arc<Vec<Vec<Log>>>,
     /// Noiseless logs of its machines without a swing, run by run.
     still: Arc<Vec<Log>>,
 }
@@ -64,10 +66,6 @@ struct Part {
 /// Draws of sensor noise from which a covariance is taken.
 const DRAWS: usize = 16;
 
-/// Share of a platform's swing that a model may be wrong by before its values are settled: a frequency
-/// that is off by a thousandth has lost the phase after some seconds.
-const SWING: f64 = 0.3;
-
 impl Case {
     /// The baseline of a model with these effects, from simulations of it.
     ///
@@ -84,13 +82,13 @@ impl Case {
         like: Option<Like>,
     ) -> Result<Baseline, SearchError> {
         let same = match like {
-            Some(Like::Same(like)) if !like.rattles => Some(like),
+            Some(Like::Same(like)) if self.chaotic || !like.rattles => Some(like),
             _ => None,
         };
         let like = like.map(Like::baseline);
         let known = Known {
             starts: like.map(|like| like.starts.as_slice()),
-            still: same.map(|same| &same.still),
+            still: same.map(|same| (&same.still, same.rattles)),
         };
         let Ensemble { starts, logs, still, rattles } =
             self.ensemble(effects, rattle::REPLICAS, known)?;
@@ -98,7 +96,7 @@ impl Case {
         let views: Vec<Vec<Lens>> =
             logs.iter().map(|logs| logs.par_iter().map(view).collect()).collect();
         let known = |like: Option<&Baseline>, segment: &Segment| {
-            let parts = &like.filter(|like| !like.rattles)?.parts;
+            let parts = &like.filter(|like| like.rattles == rattles)?.parts;
             Some(parts.iter().find(|part| part.segment == *segment)?.swing.clone())
         };
         let part = |segment: &Segment| {
@@ -122,13 +120,12 @@ impl Case {
                 let mut swing = difference(&bias, &look(&still[segment.run]));
                 for (channel, swing) in swing.iter_mut().enumerate() {
                     let share =
-                        if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { SWING };
+                        if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { MISSED };
                     swing.iter_mut().for_each(|value| *value *= share);
                 }
                 swing
             };
-            let same = known(same.filter(|_| !rattles), segment);
-            let swing = same.unwrap_or_else(seen_swing);
+            let swing = known(same, segment).unwrap_or_else(seen_swing);
             let part = |noise: Noise, swing, lost| {
                 let draws = draws.iter().map(|draw| noise.whiten(draw)).collect();
                 Part { segment: segment.clone(), bias, noise, draws, swing, lost }
@@ -153,14 +150,30 @@ impl Case {
             let swing = known(like, segment).unwrap_or(swing);
             let larger: Vec<Vec<f64>> = swing
                 .iter()
-                .map(|channel| channel.iter().map(|value| value * SQRT_2 / SWING).collect())
+                .map(|channel| channel.iter().map(|value| value * SQRT_2 / MISSED).collect())
                 .collect();
             let noise = Noise::from_draws(&draws, &larger);
             let lost = noise.swinging() - Noise::from_draws(&draws, &swing).swinging();
             part(noise, swing, lost)
         };
         let parts = segments.iter().map(part).collect();
-        Ok(Baseline { parts, starts, rattles, views: Arc::new(views), still })
+        Ok(Baseline { parts, starts, rattles, views: Arc::new(views), logs: Arc::new(logs), still })
+    }
+
+    /// Noiseless logs of a model with these effects, which its baseline is `like`: `[run][replica]`, to
+    /// predict with. A search compares models by the same few replicas; a prediction is better for being
+    /// the mean of more, and where joints stay loaded for the best start that a log shows.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn predictions(
+        &self,
+        effects: &[Setting],
+        like: &Baseline,
+    ) -> Result<Vec<Vec<Log>>, SearchError> {
+        let still = like.rattles.then_some((&like.still, true));
+        let known = Known { starts: Some(&like.starts), still };
+        Ok(self.ensemble(effects, 2 * rattle::REPLICAS, known)?.logs)
     }
 
     /// Residuals of the data under a model in units of noise, of all segments in a row.

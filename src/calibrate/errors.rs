@@ -12,8 +12,8 @@ use serde::Serialize;
 const CORNER: f64 = 25.0;
 const TRIM: f64 = 0.06;
 
-/// Draws of noise that a floor is taken from.
-const DRAWS: u64 = 8;
+/// Draws of noise that a floor is taken from: one of each replica that a prediction is the mean of.
+const DRAWS: u64 = 2 * super::rattle::REPLICAS as u64;
 
 /// Errors of one channel of one run.
 #[derive(Clone, Debug, Serialize)]

@@ -2,7 +2,7 @@
 
 use super::outcome::{Outcome, Verdict};
 use super::screen::Scored;
-use super::search::{Round, name};
+use super::way::{Round, name};
 use crate::effects::Setting;
 
 /// One sentence on what an effect rests on.

@@ -88,7 +88,7 @@ const ENOUGH: f64 = 1e-3;
 pub fn fit(target: &Target, effects: &[Setting], iterations: usize) -> Option<Fit> {
     let look = |values: &[f64]| Some(target.look(&with_values(effects, values))?.white);
     let effort = Effort { steps: iterations, enough: ENOUGH, secant: false };
-    let best = least_squares(&look, &free(effects), values(effects), effort)?;
+    let best = least_squares(&look, &free(effects), values(effects), effort, None)?;
     Some(Fit {
         effects: with_values(effects, &best.values),
         chi2: best.residual.norm_squared(),

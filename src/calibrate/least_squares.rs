@@ -59,12 +59,18 @@ pub struct Effort {
 /// Share of the promised drop from which a step has brought what it promised.
 const PROMISED: f64 = 0.25;
 
-/// Least squares from the given values on; none where there is no model at its start.
-pub fn least_squares(look: Look, free: &[Free], start: Vec<f64>, effort: Effort) -> Option<Best> {
+/// Least squares from the given values on, with these derivatives at first, if they are `known`; none where
+/// there is no model at its start.
+pub fn least_squares(
+    look: Look,
+    free: &[Free],
+    start: Vec<f64>,
+    effort: Effort,
+    mut known: Option<DMatrix<f64>>,
+) -> Option<Best> {
     let residual = look(&start)?;
     let mut best = Best { values: start, residual, jacobian: None };
     let mut damping = 1e-6;
-    let mut known = None;
     for _ in 0..effort.steps {
         let old = known.is_some();
         let renewed = || jacobian(look, free, &best.values, &best.residual);
@@ -180,7 +186,7 @@ mod tests {
         let look =
             |v: &[f64]| Some(DVector::from_vec(vec![10.0 * (v[1] - v[0] * v[0]), 1.0 - v[0]]));
         let free = [Free { step: 1e-6, bounds: WIDE }; 2];
-        let best = least_squares(&look, &free, vec![-1.2, 1.0], NEW).expect("a model");
+        let best = least_squares(&look, &free, vec![-1.2, 1.0], NEW, None).expect("a model");
         assert!(best.values.iter().all(|v| (v - 1.0).abs() < 1e-5), "{:?}", best.values);
     }
 
@@ -197,7 +203,7 @@ mod tests {
         let count = |secant| {
             looks.store(0, Ordering::Relaxed);
             let effort = Effort { secant, ..NEW };
-            let best = least_squares(&look, &free, vec![0.9; 5], effort).expect("a model");
+            let best = least_squares(&look, &free, vec![0.9; 5], effort, None).expect("a model");
             assert!(best.values.iter().all(|v| (v - 1.0).abs() < 1e-5), "{:?}", best.values);
             looks.load(Ordering::Relaxed)
         };
@@ -210,14 +216,14 @@ mod tests {
         // (a + b − 3)² + (a − b − 1)² without bounds: a = 2, b = 1; with a ≤ 1: b = 1.
         let look = |v: &[f64]| Some(DVector::from_vec(vec![v[0] + v[1] - 3.0, v[0] - v[1] - 1.0]));
         let free = [Free { step: 1e-3, bounds: [0.0, 1.0] }, Free { step: 1e-3, bounds: WIDE }];
-        let best = least_squares(&look, &free, vec![0.5, 0.0], NEW).expect("a model");
+        let best = least_squares(&look, &free, vec![0.5, 0.0], NEW, None).expect("a model");
         assert!((best.values[0] - 1.0).abs() < 1e-9 && (best.values[1] - 1.0).abs() < 1e-6);
     }
 
     #[test]
     fn a_model_that_cannot_be_is_not_fitted() {
         let free = [Free { step: 1.0, bounds: WIDE }];
-        assert!(least_squares(&|_| None, &free, vec![0.0], NEW).is_none());
+        assert!(least_squares(&|_| None, &free, vec![0.0], NEW, None).is_none());
         assert!(jacobian(&|_| None, &[], &[], &DVector::zeros(1)).is_none(), "nothing to change");
     }
 }

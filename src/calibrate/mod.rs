@@ -4,6 +4,7 @@
 
 pub mod axes;
 pub mod baseline;
+pub mod beside;
 pub mod candidates;
 mod charts;
 pub mod commands;
@@ -34,6 +35,7 @@ pub mod single;
 pub mod spectrum;
 pub mod start;
 pub mod unnamed;
+pub mod way;
 pub mod whole;
 
 pub use commands::LoggedCommands;

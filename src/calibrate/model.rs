@@ -145,8 +145,8 @@ pub(super) struct Ensemble {
 pub(super) struct Known<'a> {
     /// The starts of a model like it.
     pub starts: Option<&'a [Start]>,
-    /// The logs of the same model without a swing at values nearby.
-    pub still: Option<&'a Arc<Vec<Log>>>,
+    /// The logs of the same model without a swing at values nearby, and whether its joints rattle.
+    pub still: Option<(&'a Arc<Vec<Log>>, bool)>,
 }
 
 impl Case {
@@ -188,16 +188,6 @@ impl Case {
         transform(&lens.residuals(mechanism, segment.rows.clone()), interval)
     }
 
-    /// Noiseless logs of a model with these effects: `[run][replica]`, to predict with. A search compares
-    /// models by the same few replicas; a prediction is better for being the mean of more, and where
-    /// joints stay loaded for the best start that a log shows.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn simulate(&self, effects: &[Setting]) -> Result<Vec<Vec<Log>>, SearchError> {
-        Ok(self.ensemble(effects, 2 * rattle::REPLICAS, Known::default())?.logs)
-    }
-
     /// Noiseless logs of a model with these effects, so many of each run where its joints rattle. What the
     /// declared machine does says little of it: a tether may keep joints loaded that rattle without.
     ///
@@ -223,14 +213,18 @@ impl Case {
                 let start = |machine| Start::let_go(machine, self.control);
                 let starts: Vec<Start> =
                     machines.into_par_iter().map(start).collect::<Result<_, _>>()?;
-                return Ok(Ensemble { still: still(&starts)?, starts, logs, rattles: true });
+                let still = match known.still {
+                    Some((logs, true)) => Arc::clone(logs),
+                    _ => still(&starts)?,
+                };
+                return Ok(Ensemble { still, starts, logs, rattles: true });
             }
         }
         let starts = self.starts(effects, known)?;
         let machines: Vec<Mechanism> = starts.iter().map(|start| start.machine.clone()).collect();
         let mut logs = self.logs(&machines, 0..1)?;
         let mut quiet =
-            known.still.map_or_else(|| still(&starts), |known| Ok(Arc::clone(known)))?;
+            known.still.map_or_else(|| still(&starts), |(logs, _)| Ok(Arc::clone(logs)))?;
         // What is missing may rattle a machine that stays loaded as declared, if only a little: replicas
         // that soon are of one phase no more are as far from each other as from the recording.
         let lasts =
@@ -242,11 +236,11 @@ impl Case {
         let rattles = suspect && self.differ(&logs);
         if rattles {
             extend(&mut logs, self.logs(&machines, replicas)?);
-            if known.still.is_some() {
-                quiet = still(&starts)?;
-            }
         } else {
             logs.iter_mut().for_each(|logs| logs.truncate(1));
+        }
+        if known.still.is_some_and(|(_, rattled)| rattled != rattles) {
+            quiet = still(&starts)?;
         }
         Ok(Ensemble { starts, logs, still: quiet, rattles })
     }

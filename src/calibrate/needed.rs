@@ -1,8 +1,8 @@
 //! What a model can do without.
 
 use super::model::{Case, SearchError};
-use super::search::{name, names};
 use super::settle::{GAIN_PER_VALUE, HOPEFUL, Question, Settled, compared, refined};
+use super::way::{name, names};
 use crate::effects::{CONTAINS, Setting};
 
 /// The model without those effects that the others have made needless, and with effects that another

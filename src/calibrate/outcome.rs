@@ -4,9 +4,10 @@ use super::errors::{self, ChannelError};
 use super::fit::{self, Fit};
 use super::left::{Left, is_noise, left};
 use super::model::{Case, Run, SearchError, Segment};
-use super::search::{Found, Round, Way, search};
+use super::search::{Found, search};
 use super::settle::{Question, Settled};
 use super::unnamed::{Described, describe};
+use super::way::{Round, Way};
 use crate::effects::{Scan, Setting, UNNAMED};
 use crate::measure::log::Log;
 use nalgebra::{DMatrix, DVector};
@@ -106,7 +107,7 @@ pub fn calibrate(
     let after = left(case, &question, &best.model);
     let (verdict, described, Way { model: last, rounds, .. }) = if !is_noise(&after) {
         tell("describing what has no name");
-        let bare = Way { model: declared, rounds: best.rounds.clone(), certain: true };
+        let bare = Way { model: declared.clone(), rounds: best.rounds.clone(), certain: true };
         let (way, described) = remaining(case, &question, bare, certain)?;
         (Verdict::Unexplained, described, way)
     } else if best.model.fit.effects.is_empty() {
@@ -118,8 +119,8 @@ pub fn calibrate(
     let last = Settled { fit: Fit { effects, ..last.fit }, ..last };
     let estimates = estimates(&last, &on);
     tell("predicting the runs");
-    let declared = case.simulate(&[])?;
-    let predicted = case.simulate(&last.fit.effects)?;
+    let predicted = case.predictions(&last.fit.effects, &last.baseline)?;
+    let declared = if last.fit.effects.is_empty() { &predicted } else { &*declared.baseline.logs };
     let role = |run: usize| if run == 0 { "calibration" } else { "validation" };
     let errors = case.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| {
         errors::of_run(case, &run.log, role(i), &declared[i], &predicted[i])

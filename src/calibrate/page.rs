@@ -5,7 +5,7 @@ use super::errors::{ChannelError, judged};
 use super::model::Case;
 use super::outcome::{Outcome, Verdict};
 use super::report::{EffectReport, Report};
-use super::search::name as in_words;
+use super::way::name as in_words;
 use crate::effects::{Map, Setting};
 use crate::report::{Fact, Part, Table, document, known_to, length, number};
 

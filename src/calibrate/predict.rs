@@ -146,7 +146,7 @@ pub fn into_folder(
     let prediction = Prediction {
         provenance: Provenance::of(model),
         run: recording.log.name.clone(),
-        effects: model.effects.iter().map(super::search::name).collect(),
+        effects: model.effects.iter().map(super::way::name).collect(),
         errors,
         rattle: RattleReport {
             chaotic: rattle.chaotic,

@@ -6,7 +6,7 @@ use super::left::Left;
 use super::model::Case;
 use super::outcome::{Outcome, Verdict};
 use super::rattle::Rattle;
-use super::search::name;
+use super::way::name;
 use crate::effects::{DependsOn, Setting};
 use crate::engine::StepControl;
 use crate::scenario::Scenario;

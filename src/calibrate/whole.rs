@@ -15,7 +15,7 @@ use super::start::{KICKS, Kicks, SHOWN, Start, kicked, still};
 use crate::effects::Setting;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// Highest frequencies in Hz that count: all that a platform does, and its motion alone. Where a leg is
@@ -38,18 +38,21 @@ struct Stage {
     /// Drop of the sum of squares, and parts of a thousand, below which another step is not worth its
     /// simulations.
     enough: f64,
+    /// Whether it begins with the derivatives of the stage before, which saw the same rows.
+    kept: bool,
 }
 
 /// First whatever the swing: its phase has many wrong answers for values that are off.
-const ROUGH: [Stage; 1] = [Stage { seen: ALL, band: MOTION, share: 2.0, steps: 4, enough: 30.0 }];
+const ROUGH: [Stage; 1] =
+    [Stage { seen: ALL, band: MOTION, share: 2.0, steps: 4, enough: 30.0, kept: false }];
 /// Then for so short a time that a frequency which is off has not lost a period, and longer and longer: the
 /// swing's phase pins values that are nearly right. The last one twice, for better axes.
 const CLOSE: [Stage; 5] = [
-    Stage { seen: 0.3, band: BAND, share: 0.1, steps: 4, enough: 1.0 },
-    Stage { seen: 1.0, band: BAND, share: 0.1, steps: 4, enough: 1.0 },
-    Stage { seen: ALL, band: BAND, share: 0.05, steps: 3, enough: 1.0 },
-    Stage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1 },
-    Stage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1 },
+    Stage { seen: 0.3, band: BAND, share: 0.1, steps: 4, enough: 1.0, kept: false },
+    Stage { seen: 1.0, band: BAND, share: 0.1, steps: 4, enough: 1.0, kept: false },
+    Stage { seen: ALL, band: BAND, share: 0.05, steps: 3, enough: 1.0, kept: false },
+    Stage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1, kept: true },
+    Stage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1, kept: false },
 ];
 
 /// Share of a parameter's step, or of a kick's size, by which derivatives are taken at first: the swing's
@@ -84,7 +87,7 @@ pub fn rough(
     starts: &[Start],
 ) -> Option<Vec<Setting>> {
     let released = released(case, effects, starts)?;
-    Some(from(case, on, effects, &released, &ROUGH)?.effects)
+    Some(from(case, on, effects, &released, &ROUGH, true)?.effects)
 }
 
 /// The values of a model very near `effects`, whose runs start like `starts`, that meet segments point by
@@ -94,10 +97,11 @@ pub fn rough(
 /// With values that are right to a hundredth a release may swing unlike the recording, with right ones
 /// like it: kicks are taken only where the release does not do.
 pub fn close(case: &Case, on: &[Segment], effects: &[Setting], starts: &[Start]) -> Option<Fit> {
-    let from = |starts: &[Start]| from(case, on, effects, starts, &CLOSE);
-    let mut best = from(&released(case, effects, starts)?);
-    if mean_square(best.as_ref()) > SHOWN && starts.iter().any(|start| start.kicks.is_some()) {
-        let kicked = from(starts);
+    let from = |starts: &[Start], patient| from(case, on, effects, starts, &CLOSE, patient);
+    let kicks = starts.iter().any(|start| start.kicks.is_some());
+    let mut best = from(&released(case, effects, starts)?, !kicks);
+    if mean_square(best.as_ref()) > SHOWN && kicks {
+        let kicked = from(starts, true);
         if mean_square(kicked.as_ref()) < mean_square(best.as_ref()) {
             best = kicked;
         }
@@ -116,13 +120,15 @@ fn mean_square(fit: Option<&Fit>) -> f64 {
     fit.map_or(f64::INFINITY, |fit| fit.chi2 / fit.white.len() as f64)
 }
 
-/// The same from starts of one kind, in these stages.
+/// The same from starts of one kind, in these stages; a `patient` fit that does not come near takes more
+/// steps as long as they help.
 fn from(
     case: &Case,
     on: &[Segment],
     effects: &[Setting],
     starts: &[Start],
     stages: &[Stage],
+    patient: bool,
 ) -> Option<Fit> {
     let count = values(effects).len();
     let mut free: Vec<Free> = free(effects);
@@ -135,7 +141,9 @@ fn from(
     let swings = on.iter().map(|segment| Swing::of(case, segment, &starts[segment.run]));
     let swings: Vec<Swing> = swings.collect::<Option<_>>()?;
     let mut fit = None;
-    for Stage { seen, band, share, steps, enough } in stages {
+    // Derivatives along the axes in units of what may be missed, and those units.
+    let mut last: Option<(DMatrix<f64>, DVector<f64>)> = None;
+    for Stage { seen, band, share, steps, enough, kept } in stages {
         let parts: Vec<Vec<Part>> = on
             .iter()
             .zip(&swings)
@@ -170,24 +178,33 @@ fn from(
         };
         let along = |steps: &[f64]| look(&axes.values(&free, &now, steps));
         let sigmas = vec![Free { step: SIGMAS, bounds: [-1e9, 1e9] }; now.len()];
+        let units = units(&parts);
         if fit.is_none() {
             let zero = vec![0.0; now.len()];
-            axes = axes.turned(&free, &jacobian(&along, &sigmas, &zero, &along(&zero)?)?)?;
+            let first = jacobian(&along, &sigmas, &zero, &along(&zero)?)?;
+            axes = axes.turned(&free, &first)?;
         }
+        let mut known = last.take().filter(|_| *kept).map(|(mut along, before)| {
+            let scale = before.component_div(&units);
+            along.column_iter_mut().for_each(|mut column| column.component_mul_assign(&scale));
+            along
+        });
         // With axes that were wrong a fit may have ended too soon.
         let mut before = SLOW * COMPLETE;
         loop {
             let along = |steps: &[f64]| look(&axes.values(&free, &now, steps));
             let effort = Effort { steps: *steps, enough: *enough, secant: true };
-            let best = least_squares(&along, &sigmas, vec![0.0; now.len()], effort)?;
+            let best = least_squares(&along, &sigmas, vec![0.0; now.len()], effort, known.take())?;
             let left = best.residual.norm_squared() / best.residual.len() as f64;
-            if left > f64::max(COMPLETE, FALLING * before) {
+            if left > f64::max(COMPLETE, FALLING * before) || (left > COMPLETE && !patient) {
                 return None;
             }
             now = axes.values(&free, &now, &best.values);
             let derivatives = best.jacobian.as_ref()?;
             let own = axes.derivatives(derivatives)?;
-            axes = axes.turned(&free, derivatives)?;
+            let turned = axes.turned(&free, derivatives)?;
+            last = Some((turned.along_these(&own), units.clone()));
+            axes = turned;
             fit = Some((best.residual, own));
             if left < COMPLETE {
                 break;
@@ -264,6 +281,12 @@ impl Part {
         let pairs = missed.iter().zip(&self.noise);
         Some(pairs.flat_map(|(r, noise)| r.iter().zip(noise).map(|(r, noise)| r / noise)).collect())
     }
+}
+
+/// By how much each number that counts may be missed.
+fn units(parts: &[Vec<Part>]) -> DVector<f64> {
+    let channels = parts.iter().flatten().flat_map(|part| part.noise.iter().flatten());
+    DVector::from_iterator(channels.clone().count(), channels.copied())
 }
 
 /// Difference of two logs on rows in units of noise.

@@ -13,7 +13,7 @@ pub use rig::recorded;
 
 use super::model::SearchError;
 use super::outcome::{Outcome, Verdict, calibrate};
-use super::search::names;
+use super::way::names;
 use crate::effects::Setting;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

@@ -8,7 +8,7 @@ use super::simulated::{Machine, along};
 use crate::calibrate::errors::{ChannelError, rms};
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
 use crate::calibrate::result::{CalibrateError, publish, to_json};
-use crate::calibrate::search::name;
+use crate::calibrate::way::name;
 use crate::identify::Recorded;
 use crate::identify::arm::PLAN;
 use crate::measure::log::Log;
