@@ -40,6 +40,13 @@ pub fn judged(errors: &[ChannelError]) -> Vec<&ChannelError> {
     if held.is_empty() { errors.iter().collect() } else { held }
 }
 
+/// The largest error after calibration in units of its floor, on data not used for fits where there
+/// are any, and whose it is.
+pub fn worst(errors: &[ChannelError]) -> Option<&ChannelError> {
+    let above = |error: &ChannelError| error.after / error.floor;
+    judged(errors).into_iter().max_by(|a, b| above(a).total_cmp(&above(b)))
+}
+
 /// The mean of several noiseless logs: the best prediction of one whose rattle nobody knows.
 pub fn ensemble(logs: &[Log]) -> Log {
     let first = &logs[0];

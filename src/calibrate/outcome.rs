@@ -105,26 +105,28 @@ pub fn calibrate(
     let Found { best, declared, certain } = search(case, &question, tell)?;
     let before = left(case, &question, &declared);
     let after = left(case, &question, &best.model);
-    let (verdict, described, Way { model: last, rounds, .. }) = if !is_noise(&after) {
-        tell("describing what has no name");
-        let bare = Way { model: declared.clone(), rounds: best.rounds.clone(), certain: true };
-        let (way, described) = remaining(case, &question, bare, certain)?;
-        (Verdict::Unexplained, described, way)
-    } else if best.model.fit.effects.is_empty() {
-        (Verdict::NothingMissing, None, best)
-    } else {
-        (Verdict::Explained, None, best)
+    tell("predicting the runs");
+    let certainly =
+        if is_noise(&after) { Some(predicted(case, &declared, &best.model)?) } else { None };
+    let explained = certainly.filter(|prediction| best.model.baseline.rattles || prediction.met());
+    let (verdict, described, Way { model: last, rounds, .. }, prediction) = match explained {
+        Some(prediction) if best.model.fit.effects.is_empty() => {
+            (Verdict::NothingMissing, None, best, prediction)
+        }
+        Some(prediction) => (Verdict::Explained, None, best, prediction),
+        None => {
+            tell("describing what has no name");
+            let bare = Way { model: declared.clone(), rounds: best.rounds.clone(), certain: true };
+            let (way, described) = remaining(case, &question, bare, certain)?;
+            tell("predicting the runs");
+            let prediction = predicted(case, &declared, &way.model)?;
+            (Verdict::Unexplained, described, way, prediction)
+        }
     };
     let effects = last.fit.effects.iter().map(canonical).collect();
     let last = Settled { fit: Fit { effects, ..last.fit }, ..last };
     let estimates = estimates(&last, &on);
-    tell("predicting the runs");
-    let predicted = case.predictions(&last.fit.effects, &last.baseline)?;
-    let declared = if last.fit.effects.is_empty() { &predicted } else { &*declared.baseline.logs };
-    let role = |run: usize| if run == 0 { "calibration" } else { "validation" };
-    let errors = case.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| {
-        errors::of_run(case, &run.log, role(i), &declared[i], &predicted[i])
-    });
+    let Prediction { declared, predicted, errors } = prediction;
     Ok(Outcome {
         verdict,
         effects: last.fit.effects.iter().cloned().zip(estimates).collect(),
@@ -132,11 +134,46 @@ pub fn calibrate(
         before,
         after,
         rounds,
-        errors: errors.collect(),
+        errors,
         predictions: predicted.iter().map(|logs| errors::ensemble(logs)).collect(),
         declared: declared.iter().map(|logs| errors::ensemble(logs)).collect(),
         simulations: case.simulated() - simulated,
     })
+}
+
+/// What two models predict, and by how much they miss.
+struct Prediction {
+    /// Of the declared model, `[run][replica]`.
+    declared: Vec<Vec<Log>>,
+    /// The same of the calibrated one.
+    predicted: Vec<Vec<Log>>,
+    errors: Vec<ChannelError>,
+}
+
+/// Errors in floors up to which the prediction of a model whose joints stay loaded may be one of a complete
+/// model: of 46 trials that were right the worst was 1.31. A lens sees no swing: an effect that passes for
+/// another there gives the platform another swing, and missed recordings by 3.3 floors.
+const MET: f64 = 2.0;
+
+impl Prediction {
+    /// Whether the calibrated model meets the runs that it is judged by.
+    fn met(&self) -> bool {
+        errors::judged(&self.errors).iter().all(|error| error.after < MET * error.floor)
+    }
+}
+
+/// What models predict of all runs.
+fn predicted(case: &Case, declared: &Settled, model: &Settled) -> Result<Prediction, SearchError> {
+    let effects: Vec<Setting> = model.fit.effects.iter().map(canonical).collect();
+    let predicted = case.predictions(&effects, &model.baseline)?;
+    let declared =
+        if effects.is_empty() { predicted.clone() } else { declared.baseline.logs.to_vec() };
+    let role = |run: usize| if run == 0 { "calibration" } else { "validation" };
+    let errors = case.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| {
+        errors::of_run(case, &run.log, role(i), &declared[i], &predicted[i])
+    });
+    let errors = errors.collect();
+    Ok(Prediction { declared, predicted, errors })
 }
 
 /// The same repeating effects in one of the many ways to write them: the first amplitude is not negative,

@@ -1,7 +1,8 @@
 //! The page of a calibration: the verdict first, then how it came about.
 
 use super::charts::{Charts, OVER};
-use super::errors::{ChannelError, judged};
+use super::errors::{ChannelError, worst};
+use super::left::is_noise;
 use super::model::Case;
 use super::outcome::{Outcome, Verdict};
 use super::report::{EffectReport, Report};
@@ -42,13 +43,6 @@ pub fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The largest error after calibration in units of its floor, on data not used for fits where there
-/// are any, and whose it is.
-pub fn worst(errors: &[ChannelError]) -> Option<&ChannelError> {
-    let above = |error: &ChannelError| error.after / error.floor;
-    judged(errors).into_iter().max_by(|a, b| above(a).total_cmp(&above(b)))
-}
-
 fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {
     let fact = |label: &str, value: String, note: String| Fact { label: label.into(), value, note };
     let note = match outcome.verdict {
@@ -56,6 +50,9 @@ fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {
             "named effects bring every residual down to noise on data not used for fits"
         }
         Verdict::NothingMissing => "the declared model's residuals are noise",
+        Verdict::Unexplained if is_noise(&outcome.after) => {
+            "simulations miss recordings that the same model seems to explain without simulation"
+        }
         Verdict::Unexplained => {
             "residuals stand above noise, and no effect with a name explains them"
         }

@@ -1,8 +1,8 @@
 //! `report.json`: what a calibration came to.
 
-use super::errors::ChannelError;
+use super::errors::{ChannelError, worst};
 use super::evidence::{as_good, evidence};
-use super::left::Left;
+use super::left::{Left, is_noise};
 use super::model::Case;
 use super::outcome::{Outcome, Verdict};
 use super::rattle::Rattle;
@@ -296,6 +296,15 @@ fn summary(outcome: &Outcome) -> String {
             "The declared model lacks {list}. With {} the recordings are explained to within noise.",
             if named.len() == 1 { "it" } else { "them" }
         ),
+        Verdict::Unexplained if is_noise(&outcome.after) => {
+            let misses = worst(&outcome.errors).map_or(f64::NAN, |e| e.after / e.floor);
+            let tried = if named.is_empty() { "the declared model" } else { &list };
+            format!(
+                "The declared model lacks something. Looked at without simulation, {tried} leaves nothing \
+                 but noise of the recordings; simulated with its own swing it misses them by up to \
+                 {misses:.1} floors. It is something else, or more."
+            )
+        }
         Verdict::Unexplained => {
             let certain = if named.is_empty() {
                 String::new()
