@@ -86,7 +86,7 @@ fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {
             .to_owned(),
         format!(
             "two runs of the declared model that start a hair apart differ in {} by {} times its \
-             sensor's noise; predictions are means over {} run(s)",
+             sensor's noise; models are compared by means over {} run(s)",
             rattle.channel,
             number(rattle.difference),
             rattle.replicas
