@@ -36,7 +36,7 @@ impl Axes {
     }
 
     /// Derivatives along the axes from those by values.
-    pub fn along_these(&self, own: &DMatrix<f64>) -> DMatrix<f64> {
+    pub fn derivatives_along(&self, own: &DMatrix<f64>) -> DMatrix<f64> {
         own * &self.0
     }
 

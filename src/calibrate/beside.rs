@@ -31,8 +31,10 @@ const PROMISING: f64 = 0.6;
 /// remains: what passes for an effect without being it rarely removes as much.
 const CERTAIN: f64 = 0.9;
 
-/// The least such share of an effect that is worth adding: of up to [`super::search::EFFECTS`] effects, one removes a
-/// third. What removes less takes up some of what it is not.
+/// The least such share of an effect that is worth adding: of up to three effects ([`EFFECTS`]) one removes
+/// a third. What removes less takes up some of what it is not.
+///
+/// [`EFFECTS`]: super::search::EFFECTS
 const LEAST: f64 = 0.2;
 
 /// By how much misfits of equally good models differ by chance, with loaded joints and with joints that
@@ -79,9 +81,9 @@ impl<'a> Fan<'a> {
     pub fn beside(&mut self, way: &Way) -> Result<Round, SearchError> {
         let Self { case, question, .. } = *self;
         let effects = &way.model.fit.effects;
-        (self.tell)(&format!("trying every effect beside {}", names(effects)));
         let (mut ranking, rivals) = match &self.enough {
             None => {
+                (self.tell)(&format!("trying every effect beside {}", names(effects)));
                 let ranking = screen(case, question, &way.model);
                 let rivals = self.rivals(way, &ranking);
                 (ranking, rivals)

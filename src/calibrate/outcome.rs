@@ -105,10 +105,13 @@ pub fn calibrate(
     let Found { best, declared, certain } = search(case, &question, tell)?;
     let before = left(case, &question, &declared);
     let after = left(case, &question, &best.model);
-    tell("predicting the runs");
-    let certainly =
-        if is_noise(&after) { Some(predicted(case, &declared, &best.model)?) } else { None };
-    let explained = certainly.filter(|prediction| best.model.baseline.rattles || prediction.met());
+    let noise = if is_noise(&after) {
+        tell("predicting the runs");
+        Some(predicted(case, &declared, &best.model)?)
+    } else {
+        None
+    };
+    let explained = noise.filter(|prediction| best.model.baseline.rattles || prediction.met());
     let (verdict, described, Way { model: last, rounds, .. }, prediction) = match explained {
         Some(prediction) if best.model.fit.effects.is_empty() => {
             (Verdict::NothingMissing, None, best, prediction)
@@ -151,7 +154,7 @@ struct Prediction {
 }
 
 /// Errors in floors up to which the prediction of a model whose joints stay loaded may be one of a complete
-/// model: of 46 trials that were right the worst was 1.31. A lens sees no swing: an effect that passes for
+/// model: of some fifty trials that were right the worst was 1.31. A lens sees no swing: an effect that passes for
 /// another there gives the platform another swing, and missed recordings by 3.3 floors.
 const MET: f64 = 2.0;
 

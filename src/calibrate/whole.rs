@@ -203,7 +203,7 @@ fn from(
             let derivatives = best.jacobian.as_ref()?;
             let own = axes.derivatives(derivatives)?;
             let turned = axes.turned(&free, derivatives)?;
-            last = Some((turned.along_these(&own), units.clone()));
+            last = Some((turned.derivatives_along(&own), units.clone()));
             axes = turned;
             fit = Some((best.residual, own));
             if left < COMPLETE {
