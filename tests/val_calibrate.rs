@@ -6,7 +6,7 @@
 use freeplay::calibrate::evidence::{as_good, evidence};
 use freeplay::calibrate::left::{is_noise, left};
 use freeplay::calibrate::model::{Case, Segment};
-use freeplay::calibrate::outcome::{Outcome, Verdict, calibrate};
+use freeplay::calibrate::outcome::{MOST, Outcome, Verdict, calibrate};
 use freeplay::calibrate::rattle::Rattle;
 use freeplay::calibrate::recording;
 use freeplay::calibrate::report::{Report, Sources, calibrated};
@@ -47,10 +47,6 @@ fn done(rig: usize) -> &'static Done {
     })
 }
 
-/// Runs of three seconds that a calibration may simulate: what two slow cores do in two minutes, at 0.6 s
-/// each.
-const RUNS: usize = 400;
-
 /// Errors after calibration, in units of what is left to any model, and its work.
 fn check(rig: usize) {
     let Done { case, outcome, .. } = done(rig);
@@ -66,7 +62,7 @@ fn check(rig: usize) {
         );
     }
     println!("rig {rig}: {} runs simulated", outcome.simulations);
-    assert!(outcome.simulations <= RUNS, "{} runs simulated", outcome.simulations);
+    assert!(outcome.simulations <= MOST as usize, "{} runs simulated", outcome.simulations);
     let mut broken = Vec::new();
     for error in &outcome.errors {
         let ratio = error.after / error.floor;
@@ -284,7 +280,7 @@ fn a_complete_model_is_let_go_although_one_like_it_was_kicked() {
     let run = &case.runs[0];
     let start = |effects: &[Setting], like: Option<&Start>| {
         let machine = run.released(&case.rig, effects).unwrap();
-        as_seen(machine, &run.log, &case.sensors, case.control, like, false).unwrap()
+        as_seen(&case.simulator, machine, &run.log, like, false).unwrap()
     };
     let incomplete = start(&hidden[..1], None);
     assert!(incomplete.kicks.is_some(), "the test rests on an incomplete model being kicked");

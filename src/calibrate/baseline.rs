@@ -112,7 +112,11 @@ impl Case {
                 .into_par_iter()
                 .map(|draw| {
                     let index = draw % clean.len();
-                    let log = replica::with_noise(&logs[index], &self.sensors, draw as u64 + 1000);
+                    let log = replica::with_noise(
+                        &logs[index],
+                        &self.simulator.sensors,
+                        draw as u64 + 1000,
+                    );
                     difference(&look(&log), &without(&bias, &clean[index], clean.len()))
                 })
                 .collect();
@@ -133,7 +137,8 @@ impl Case {
             if rattles && !self.chaotic {
                 // Beside models whose noise is the sensors' alone.
                 let draw = |draw| {
-                    let noisy = replica::with_noise(&logs[0], &self.sensors, draw as u64 + 1000);
+                    let noisy =
+                        replica::with_noise(&logs[0], &self.simulator.sensors, draw as u64 + 1000);
                     difference(&look(&noisy), &clean[0])
                 };
                 let sensors: Vec<_> = (0..DRAWS).into_par_iter().map(draw).collect();

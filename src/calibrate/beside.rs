@@ -19,6 +19,9 @@ const REACH: [f64; 2] = [0.0, 500.0];
 const RIVALS: [usize; 2] = [6, 3];
 const RIVAL_SHARE: f64 = 0.6;
 
+/// Rivals that are simulated in any case.
+const FEW: usize = 2;
+
 /// Candidates that are simulated for what they explain of the data they were fitted to, where a lens sees
 /// next to nothing that holds on other data.
 const FITTED: usize = 3;
@@ -46,8 +49,8 @@ pub const CHANCE: [f64; 2] = [10.0, 600.0];
 pub struct Fan<'a> {
     case: &'a Case,
     question: &'a Question<'a>,
-    /// Simulated runs up to which values of rivals are settled.
-    until: usize,
+    /// Simulated runs up to which rivals are simulated, and their values settled.
+    until: f64,
     tell: &'a (dyn Fn(&str) + Sync),
     /// Models that were simulated.
     tried: Vec<Vec<String>>,
@@ -62,7 +65,7 @@ impl<'a> Fan<'a> {
     pub fn new(
         case: &'a Case,
         question: &'a Question<'a>,
-        until: usize,
+        until: f64,
         tell: &'a (dyn Fn(&str) + Sync),
     ) -> Self {
         Self { case, question, until, tell, tried: Vec::new(), found: Vec::new(), enough: None }
@@ -98,7 +101,10 @@ impl<'a> Fan<'a> {
             }
         };
         let mut settled: Vec<(Scored, Settled)> = Vec::new();
-        for i in rivals {
+        for (place, i) in rivals.into_iter().enumerate() {
+            if place >= FEW && case.simulated() > self.until {
+                break;
+            }
             let (scored, effects) = &mut ranking[i];
             self.tried.push(Way::key(effects));
             if let Some(rival) = self.simulated(way, &settled, scored, effects) {
@@ -121,6 +127,12 @@ impl<'a> Fan<'a> {
             self.found.push(Way { model, rounds, certain });
         }
         Ok(round)
+    }
+
+    /// Whether one more model is worth looking at: where an effect is known that makes another one noise
+    /// it takes a single simulation.
+    pub fn affords_another(&self) -> bool {
+        self.enough.is_some() || self.case.simulated() < self.until
     }
 
     /// Which candidates are worth simulating. The first way has its best rivals simulated even if another

@@ -78,7 +78,7 @@ pub fn floor(case: &Case, clean: &[Log], channel: Channel) -> Option<f64> {
         .into_par_iter()
         .map(|draw| {
             let index = draw as usize % clean.len();
-            let noisy = replica::with_noise(&clean[index], &case.sensors, 5000 + draw);
+            let noisy = replica::with_noise(&clean[index], &case.simulator.sensors, 5000 + draw);
             let others: Vec<Log> = if clean.len() > 1 {
                 let kept = clean.iter().enumerate().filter(|(i, _)| *i != index);
                 kept.map(|(_, log)| log.clone()).collect()

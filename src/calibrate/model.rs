@@ -3,7 +3,7 @@
 use super::commands::LoggedCommands;
 use super::lens::Lens;
 use super::rattle;
-use super::replica;
+use super::replica::Simulator;
 use super::spectrum::{Signal, transform};
 use super::start::{Start, as_seen};
 use crate::effects::Setting;
@@ -16,10 +16,13 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Time in s for which the machine was held at its first command before a log begins.
 pub const LEAD: f64 = 0.25;
+
+/// Step in s by which simulations are counted: a position servo's damping leaves 125 µs to light legs, impacts
+/// take more steps.
+const USUAL_STEP: f64 = 100e-6;
 
 /// A recorded run, ready to be explained.
 #[derive(Debug)]
@@ -116,16 +119,12 @@ pub struct Segment {
 pub struct Case {
     /// What its maker declares.
     pub rig: Scenario,
-    /// Its instruments.
-    pub sensors: Sensors,
     /// What was recorded.
     pub runs: Vec<Run>,
-    /// How to step simulations.
-    pub control: StepControl,
+    /// What its machines are simulated with.
+    pub simulator: Simulator,
     /// Whether the declared machine's joints rattle: replicas then differ by more than sensors see.
     pub chaotic: bool,
-    /// Runs that were simulated so far, but for the searches for starts.
-    simulated: AtomicUsize,
 }
 
 /// Simulations of a model.
@@ -152,8 +151,7 @@ pub(super) struct Known<'a> {
 impl Case {
     /// A rig and its recorded runs; whether its joints rattle is for the caller to find out.
     pub fn new(rig: Scenario, sensors: Sensors, runs: Vec<Run>, control: StepControl) -> Self {
-        let simulated = AtomicUsize::new(0);
-        Self { rig, sensors, runs, control, chaotic: false, simulated }
+        Self { rig, runs, simulator: Simulator::new(sensors, control), chaotic: false }
     }
 
     /// Simulations of each run that a floor and a bias of the declared machine are taken from.
@@ -161,20 +159,11 @@ impl Case {
         if self.chaotic { rattle::REPLICAS } else { 1 }
     }
 
-    /// Runs that were simulated so far, but for the searches for starts.
-    pub fn simulated(&self) -> usize {
-        self.simulated.load(Ordering::Relaxed)
-    }
-
-    /// A machine simulated as a log was recorded, which counts.
-    pub(super) fn replica(
-        &self,
-        machine: &Mechanism,
-        log: &Log,
-        replica: u64,
-    ) -> Result<Log, Halt> {
-        self.simulated.fetch_add(1, Ordering::Relaxed);
-        replica::simulate(machine, &self.sensors, self.control, log, replica)
+    /// Simulations so far, in runs of the mean length of the recorded ones, their lead and [`USUAL_STEP`].
+    pub fn simulated(&self) -> f64 {
+        let time = |run: &Run| LEAD + (run.log.samples - 1) as f64 * run.log.interval;
+        let recorded: f64 = self.runs.iter().map(time).sum();
+        self.simulator.steps() as f64 * USUAL_STEP / recorded * self.runs.len() as f64
     }
 
     /// Coefficients of the residuals of a log under a mechanism.
@@ -210,7 +199,7 @@ impl Case {
             let mut logs = self.logs(&machines, 0..2)?;
             if self.differ(&logs) {
                 extend(&mut logs, self.logs(&machines, replicas)?);
-                let start = |machine| Start::let_go(machine, self.control);
+                let start = |machine| Start::let_go(&self.simulator, machine);
                 let starts: Vec<Start> =
                     machines.into_par_iter().map(start).collect::<Result<_, _>>()?;
                 let still = match known.still {
@@ -227,8 +216,9 @@ impl Case {
             known.still.map_or_else(|| still(&starts), |(logs, _)| Ok(Arc::clone(logs)))?;
         // What is missing may rattle a machine that stays loaded as declared, if only a little: replicas
         // that soon are of one phase no more are as far from each other as from the recording.
-        let lasts =
-            |(logs, still): (&Vec<Log>, &Log)| rattle::swing_lasts(&logs[0], still, &self.sensors);
+        let lasts = |(logs, still): (&Vec<Log>, &Log)| {
+            rattle::swing_lasts(&logs[0], still, &self.simulator.sensors)
+        };
         let suspect = !self.chaotic && logs.iter().zip(quiet.iter()).any(lasts);
         if suspect {
             extend(&mut logs, self.logs(&machines, 1..2)?);
@@ -247,7 +237,8 @@ impl Case {
 
     /// Whether the first two replicas of a run differ by more than sensors see.
     fn differ(&self, logs: &[Vec<Log>]) -> bool {
-        let seen = |logs: &Vec<Log>| rattle::difference(&logs[0], &logs[1], &self.sensors).1;
+        let seen =
+            |logs: &Vec<Log>| rattle::difference(&logs[0], &logs[1], &self.simulator.sensors).1;
         logs.iter().map(seen).fold(0.0, f64::max) > rattle::SEEN
     }
 
@@ -263,7 +254,9 @@ impl Case {
             .collect();
         let logs: Result<Vec<Log>, Halt> = jobs
             .into_par_iter()
-            .map(|(run, replica)| self.replica(&machines[run], &self.runs[run].log, replica))
+            .map(|(run, replica)| {
+                self.simulator.record(&machines[run], &self.runs[run].log, replica)
+            })
             .collect();
         let mut logs = logs?.into_iter();
         Ok(self.runs.iter().map(|_| logs.by_ref().take(count).collect()).collect())
@@ -284,7 +277,7 @@ impl Case {
         let start = |(i, (machine, run)): (usize, (Mechanism, &Run))| {
             let like = known.starts.map(|starts| &starts[i]);
             let same = known.still.is_some();
-            as_seen(machine, &run.log, &self.sensors, self.control, like, same)
+            as_seen(&self.simulator, machine, &run.log, like, same)
         };
         Ok(machines.map(start).collect::<Result<_, Halt>>()?)
     }

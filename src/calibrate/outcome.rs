@@ -14,6 +14,10 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
+/// Simulations that a calibration takes at most ([`Case::simulated`]): what two slow cores do in two minutes, at
+/// 0.6 s for a run of three seconds each.
+pub const MOST: f64 = 400.0;
+
 /// What a calibration comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -76,7 +80,7 @@ pub struct Outcome {
     pub predictions: Vec<Log>,
     /// What the declared model predicts, run by run.
     pub declared: Vec<Log>,
-    /// Runs that were simulated, but for the searches for starts.
+    /// Simulations that it took, in runs like the recorded ones ([`Case::simulated`]).
     pub simulations: usize,
 }
 
@@ -140,7 +144,7 @@ pub fn calibrate(
         errors,
         predictions: predicted.iter().map(|logs| errors::ensemble(logs)).collect(),
         declared: declared.iter().map(|logs| errors::ensemble(logs)).collect(),
-        simulations: case.simulated() - simulated,
+        simulations: (case.simulated() - simulated).round() as usize,
     })
 }
 

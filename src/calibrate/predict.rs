@@ -8,7 +8,6 @@ use super::plausibility;
 use super::predict_page;
 use super::rattle;
 use super::recording::Recording;
-use super::replica;
 use super::report::RattleReport;
 use super::result::{CalibrateError, control, refuse, sensors, to_json};
 use super::start::as_seen;
@@ -98,19 +97,19 @@ pub fn into_folder(
 ) -> Result<Predicted, CalibrateError> {
     let started = Clock::now();
     let log = complete(model, &recording.log);
-    let sensors = sensors(model);
-    let control = control(model);
+    // What errors are counted against is the model's instruments alone.
+    let case = Case::new(model.clone(), sensors(model), Vec::new(), control(model));
     let machine = machine(model, &log)?;
     tell("simulating two replicas: does it rattle?");
-    let rattle = rattle::look(&machine, &sensors, control, &log)?;
+    let rattle = rattle::look(&case.simulator, &machine, &log)?;
     refuse(plausibility::forces(&recording.path, &recording.log, &rattle.logs[0], &model.drive))?;
     tell("predicting the run");
     let simulate = |mut machine: Mechanism| {
         if !rattle.chaotic {
-            machine = as_seen(machine, &recording.log, &sensors, control, None, false)?.machine;
+            machine = as_seen(&case.simulator, machine, &recording.log, None, false)?.machine;
         }
         let replicas = (0..rattle.replicas as u64).into_par_iter();
-        let logs = replicas.map(|r| replica::simulate(&machine, &sensors, control, &log, r));
+        let logs = replicas.map(|r| case.simulator.record(&machine, &log, r));
         logs.collect::<Result<Vec<Log>, Halt>>()
     };
     let after = simulate(machine)?;
@@ -121,8 +120,6 @@ pub fn into_folder(
         declared.effects.clear();
         Some(simulate(self::machine(&declared, &log)?)?)
     };
-    // What errors are counted against is the model's instruments alone.
-    let case = Case::new(model.clone(), sensors, Vec::new(), control);
     let reference = before.as_deref().unwrap_or(&after);
     let mut errors = errors::of_run(&case, &recording.log, "prediction", reference, &after);
     for error in &mut errors {

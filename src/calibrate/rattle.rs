@@ -1,7 +1,7 @@
 //! Whether a machine rattles: found out, not assumed.
 
-use super::replica;
-use crate::engine::{Halt, StepControl};
+use super::replica::Simulator;
+use crate::engine::Halt;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use crate::scenario::Sensors;
@@ -38,15 +38,10 @@ pub struct Rattle {
 ///
 /// # Errors
 /// A run that broke down.
-pub fn look(
-    mechanism: &Mechanism,
-    sensors: &Sensors,
-    control: StepControl,
-    log: &Log,
-) -> Result<Rattle, Halt> {
-    let simulated = |replica| replica::simulate(mechanism, sensors, control, log, replica);
+pub fn look(simulator: &Simulator, mechanism: &Mechanism, log: &Log) -> Result<Rattle, Halt> {
+    let simulated = |replica| simulator.record(mechanism, log, replica);
     let logs = (0..2u64).into_par_iter().map(simulated).collect::<Result<Vec<_>, _>>()?;
-    let (channel, difference) = difference(&logs[0], &logs[1], sensors);
+    let (channel, difference) = difference(&logs[0], &logs[1], &simulator.sensors);
     let chaotic = difference > SEEN;
     let replicas = if chaotic { REPLICAS } else { 1 };
     Ok(Rattle { chaotic, replicas, difference, channel, logs })

@@ -40,7 +40,8 @@ pub struct Report {
     pub tolerance_m_s: f64,
     /// Seeds.
     pub seeds: Seeds,
-    /// Simulations of a whole run that it took.
+    /// Simulations that it took, searches for starts among them, in runs like the recorded ones with steps of
+    /// 0.1 ms.
     pub simulations: usize,
     /// Time of computing in s.
     pub wall_s: f64,
@@ -193,7 +194,7 @@ impl Report {
                 replicas: case.replicas(),
             },
             without: without.iter().map(|kind| (*kind).to_owned()).collect(),
-            tolerance_m_s: match case.control {
+            tolerance_m_s: match case.simulator.control {
                 StepControl::Tolerance(tolerance) => tolerance,
                 StepControl::Fixed(_) => f64::NAN,
             },

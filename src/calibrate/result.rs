@@ -2,7 +2,7 @@
 
 use super::model::SearchError;
 use super::model::{Case, Run};
-use super::outcome::calibrate;
+use super::outcome::{MOST, calibrate};
 use super::rattle::{self, Rattle};
 use super::recording::{Recording, stem};
 use super::report::{Report, Sources, calibrated};
@@ -127,7 +127,10 @@ pub struct Calibrated {
     pub folder: PathBuf,
 }
 
-/// Calibrates a rig and writes everything about it into `folder`. `tell` hears what is being tried.
+/// Calibrates a rig and writes everything about it into `folder`. `tell` hears what is being tried,
+/// after how many simulations (of [`MOST`]).
+///
+/// [`MOST`]: super::outcome::MOST
 ///
 /// # Errors
 /// Forces in a wrong unit, a rig that cannot be simulated, files that cannot be written; the folder is
@@ -136,14 +139,14 @@ pub fn into_folder(
     prepared: Prepared,
     without: &[&str],
     folder: Folder,
-    tell: &(dyn Fn(&str) + Sync),
+    tell: &(dyn Fn(&str, f64) + Sync),
 ) -> Result<Calibrated, CalibrateError> {
     let started = Clock::now();
-    tell("simulating replicas of the declared model: does it rattle?");
+    tell("simulating replicas of the declared model: does it rattle?", 0.0);
     let (case, rattle) = case(prepared)?;
-    let outcome = calibrate(&case, without, tell)?;
-    tell("drawing and writing");
     let case = &case;
+    let outcome = calibrate(case, without, &|what| tell(what, case.simulated()))?;
+    tell("drawing and writing", MOST);
     let sources = Sources { case, outcome: &outcome, rattle: &rattle, without };
     let mut report = Report::new(sources);
     let charts = charts::draw(case, &outcome)?;
@@ -199,7 +202,7 @@ pub fn case(prepared: Prepared) -> Result<(Case, Rattle), CalibrateError> {
     let mut found = Vec::new();
     let mut worst: Option<Rattle> = None;
     for ((run, machine), path) in case.runs.iter().zip(&machines).zip(paths) {
-        let rattle = rattle::look(machine, &case.sensors, case.control, &run.log)?;
+        let rattle = rattle::look(&case.simulator, machine, &run.log)?;
         found.extend(plausibility::forces(&path, &run.log, &rattle.logs[0], &case.rig.drive));
         if worst.as_ref().is_none_or(|worst| rattle.difference > worst.difference) {
             worst = Some(rattle);

@@ -31,9 +31,10 @@ const SETTLES: [usize; 2] = [7, 4];
 /// Most effects that are added.
 pub const EFFECTS: usize = 3;
 
-/// Runs simulated after which no third effect is looked for, and rivals are taken at their first guess: half
-/// of what two cores simulate in two minutes, for runs of three seconds.
-const BUDGET: usize = 220;
+/// Runs simulated ([`Case::simulated`]) after which no third effect is looked for, and of other ways and of
+/// rivals only the most promising are, at their first guess: less than half of what two slow cores simulate in
+/// two minutes, for runs of three seconds. What follows a search takes the other half.
+const BUDGET: f64 = 160.0;
 
 /// Drop of Σ of squares through one and the same lens that tells two effects apart; and what a seldom effect
 /// has to bring beyond a commoner one.
@@ -77,7 +78,12 @@ pub fn search(
             break;
         }
         let mut fan = Fan::new(case, question, until, tell);
-        let searched = ways.iter().map(|way| fan.beside(way)).collect::<Result<Vec<_>, _>>()?;
+        let mut searched = Vec::new();
+        for way in &ways {
+            if searched.is_empty() || fan.affords_another() {
+                searched.push(fan.beside(way)?);
+            }
+        }
         let mut next = fan.found();
         next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         told_apart(case, question, &mut next);
@@ -92,7 +98,7 @@ pub fn search(
         let noise = best.model.baseline.places(case, question.hold).len() as f64;
         if !is_noise(&left(case, question, &best.model)) {
             // A right model may have settled far off, behind a wrong one.
-            for way in next.iter_mut().take(WAYS - 1) {
+            for way in next.iter_mut().take(WAYS - 1).take_while(|_| case.simulated() < until) {
                 tell(&format!("settling {} point by point", names(&way.model.fit.effects)));
                 way.model = refined(case, question, way.model.clone())?;
             }

@@ -7,8 +7,8 @@
 
 use super::model::LEAD;
 use super::rattle::noise;
-use super::replica;
-use crate::engine::{Halt, Schedule, StepControl, run};
+use super::replica::Simulator;
+use crate::engine::{Halt, Schedule};
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::{Load, Mechanism, Situation};
@@ -110,8 +110,8 @@ impl Start {
     ///
     /// # Errors
     /// A run that broke down.
-    pub fn let_go(machine: Mechanism, control: StepControl) -> Result<Self, Halt> {
-        let still = still(&machine, control)?;
+    pub fn let_go(simulator: &Simulator, machine: Mechanism) -> Result<Self, Halt> {
+        let still = still(simulator, &machine)?;
         Ok(Self { kicks: None, still, machine, shown: true, seen: None })
     }
 
@@ -167,13 +167,13 @@ fn inertia(machine: &Mechanism) -> Vector3<f64> {
 ///
 /// # Errors
 /// A run that broke down.
-pub fn still(released: &Mechanism, control: StepControl) -> Result<Mechanism, Halt> {
+pub fn still(simulator: &Simulator, released: &Mechanism) -> Result<Mechanism, Halt> {
     let mut calmed = released.clone();
     let damping = inertia(released) * (2.0 * TAU * SWING);
     calmed.loads.push(Arc::new(Calming { damping }));
     let duration = LEAD - SHORT;
     let mut machine = released.clone();
-    run(&calmed, control, Schedule { duration, interval: duration }, &mut |instant| {
+    simulator.run(&calmed, Schedule { duration, interval: duration }, &mut |instant| {
         for (body, state) in machine.bodies.iter_mut().zip(instant.states) {
             body.start = *state;
         }
@@ -196,16 +196,15 @@ pub fn kicked(still: &Mechanism, kicks: &Kicks) -> Mechanism {
 
 /// How well starts meet the swing that a log shows.
 struct Judge<'a> {
+    simulator: &'a Simulator,
     log: Log,
-    sensors: &'a Sensors,
-    control: StepControl,
 }
 
 impl Judge<'_> {
     /// What is not met, in units of noise.
     fn look(&self, machine: &Mechanism) -> Result<DVector<f64>, Halt> {
-        let simulated = replica::simulate(machine, self.sensors, self.control, &self.log, 0)?;
-        Ok(swing(&self.log, &simulated, self.sensors))
+        let simulated = self.simulator.record(machine, &self.log, 0)?;
+        Ok(swing(&self.log, &simulated, &self.simulator.sensors))
     }
 
     /// What kicks change of what is not met.
@@ -287,17 +286,16 @@ fn step(response: &DMatrix<f64>, base: &DVector<f64>) -> Kicks {
 /// # Errors
 /// A run that broke down.
 pub fn as_seen(
+    simulator: &Simulator,
     released: Mechanism,
     log: &Log,
-    sensors: &Sensors,
-    control: StepControl,
     like: Option<&Start>,
     same: bool,
 ) -> Result<Start, Halt> {
-    let still = still(&released, control)?;
+    let still = still(simulator, &released)?;
     let judge = |seen: f64| {
         let log = log.part(0..((seen / log.interval) as usize).min(log.samples));
-        Judge { log, sensors, control }
+        Judge { simulator, log }
     };
     let whole = judge(SEEN);
     let known = like.and_then(|like| Some((like.kicks?, like.seen.clone()?)));

@@ -166,7 +166,7 @@ fn from(
                 if starts[segment.run].kicks.is_some() {
                     let (own, others) = rest.split_at(KICKS);
                     rest = others;
-                    let still = still(&machine, case.control).ok()?;
+                    let still = still(&case.simulator, &machine).ok()?;
                     machine = kicked(&still, &Kicks::from_column_slice(own));
                 }
                 let simulated = simulate(case, segment, &machine)?;
@@ -227,7 +227,7 @@ fn from(
 /// A machine on a segment, without sensor noise; none where it cannot be simulated.
 fn simulate(case: &Case, segment: &Segment, machine: &Mechanism) -> Option<Log> {
     let log = case.runs[segment.run].log.part(0..segment.rows.end);
-    case.replica(machine, &log, 0).ok()
+    case.simulator.record(machine, &log, 0).ok()
 }
 
 /// A start's motion with and without its swing.
@@ -292,7 +292,7 @@ fn units(parts: &[Vec<Part>]) -> DVector<f64> {
 /// Difference of two logs on rows in units of noise.
 fn difference(case: &Case, rows: &Range<usize>, a: &Log, b: &Log) -> Option<Spectra> {
     let signal = |channel: Channel| {
-        let unit = noise(&case.sensors, channel)?;
+        let unit = noise(&case.simulator.sensors, channel)?;
         let [a, b] = [a, b].map(|log| log.get(channel).map(|v| &v[rows.clone()]));
         let values = a?.iter().zip(b?).map(|(a, b)| (a - b) / unit).collect();
         Some(Signal { values, band: BAND })

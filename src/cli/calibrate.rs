@@ -5,6 +5,7 @@ use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::self_test::SelfTest;
 use crate::calibrate::errors::ChannelError;
+use crate::calibrate::outcome::MOST;
 use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare};
 use crate::calibrate::single::{self, Adjusted, Machine};
@@ -90,7 +91,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let name = rig.name.clone();
     let prepared = prepare(rig, recordings)?;
     let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
-    let calibrated = Spinner::during(arguments.print.quiet, |tell| {
+    let calibrated = Spinner::during_at_most(MOST, arguments.print.quiet, |tell| {
         into_folder(prepared, &without, folder, tell)
     })?;
     let report = &calibrated.report;

@@ -85,8 +85,7 @@ pub fn recorded(trial: &Trial) -> Result<(Case, Vec<Setting>), SearchError> {
         let machine = case.released(&hidden)?.remove(0);
         let log = &case.runs[0].log;
         // Another start of the rattle than any replica's.
-        let clean =
-            replica::simulate(&machine, &sensors, control, log, trial.seed + 1000 + i as u64)?;
+        let clean = case.simulator.record(&machine, log, trial.seed + 1000 + i as u64)?;
         logs.push(replica::with_noise(&clean, &sensors, trial.seed + 77 + i as u64));
     }
     let runs =
