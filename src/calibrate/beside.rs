@@ -5,7 +5,7 @@ use super::model::{Case, SearchError};
 use super::screen::{Scored, screen, share};
 use super::settle::{GAIN_PER_VALUE, Question, Settled, compared};
 use super::way::{Round, Way, names};
-use crate::effects::Setting;
+use crate::effects::{CALMING, Kind, Setting};
 
 /// Gain through the lens from which a candidate is worth simulating, with loaded joints and with joints
 /// that rattle: there a lens shows little, in units of a noise that contains what is missing.
@@ -76,7 +76,8 @@ impl<'a> Fan<'a> {
         self.found
     }
 
-    /// Tries every effect beside those of a model. Once one has left nothing but noise it is the only one
+    /// Tries every effect beside those of a model; beside one that leaves nothing but noise, what would calm its
+    /// rattle. Once one has left nothing but noise it is the only one
     /// that is tried beside others, which may have been mistaken for a part of it.
     ///
     /// # Errors
@@ -84,11 +85,16 @@ impl<'a> Fan<'a> {
     pub fn beside(&mut self, way: &Way) -> Result<Round, SearchError> {
         let Self { case, question, .. } = *self;
         let effects = &way.model.fit.effects;
+        let noise = is_noise(&left(case, question, &way.model));
         let (mut ranking, rivals) = match &self.enough {
             None => {
                 (self.tell)(&format!("trying every effect beside {}", names(effects)));
                 let ranking = screen(case, question, &way.model);
-                let rivals = self.rivals(way, &ranking);
+                let rivals = match noise {
+                    true if case.chaotic && way.model.baseline.rattles => calming(way, &ranking),
+                    true => Vec::new(),
+                    false => self.rivals(way, &ranking),
+                };
                 (ranking, rivals)
             }
             Some(scored) if effects.iter().any(|effect| effect.is(&scored.effect)) => {
@@ -108,6 +114,10 @@ impl<'a> Fan<'a> {
             let (scored, effects) = &mut ranking[i];
             self.tried.push(Way::key(effects));
             if let Some(rival) = self.simulated(way, &settled, scored, effects) {
+                if noise {
+                    // It removes nothing that stands above it.
+                    scored.share = 0.0;
+                }
                 settled.push((scored.clone(), rival));
             }
         }
@@ -117,7 +127,8 @@ impl<'a> Fan<'a> {
             order.unwrap_or(std::cmp::Ordering::Equal)
         });
         let round = Round::without_gain(ranking);
-        for (scored, model) in settled.into_iter().filter(|(scored, _)| scored.share > LEAST) {
+        let worth = |(scored, _): &(Scored, Settled)| noise || scored.share > LEAST;
+        for (scored, model) in settled.into_iter().filter(worth) {
             if self.enough.is_none() && is_noise(&left(case, question, &model)) {
                 self.enough = Some(scored.clone());
             }
@@ -201,4 +212,20 @@ impl<'a> Fan<'a> {
         }
         Some(rival)
     }
+}
+
+/// What may have calmed a rattle: of each kind that a model has not, the variant that explains most of the data it
+/// was fitted to.
+fn calming(way: &Way, ranking: &[(Scored, Vec<Setting>)]) -> Vec<usize> {
+    let has =
+        |kind: &Kind| way.model.fit.effects.iter().any(|effect| effect.kind.name == kind.name);
+    let best = |kind: &&Kind| {
+        let own = |i: &usize| {
+            let effect = &ranking[*i].0.effect;
+            effect.kind.name == kind.name && effect.joint.is_none()
+        };
+        let fitted = |i: &usize| ranking[*i].0.fitted;
+        (0..ranking.len()).filter(own).max_by(|a, b| fitted(a).total_cmp(&fitted(b)))
+    };
+    CALMING.iter().filter(|kind| !has(kind)).filter_map(best).collect()
 }

@@ -16,10 +16,16 @@ pub fn evidence(outcome: &Outcome, effect: &Setting) -> String {
         );
     }
     let Some((round, own)) = added(outcome, effect) else { return String::new() };
-    let mut text = format!(
-        "removes {:.1} % of what stood above noise on data not used for its fit",
-        100.0 * own.share
-    );
+    let mut text = if own.share > 0.0 {
+        let share = 100.0 * own.share;
+        format!("removes {share:.1} % of what stood above noise on data not used for its fit")
+    } else {
+        format!(
+            "nothing stands above noise without it, but joints rattle more than the recorded ones then: with it \
+             the recordings are e^{:.0} times as likely",
+            own.gain / 2.0
+        )
+    };
     let twins = as_good(outcome, effect);
     let mut rivals = round.ranking.iter().filter(|scored| scored.simulated);
     if !twins.is_empty() {

@@ -160,7 +160,7 @@ struct Prediction {
 /// Errors in floors up to which the prediction of a model whose joints stay loaded may be one of a complete
 /// model: of some fifty trials that were right the worst was 1.31. A lens sees no swing: an effect that passes for
 /// another there gives the platform another swing, and missed recordings by 3.3 floors.
-const MET: f64 = 2.0;
+pub const MET: f64 = 2.0;
 
 impl Prediction {
     /// Whether the calibrated model meets the runs that it is judged by.

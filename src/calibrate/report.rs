@@ -4,7 +4,7 @@ use super::errors::{ChannelError, worst};
 use super::evidence::{as_good, evidence};
 use super::left::{Left, is_noise};
 use super::model::Case;
-use super::outcome::{Outcome, Verdict};
+use super::outcome::{MET, Outcome, Verdict};
 use super::rattle::Rattle;
 use super::way::name;
 use crate::effects::{DependsOn, Setting};
@@ -279,6 +279,20 @@ fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
     before.iter().zip(after).map(join).collect()
 }
 
+/// What is to be said of an explained recording that simulations miss by so much.
+fn unforeseen(worst: &ChannelError) -> String {
+    let floors = worst.after / worst.floor;
+    if floors < MET {
+        return String::new();
+    }
+    format!(
+        " Yet a simulation with these values misses {} of {} by {floors:.1} floors: joints rattle so \
+         seldom that replicas stay together for a second or more, and what values are still wrong by grows \
+         over the run.",
+        worst.channel, worst.run
+    )
+}
+
 /// The verdict in plain words.
 fn summary(outcome: &Outcome) -> String {
     let named: Vec<String> = outcome
@@ -294,8 +308,9 @@ fn summary(outcome: &Outcome) -> String {
                 .to_owned()
         }
         Verdict::Explained => format!(
-            "The declared model lacks {list}. With {} the recordings are explained to within noise.",
-            if named.len() == 1 { "it" } else { "them" }
+            "The declared model lacks {list}. With {} the recordings are explained to within noise.{}",
+            if named.len() == 1 { "it" } else { "them" },
+            worst(&outcome.errors).map_or_else(String::new, unforeseen)
         ),
         Verdict::Unexplained if is_noise(&outcome.after) => {
             let misses = worst(&outcome.errors).map_or(f64::NAN, |e| e.after / e.floor);

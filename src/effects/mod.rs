@@ -84,6 +84,10 @@ pub const SELDOM: &[&Kind] = &[
     &sensor_offset::KIND,
 ];
 
+/// Effects that take energy out of a rattle, which may be all that shows of them: a residual is noise without
+/// them, only less noise than joints make that rattle on.
+pub const CALMING: &[&Kind] = &[&journal_friction::KIND, &drag::KIND];
+
 /// Effects that contain another, which they become at some of their values: who rules that out rules them
 /// out too.
 pub const CONTAINS: &[(&Kind, &Kind)] =

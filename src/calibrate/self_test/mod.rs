@@ -11,7 +11,8 @@ pub use hidden::kinds;
 pub use rates::rates;
 pub use rig::recorded;
 
-use super::model::SearchError;
+use super::errors;
+use super::model::{Case, SearchError};
 use super::outcome::{Outcome, Verdict, calibrate};
 use super::way::names;
 use crate::effects::Setting;
@@ -51,6 +52,9 @@ pub struct Tried {
     pub values: Vec<Value>,
     /// How large what is hidden is: the declared model's largest error on the validation run, in floors.
     pub floors: f64,
+    /// How large the smallest of several hidden effects is: the same of the true model without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least: Option<f64>,
     /// The same of the calibrated model.
     pub worst_ratio: f64,
     /// Simulations it took.
@@ -81,7 +85,33 @@ pub fn run(trial: &Trial) -> Result<Tried, SearchError> {
     let hidden_names: Vec<&str> = trial.hidden.iter().map(String::as_str).collect();
     let without = if trial.withheld { &hidden_names[..] } else { &[] };
     let outcome = calibrate(&case, without, &|_| {})?;
-    Ok(judge(trial, &hidden, &outcome))
+    let least = least(&case, &hidden)?;
+    Ok(Tried { least, ..judge(trial, &hidden, &outcome) })
+}
+
+/// The largest error in floors on the validation run of the true model less one of its effects, the one whose
+/// lack makes the least; none of a single effect.
+///
+/// # Errors
+/// A rig that cannot be simulated.
+pub fn least(case: &Case, hidden: &[Setting]) -> Result<Option<f64>, SearchError> {
+    if hidden.len() < 2 {
+        return Ok(None);
+    }
+    let run = case.runs.len() - 1;
+    let logs = |effects: &[Setting]| Ok::<_, SearchError>(case.baseline(effects, &[], None)?.logs);
+    let truth = logs(hidden)?;
+    let mut least = f64::INFINITY;
+    for lacking in hidden {
+        let others: Vec<Setting> =
+            hidden.iter().filter(|effect| !effect.is(lacking)).cloned().collect();
+        let without = logs(&others)?;
+        let log = &case.runs[run].log;
+        let errors = errors::of_run(case, log, "validation", &without[run], &truth[run]);
+        let largest = errors.iter().map(|error| error.before / error.floor).fold(0.0, f64::max);
+        least = least.min(largest);
+    }
+    Ok(Some(least))
 }
 
 fn judge(trial: &Trial, hidden: &[Setting], outcome: &Outcome) -> Tried {
@@ -127,6 +157,7 @@ fn judge(trial: &Trial, hidden: &[Setting], outcome: &Outcome) -> Tried {
         right,
         values,
         floors: validation().map(|e| e.before / e.floor).fold(0.0, f64::max),
+        least: None,
         worst_ratio: validation().map(|e| e.after / e.floor).fold(0.0, f64::max),
         simulations: outcome.simulations,
         version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -14,13 +14,18 @@ const NEAR: f64 = 0.1;
 type Row = (&'static str, fn(&Tried) -> bool);
 
 /// The kinds of trials of which one asks how many were right.
-const RIGHT: [Row; 5] = [
+const RIGHT: [Row; 6] = [
     ("one effect above three floors: named, and nothing beside it", |tried| {
         single(tried) && tried.floors > LARGE
     }),
     ("one effect below three floors: the same", |tried| single(tried) && tried.floors <= LARGE),
     ("nothing hidden: `nothing-missing`", |tried| tried.trial.hidden.is_empty()),
-    ("two effects: both named, and nothing beside them", |tried| tried.trial.hidden.len() > 1),
+    ("two effects, each above three floors: both named, and nothing beside them", |tried| {
+        tried.least.is_some_and(|least| least > LARGE)
+    }),
+    ("two effects, one of them below three floors: the same", |tried| {
+        tried.least.is_some_and(|least| least <= LARGE)
+    }),
     ("an effect that is no candidate: `unexplained`", |tried| tried.trial.withheld),
 ];
 
@@ -68,7 +73,9 @@ pub fn rates(all: &[Tried]) -> String {
 fn hidden(tried: &Tried) -> String {
     let gravity = if tried.trial.gravity { "with gravity" } else { "without gravity" };
     let withheld = if tried.trial.withheld { ", no candidate" } else { "" };
-    format!("{} ({:.1} floors, {gravity}{withheld})", tried.lacks, tried.floors)
+    let least =
+        tried.least.map_or_else(String::new, |least| format!(", the lesser one {least:.1}"));
+    format!("{} ({:.1} floors{least}, {gravity}{withheld})", tried.lacks, tried.floors)
 }
 
 fn found(tried: &Tried) -> String {
