@@ -35,6 +35,10 @@ pub const EFFECTS: usize = 3;
 /// two minutes, for runs of three seconds. What follows a search takes the other half.
 const BUDGET: f64 = 160.0;
 
+/// Drop of −2 log likelihood from which an effect has calmed the rattle of recordings: misfits of one and the same
+/// model, settled again, were up to 1050 apart, and friction of 0.11 in journals brings 2700 and more.
+const CALMER: f64 = 1500.0;
+
 /// Drop of Σ of squares through one and the same lens that tells two effects apart; and what a seldom effect
 /// has to bring beyond a commoner one.
 const APART: f64 = 10.0;
@@ -143,7 +147,7 @@ fn calmer(
 ) -> Result<(Round, Option<Way>), SearchError> {
     let mut fan = Fan::new(case, question, until, tell);
     let round = fan.beside(way)?;
-    let enough = way.cost() - GAIN[1] - CHANCE[1];
+    let enough = way.cost() - CALMER;
     let calmer = fan.found().into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
     let Some(calmer) = calmer.filter(|calmer| calmer.cost() < enough) else {
         return Ok((round, None));
