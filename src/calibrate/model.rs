@@ -22,7 +22,7 @@ pub const LEAD: f64 = 0.25;
 
 /// Step in s by which simulations are counted: a position servo's damping leaves 125 µs to light legs, impacts
 /// take more steps.
-const USUAL_STEP: f64 = 100e-6;
+const USUAL_STEP: f64 = 1e-4;
 
 /// A recorded run, ready to be explained.
 #[derive(Debug)]
@@ -159,7 +159,7 @@ impl Case {
         if self.chaotic { rattle::REPLICAS } else { 1 }
     }
 
-    /// Simulations so far, in runs of the mean length of the recorded ones, their lead and [`USUAL_STEP`].
+    /// Simulations so far, in runs of the mean length of the recorded ones with their lead, in steps of 0.1 ms.
     pub fn simulated(&self) -> f64 {
         let time = |run: &Run| LEAD + (run.log.samples - 1) as f64 * run.log.interval;
         let recorded: f64 = self.runs.iter().map(time).sum();
