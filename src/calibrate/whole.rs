@@ -7,7 +7,7 @@
 
 use super::axes::Axes;
 use super::fit::{Fit, free, values, with_values};
-use super::least_squares::{Effort, Free, jacobian, least_squares};
+use super::least_squares::{Effort, Free, Look, jacobian, least_squares};
 use super::model::{Case, Segment};
 use super::rattle::noise;
 use super::spectrum::{Signal, transform};
@@ -16,6 +16,7 @@ use crate::effects::Setting;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Highest frequencies in Hz that count: all that a platform does, and its motion alone. Where a leg is
@@ -71,6 +72,9 @@ const COMPLETE: f64 = 1.2;
 /// have to leave of it, for still further ones to be worth it.
 const SLOW: f64 = 6.0;
 const FALLING: f64 = 0.8;
+
+/// Standard deviations at which it is seen how what is missed grows.
+const FARTHER: [f64; 2] = [4.0, 16.0];
 
 /// Half the number of neighbouring frequencies over which a swing's size is averaged.
 const NEIGHBOURS: usize = 8;
@@ -143,7 +147,7 @@ fn from(
     let mut fit = None;
     // Derivatives along the axes in units of what may be missed, and those units.
     let mut last: Option<(DMatrix<f64>, DVector<f64>)> = None;
-    for Stage { seen, band, share, steps, enough, kept } in stages {
+    for (i, Stage { seen, band, share, steps, enough, kept }) in stages.iter().enumerate() {
         let parts: Vec<Vec<Part>> = on
             .iter()
             .zip(&swings)
@@ -201,8 +205,13 @@ fn from(
             }
             now = axes.values(&free, &now, &best.values);
             let derivatives = best.jacobian.as_ref()?;
-            let own = axes.derivatives(derivatives)?;
+            let mut own = axes.derivatives(derivatives)?;
             let turned = axes.turned(&free, derivatives)?;
+            if case.chaotic && i + 1 == stages.len() {
+                let along = |steps: &[f64]| look(&turned.values(&free, &now, steps));
+                let slopes = turned.derivatives_along(&own);
+                own = turned.derivatives(&smoothed(&along, slopes, &best.residual))?;
+            }
             last = Some((turned.derivatives_along(&own), units.clone()));
             axes = turned;
             fit = Some((best.residual, own));
@@ -222,6 +231,28 @@ fn from(
     }
     let effects = with_values(effects, &now[..count]);
     Some(Fit { effects, chi2, white: residual, jacobian: Some(own) })
+}
+
+/// Slopes along axes no larger than what is missed grows farther away. Where joints rattle that friction has
+/// calmed, a motion is a rough function of values: at a point it may rise steeply, and be as low again some
+/// standard deviations on.
+fn smoothed(along: Look, mut slopes: DMatrix<f64>, missed: &DVector<f64>) -> DMatrix<f64> {
+    let least = missed.norm_squared();
+    let flat = |axis: usize| {
+        let steps = FARTHER.iter().flat_map(|reach| [-reach, *reach]);
+        let ratios = steps.map(|reach| {
+            let steps: Vec<f64> =
+                (0..slopes.ncols()).map(|i| if i == axis { reach } else { 0.0 }).collect();
+            let rise = along(&steps).map_or(f64::INFINITY, |there| there.norm_squared() - least);
+            rise.max(1.0).sqrt() / reach.abs()
+        });
+        ratios.fold(1.0, f64::min)
+    };
+    let ratios: Vec<f64> = (0..slopes.ncols()).into_par_iter().map(flat).collect();
+    for (mut slope, ratio) in slopes.column_iter_mut().zip(ratios) {
+        slope *= ratio;
+    }
+    slopes
 }
 
 /// A machine on a segment, without sensor noise; none where it cannot be simulated.
