@@ -74,7 +74,7 @@ impl Spinner {
         quiet: bool,
         work: impl FnOnce(&(dyn Fn(&str, f64) + Sync)) -> T,
     ) -> T {
-        let spinner = Self::ticking(bar(most as u64, "{bar:30} {elapsed} {wide_msg}", quiet));
+        let spinner = Self::ticking(bar(most as u64, "{bar:20} {elapsed} {wide_msg}", quiet));
         let result = work(&|what, done| {
             spinner.bar.set_position(f64::min(done, most) as u64);
             spinner.tell(what);
