@@ -10,9 +10,7 @@
 
 use freeplay::contact::{Clearance, ForceLaw, HertzStep, Material, StiffnessForm, hertz_stiffness};
 use freeplay::engine::{Schedule, StepControl, run};
-use freeplay::mechanism::{
-    Attachment, Bearing, Body, BodyState, Command, Commands, Mechanism, NativeContacts, Revolute,
-};
+use freeplay::mechanism::{Attachment, Bearing, Body, BodyState, Mechanism, Revolute};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
@@ -79,20 +77,13 @@ fn peak(bearing: &Bearing, control: StepControl, step: f64) -> f64 {
 
 /// A free journal, `x` m from the centre of a ring on the ground.
 fn mechanism(bearing: Bearing, x: f64) -> Mechanism {
-    let journal = Body {
-        name: "journal".into(),
-        mass: MASS,
-        inertia: 4.5e-6,
-        reference: Vector2::zeros(),
-        start: BodyState {
-            position: Vector2::new(x, 0.0),
-            twist: Vector3::new(SPEED, 0.0, 0.0),
-            ..BodyState::ground()
-        },
+    let start = BodyState {
+        position: Vector2::new(x, 0.0),
+        twist: Vector3::new(SPEED, 0.0, 0.0),
+        ..BodyState::ground()
     };
     let centre = |body| Attachment { body, point: Vector2::zeros() };
     Mechanism {
-        bodies: vec![journal],
         revolutes: vec![Revolute {
             name: "joint".into(),
             ring: centre(None),
@@ -100,20 +91,6 @@ fn mechanism(bearing: Bearing, x: f64) -> Mechanism {
             bearing,
             out_of_round: None,
         }],
-        prismatics: Vec::new(),
-        commands: Arc::new(Undriven),
-        epoch: 0.0,
-        loads: Vec::new(),
-        gravity: Vector2::zeros(),
-        native: NativeContacts::default(),
-        output: 0,
+        ..Mechanism::free(vec![Body::new("journal", MASS, 4.5e-6, start)])
     }
-}
-
-/// Nothing is driven.
-#[derive(Debug)]
-struct Undriven;
-
-impl Commands for Undriven {
-    fn at(&self, _: f64, _: &mut [Command]) {}
 }

@@ -122,7 +122,7 @@ fn prescribed_drives_keep_their_lengths_while_journals_hit() {
                 let mut commands = [Command::default(); 3];
                 mechanism.commands.at(instant.t, &mut commands);
                 for (length, command) in instant.evaluation.lengths.iter().zip(&commands) {
-                    worst = worst.max((length - command.length).abs());
+                    worst = worst.max((length - command.position).abs());
                 }
             },
         )

@@ -6,7 +6,7 @@
 
 mod common;
 
-use common::{Curve, NoCommands};
+use common::Curve;
 use freeplay::contact::{Clearance, ForceLaw, HertzStep};
 use freeplay::engine::{
     ClearanceJoint, ClearanceJoints, Instant, Schedule, StepControl, physics_world, run,
@@ -115,18 +115,12 @@ impl Row {
     /// The hit under `run`.
     fn run(&self, step: f64, offset: f64) -> Hit {
         let velocity = Self::direction() * self.speed;
+        let start = BodyState {
+            position: self.start(step, offset),
+            rotation: UnitComplex::new(0.3),
+            twist: Vector3::new(velocity.x, velocity.y, 0.0),
+        };
         let mechanism = Mechanism {
-            bodies: vec![Body {
-                name: "mass".into(),
-                mass: self.mass,
-                inertia: 1e-4,
-                start: BodyState {
-                    position: self.start(step, offset),
-                    rotation: UnitComplex::new(0.3),
-                    twist: Vector3::new(velocity.x, velocity.y, 0.0),
-                },
-                reference: Vector2::zeros(),
-            }],
             revolutes: vec![Revolute {
                 name: "ring".into(),
                 ring: Attachment { body: None, point: Vector2::zeros() },
@@ -134,13 +128,7 @@ impl Row {
                 bearing: Bearing::Clearance(self.clearance()),
                 out_of_round: None,
             }],
-            prismatics: Vec::new(),
-            commands: Arc::new(NoCommands),
-            epoch: 0.0,
-            gravity: Vector2::zeros(),
-            loads: Vec::new(),
-            native: freeplay::mechanism::NativeContacts::default(),
-            output: 0,
+            ..Mechanism::free(vec![Body::new("mass", self.mass, 1e-4, start)])
         };
         let schedule = Schedule { duration: self.steps(step) as f64 * step, interval: step };
         let mut hit = Hit { peak: 0.0, overlap: 0.0, force_time: 0.0, rebound: 0.0 };

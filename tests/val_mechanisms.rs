@@ -6,11 +6,12 @@
 
 mod common;
 
-use common::{NoCommands, hertz, kinetic_energy};
+use common::{hertz, kinetic_energy};
 use freeplay::contact::{Clearance, HertzStep};
 use freeplay::engine::{Instant, Schedule, StepControl, Work, run};
 use freeplay::mechanism::{
-    Attachment, Bearing, Body, BodyState, Drive, Mechanism, NativeContacts, Prismatic, Revolute,
+    Actuator, Attachment, Bearing, Body, BodyState, Command, Commands, Drive, JointIndex,
+    Mechanism, Prismatic, Revolute,
 };
 use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -22,17 +23,12 @@ const LADDER: [f64; 5] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 fn bar(mass: f64, from: Vector2<f64>, to: Vector2<f64>, velocity: Vector2<f64>, spin: f64) -> Body {
     let along = to - from;
     let twist = velocity + Vector2::new(-along.y, along.x) * (spin / 2.0);
-    Body {
-        name: "bar".into(),
-        mass,
-        inertia: mass * along.norm_squared() / 12.0,
-        reference: Vector2::zeros(),
-        start: BodyState {
-            position: (from + to) / 2.0,
-            rotation: UnitComplex::new(along.y.atan2(along.x)),
-            twist: Vector3::new(twist.x, twist.y, spin),
-        },
-    }
+    let start = BodyState {
+        position: (from + to) / 2.0,
+        rotation: UnitComplex::new(along.y.atan2(along.x)),
+        twist: Vector3::new(twist.x, twist.y, spin),
+    };
+    Body::new("bar", mass, mass * along.norm_squared() / 12.0, start)
 }
 
 fn at(body: usize, x: f64) -> Attachment {
@@ -47,17 +43,7 @@ fn joint(ring: Attachment, journal: Attachment, bearing: Bearing) -> Revolute {
 
 /// A mechanism without drives.
 fn free(bodies: Vec<Body>, revolutes: Vec<Revolute>, gravity: f64) -> Mechanism {
-    Mechanism {
-        output: bodies.len() - 1,
-        bodies,
-        revolutes,
-        prismatics: Vec::new(),
-        commands: Arc::new(NoCommands),
-        epoch: 0.0,
-        loads: Vec::new(),
-        gravity: Vector2::new(0.0, gravity),
-        native: NativeContacts::default(),
-    }
+    Mechanism { revolutes, gravity: Vector2::new(0.0, gravity), ..Mechanism::free(bodies) }
 }
 
 /// A contact without losses.
@@ -245,17 +231,12 @@ fn slider_crank(bearing: Bearing, speed: f64) -> Mechanism {
     let slider = Vector2::new((ROD * ROD - CRANK * CRANK).sqrt(), 0.0);
     // The crank stands upright, where the rod only shifts.
     let velocity = Vector2::new(-CRANK * speed, 0.0);
-    let block = Body {
-        name: "slider".into(),
-        mass: MASSES[2],
-        inertia: 1e-5,
-        reference: Vector2::zeros(),
-        start: BodyState {
-            position: slider,
-            rotation: UnitComplex::identity(),
-            twist: Vector3::new(velocity.x, 0.0, 0.0),
-        },
+    let start = BodyState {
+        position: slider,
+        rotation: UnitComplex::identity(),
+        twist: Vector3::new(velocity.x, 0.0, 0.0),
     };
+    let block = Body::new("slider", MASSES[2], 1e-5, start);
     let bodies = vec![
         bar(MASSES[0], Vector2::zeros(), pin, Vector2::zeros(), speed),
         bar(MASSES[1], pin, slider, velocity, 0.0),
@@ -268,11 +249,9 @@ fn slider_crank(bearing: Bearing, speed: f64) -> Mechanism {
     ];
     let guide = Prismatic {
         name: "guide".into(),
-        cylinder: GROUND,
-        rod: at(2, 0.0),
-        drive: Drive::Servo { stiffness: 0.0, damping: 0.0 },
-        reading_errors: Vec::new(),
-        transmission: None,
+        base: GROUND,
+        slider: at(2, 0.0),
+        axes: [UnitComplex::identity(); 2],
     };
     Mechanism { prismatics: vec![guide], ..free(bodies, joints, 0.0) }
 }
@@ -337,6 +316,15 @@ fn a_slider_crank_with_play_converges_and_keeps_its_energy() {
     falls(&energies, 1e-6);
 }
 
+#[derive(Debug)]
+struct AtZero;
+
+impl Commands for AtZero {
+    fn at(&self, _: f64, commands: &mut [Command]) {
+        commands.fill(Command::default());
+    }
+}
+
 /// Three bars in one line, free in space and turning, held together by two springs along the line.
 #[test]
 fn a_chain_of_prismatic_joints_keeps_energy_and_momentum() {
@@ -352,14 +340,20 @@ fn a_chain_of_prismatic_joints_keeps_energy_and_momentum() {
         .collect();
     let prismatic = |i: usize| Prismatic {
         name: "spring".into(),
-        cylinder: at(i, 0.0),
-        rod: at(i + 1, 0.0),
-        drive: Drive::Servo { stiffness, damping: 0.0 },
-        reading_errors: Vec::new(),
-        transmission: None,
+        base: at(i, 0.0),
+        slider: at(i + 1, 0.0),
+        axes: [UnitComplex::identity(); 2],
     };
-    let mechanism =
-        Mechanism { prismatics: vec![prismatic(0), prismatic(1)], ..free(bodies, vec![], 0.0) };
+    let spring = |i: usize| {
+        let drive = Drive::Servo { stiffness, damping: 0.0 };
+        Actuator::new("spring", JointIndex::Prismatic(i), drive)
+    };
+    let mechanism = Mechanism {
+        prismatics: vec![prismatic(0), prismatic(1)],
+        actuators: vec![spring(0), spring(1)],
+        commands: Arc::new(AtZero),
+        ..free(bodies, vec![], 0.0)
+    };
     let schedule = Schedule { duration: 0.1, interval: 1e-3 };
     let found = LADDER.map(|tolerance| {
         let (mut first, mut worst) = (None, [0.0f64; 2]);

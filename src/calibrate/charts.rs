@@ -182,7 +182,7 @@ fn dependence(case: &Case, outcome: &Outcome) -> Result<(Vec<Picture>, Shares), 
         let t = row as f64 * run.log.interval;
         run.commands.at(t, &mut commands);
         for (columns, command) in over.iter_mut().zip(&commands) {
-            let values = [command.length, command.rate, command.acceleration, t];
+            let values = [command.position, command.rate, command.acceleration, t];
             for (column, value) in columns.iter_mut().zip(values) {
                 column.push(value);
             }

@@ -36,7 +36,7 @@ impl Commands for LoggedCommands {
         let t = if over > 0.0 && over < ROUNDING * self.interval { self.end } else { t };
         for (command, spline) in commands.iter_mut().zip(&self.splines) {
             let [length, rate, acceleration] = spline.at(t);
-            *command = Command { length, rate, acceleration };
+            *command = Command { position: length, rate, acceleration };
         }
     }
 }

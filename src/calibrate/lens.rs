@@ -147,32 +147,32 @@ impl Lens {
             mechanism.commands.at(t, &mut commands);
             let [pose, rate, acceleration] = self.smooth[i];
             let rods = [0, 1, 2].map(|leg| {
-                let joint = &mechanism.prismatics[leg];
+                let actuator = &mechanism.actuators[leg];
                 let read = Command {
-                    length: self.lengths[i][leg],
+                    position: self.lengths[i][leg],
                     rate: self.smooth_rates[i][leg],
                     acceleration: self.smooth_accelerations[i][leg],
                 };
-                let truth = joint.true_command(read).acceleration;
-                joint.transmission.is_none().then_some([read.acceleration, truth])
+                let truth = actuator.true_command(read).acceleration;
+                actuator.transmission.is_none().then_some([read.acceleration, truth])
             });
             let look = machine.look(t, [pose, rate, acceleration], rods, self.leaning_forces[i]);
             for leg in 0..3 {
-                let joint = &mechanism.prismatics[leg];
+                let actuator = &mechanism.actuators[leg];
                 let (q, command) = (self.lengths[i][leg], commands[leg]);
-                let servo = match joint.drive {
+                let servo = match actuator.drive {
                     Drive::Servo { stiffness, damping } => {
                         self.forces[i][leg]
-                            - stiffness * (command.length - q)
+                            - stiffness * (command.position - q)
                             - damping * (command.rate - self.rates[i][leg])
                     }
-                    Drive::Prescribed | Drive::Sampled(_) => 0.0,
+                    Drive::Prescribed | Drive::Sampled(_) | Drive::Effort => 0.0,
                 };
                 signals[leg].values.push(servo);
                 let length = machine.length(leg, self.poses[i], look.leans[leg]);
-                let read = joint.read(length, 0.0)[0];
+                let read = actuator.read(length, 0.0)[0];
                 let force = self.smooth_forces[i][leg];
-                let ahead = joint.transmission.map_or(0.0, |link| link.pressed(force));
+                let ahead = actuator.transmission.map_or(0.0, |link| link.pressed(force));
                 signals[3 + leg].values.push(q - read - ahead);
                 signals[6 + leg].values.push(self.smooth_forces[i][leg] - look.forces[leg]);
             }
@@ -269,10 +269,10 @@ impl<'a> Machine<'a> {
             let rotation = UnitComplex::from_cos_sin_unchecked(u.x, u.y);
             // Distances of the centres of mass from A, and their rates along the leg.
             let parts = [
-                (joint.cylinder.body, -joint.cylinder.point.x, 0.0, 0.0),
+                (joint.base.body, -joint.base.point.x, 0.0, 0.0),
                 (
-                    joint.rod.body,
-                    q - joint.rod.point.x,
+                    joint.slider.body,
+                    q - joint.slider.point.x,
                     q_rate,
                     rods[leg].map_or(q_second, |[read, _]| read),
                 ),
@@ -311,7 +311,7 @@ impl<'a> Machine<'a> {
                 let base = mechanism.revolutes[leg].ring.point;
                 let mut moment = 0.0;
                 let joint = &mechanism.prismatics[leg];
-                for body in [joint.cylinder.body, joint.rod.body].into_iter().flatten() {
+                for body in [joint.base.body, joint.slider.body].into_iter().flatten() {
                     let arm = self.states[body].position - base;
                     moment += arm.perp(&needed[body].xy()) + needed[body].z;
                 }
@@ -337,11 +337,11 @@ impl<'a> Machine<'a> {
             for leg in 0..3 {
                 let [u, n] = axes[leg];
                 let joint = &mechanism.prismatics[leg];
-                let rod = joint.rod.body.map_or_else(Vector3::zeros, |b| needed[b]);
-                let cylinder = joint.cylinder.body.map_or_else(Vector3::zeros, |b| needed[b]);
+                let rod = joint.slider.body.map_or_else(Vector3::zeros, |b| needed[b]);
+                let cylinder = joint.base.body.map_or_else(Vector3::zeros, |b| needed[b]);
                 let rod_along = rod.xy().dot(&u);
                 // What an error of the encoder adds turns fast: which way journals lean is none of its matter.
-                let mass = joint.rod.body.map_or(0.0, |b| mechanism.bodies[b].mass);
+                let mass = joint.slider.body.map_or(0.0, |b| mechanism.bodies[b].mass);
                 let unread = rods[leg].map_or(0.0, |[read, truth]| mass * (truth - read));
                 look.forces[leg] = rod_along + unread - along[leg];
                 let top = u * (rod_along - measured[leg]) + n * across[leg];

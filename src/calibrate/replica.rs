@@ -80,7 +80,7 @@ impl Simulator {
         let rows = lead + (log.samples - 1) * fine;
         let mechanism = &mechanism;
         let schedule = Schedule { duration: rows as f64 * interval, interval };
-        let drives = mechanism.prismatics.len();
+        let drives = mechanism.actuators.len();
         let mut forces = vec![Vec::with_capacity(rows + 1); drives];
         let mut lengths = vec![Vec::with_capacity(log.samples); drives];
         let mut poses = [const { Vec::new() }; 3];

@@ -42,9 +42,9 @@ impl ReadingError for Scale {
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    for index in setting.prismatics(mechanism)? {
+    for index in setting.slide_drives(mechanism)? {
         let relative = setting.number("relative");
-        mechanism.prismatics[index].reading_errors.push(Arc::new(Scale { relative }));
+        mechanism.actuators[index].reading_errors.push(Arc::new(Scale { relative }));
     }
     Ok(())
 }

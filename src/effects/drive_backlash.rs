@@ -43,11 +43,11 @@ pub(super) const KIND: Kind = Kind {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let play = setting.number("play_m");
-    for index in setting.prismatics(mechanism)? {
+    for index in setting.slide_drives(mechanism)? {
         if play == 0.0 {
             continue;
         }
-        let joint = &mut mechanism.prismatics[index];
+        let joint = &mut mechanism.actuators[index];
         let prescribed = joint.drive == Drive::Prescribed;
         release(joint);
         let link = joint.transmission.get_or_insert(Transmission::default());

@@ -2,7 +2,7 @@
 
 use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
-use crate::mechanism::{Drive, Mechanism, Prismatic, Transmission};
+use crate::mechanism::{Actuator, Drive, Mechanism, Transmission};
 
 /// Compliance in m/N below which a prescribed drive stays rigid: its motion would ask for steps below
 /// 5 µs and differ from the rigid one by a nanometre per newton.
@@ -47,7 +47,7 @@ pub(super) const KIND: Kind = Kind {
 };
 
 /// Lets the motor of a prescribed drive hold the end of a link in place of the rod.
-pub(super) fn release(joint: &mut Prismatic) {
+pub(super) fn release(joint: &mut Actuator) {
     if joint.drive == Drive::Prescribed {
         joint.drive = Drive::Servo { stiffness: HELD, damping: 0.0 };
     }
@@ -55,8 +55,8 @@ pub(super) fn release(joint: &mut Prismatic) {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let compliance = setting.number("compliance_m_N");
-    for index in setting.prismatics(mechanism)? {
-        let joint = &mut mechanism.prismatics[index];
+    for index in setting.slide_drives(mechanism)? {
+        let joint = &mut mechanism.actuators[index];
         if compliance == 0.0 || joint.drive == Drive::Prescribed && compliance < RIGID {
             continue;
         }

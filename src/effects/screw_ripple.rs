@@ -2,7 +2,7 @@
 
 use super::kind::{Range, Scan, defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Wrong};
-use crate::mechanism::{Load, Mechanism, ReadingError, Situation};
+use crate::mechanism::{JointIndex, Load, Mechanism, ReadingError, Situation};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -73,7 +73,7 @@ impl ReadingError for Ripple {
 impl Load for Ripple {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let [length, rate] = at.length(self.joint);
-        let [read, _] = at.mechanism.prismatics[self.joint].read(length, rate);
+        let read = at.reading(self.joint, [length, rate]);
         at.push_rod(self.joint, self.wave(read)[0], wrenches);
     }
 }
@@ -81,10 +81,11 @@ impl Load for Ripple {
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let [length, force, pitch, phase] =
         ["amplitude_m", "amplitude_N", "pitch_m", "phase_rad"].map(|name| setting.number(name));
-    for joint in setting.prismatics(mechanism)? {
+    for drive in setting.slide_drives(mechanism)? {
+        let JointIndex::Prismatic(joint) = mechanism.actuators[drive].joint else { continue };
         let ripple = |amplitude| Ripple { joint, amplitude, pitch, phase };
         if length != 0.0 {
-            mechanism.prismatics[joint].reading_errors.push(Arc::new(ripple(length)));
+            mechanism.actuators[drive].reading_errors.push(Arc::new(ripple(length)));
         }
         if force != 0.0 {
             mechanism.loads.push(Arc::new(ripple(force)));

@@ -37,9 +37,9 @@ impl ReadingError for Offset {
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    for index in setting.prismatics(mechanism)? {
+    for index in setting.slide_drives(mechanism)? {
         let error = Arc::new(Offset(setting.number("offset_m")));
-        mechanism.prismatics[index].reading_errors.push(error);
+        mechanism.actuators[index].reading_errors.push(error);
     }
     Ok(())
 }

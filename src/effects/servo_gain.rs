@@ -27,8 +27,8 @@ pub(super) const KIND: Kind = Kind {
 };
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    for index in setting.prismatics(mechanism)? {
-        if let Drive::Servo { stiffness, damping } = &mut mechanism.prismatics[index].drive {
+    for index in setting.slide_drives(mechanism)? {
+        if let Drive::Servo { stiffness, damping } = &mut mechanism.actuators[index].drive {
             *stiffness *= 1.0 + setting.number("stiffness_relative");
             *damping *= 1.0 + setting.number("damping_relative");
         }

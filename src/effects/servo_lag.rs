@@ -53,7 +53,7 @@ impl Commands for Filtered {
         for [node, weight] in LAGUERRE {
             self.inner.at(t - self.time_constant * node, &mut past);
             for (sum, term) in commands.iter_mut().zip(&past) {
-                sum.length += weight * term.length;
+                sum.position += weight * term.position;
                 sum.rate += weight * term.rate;
                 sum.acceleration += weight * term.acceleration;
             }

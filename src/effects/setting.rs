@@ -1,7 +1,7 @@
 //! An effect with its numbers.
 
 use super::{Joints, Kind, Map, Parameter, named};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Actuator, JointIndex, Mechanism};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::sync::Arc;
 
@@ -173,6 +173,15 @@ impl Setting {
     /// Indices of the prismatic joints that the effect is given.
     pub(super) fn prismatics(&self, mechanism: &Mechanism) -> Result<Vec<usize>, Wrong> {
         self.chosen(mechanism.prismatics.iter().map(|joint| joint.name.as_str()))
+    }
+
+    /// Indices of the drives of the prismatic joints that the effect is given.
+    pub(super) fn slide_drives(&self, mechanism: &Mechanism) -> Result<Vec<usize>, Wrong> {
+        let slides = |actuator: &Actuator| matches!(actuator.joint, JointIndex::Prismatic(_));
+        let drives = mechanism.actuators.iter().enumerate();
+        let drives: Vec<_> = drives.filter(|(_, actuator)| slides(actuator)).collect();
+        let chosen = self.chosen(drives.iter().map(|(_, actuator)| actuator.name.as_str()))?;
+        Ok(chosen.into_iter().map(|i| drives[i].0).collect())
     }
 
     /// Indices of the revolute joints that the effect is given.

@@ -178,7 +178,7 @@ impl Load for Applied {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let state = at.mechanism.output_state(at.states);
         let pose = state.position.push(state.rotation.angle());
-        let mut commands = vec![Command::default(); at.mechanism.prismatics.len()];
+        let mut commands = vec![Command::default(); at.mechanism.actuators.len()];
         if self.map.depends_on == DependsOn::Acceleration {
             at.mechanism.commands.at(at.t, &mut commands);
         }
@@ -201,7 +201,7 @@ impl Load for Applied {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let Some(map) = &setting.map else { return Ok(()) };
-    let components = map.components(mechanism.prismatics.len());
+    let components = map.components(mechanism.actuators.len());
     if map.coefficients.len() != components {
         return Err(Wrong {
             key: "coefficients".to_owned(),

@@ -12,8 +12,8 @@
 //! better: `kick = ∫F over the past step − forward part given before + forward part`.
 
 use super::run::Stepper;
-use super::world::{Target, World};
-use crate::mechanism::{Bearing, BodyState, Drive, Dynamics, Evaluation, Mechanism, Situation};
+use super::world::{Target, World, joint_advance};
+use crate::mechanism::{Bearing, BodyState, Dynamics, Evaluation, Mechanism, Situation};
 use nalgebra::Vector3;
 
 /// Inner nodes of the four-point Lobatto rule on [0, 1]: ½(1 ∓ 1/√5); weights 1, 5, 5, 1 over 12.
@@ -209,8 +209,8 @@ impl Stepper for Adaptive {
     }
 
     // The jerk stays that of before: a force that jumps says nothing of how it goes on.
-    fn sample(&mut self, mechanism: &Mechanism, t: f64) {
-        self.dynamics.sample(mechanism, t, &self.states);
+    fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]) {
+        self.dynamics.sample(mechanism, t, &self.states, due);
         self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
         self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
         if self.coupled {
@@ -276,15 +276,18 @@ impl Stepper for Adaptive {
         // The path was last looked at where the step ends, so its commands and lengths are the
         // targets.
         let (turns, now, path) = (&self.turns, &self.now, &self.path);
-        self.world.step(h, &self.sums, Some(turns), |i| {
+        let dynamics = &self.dynamics;
+        let targets = |i: usize| {
             let joint = &mechanism.prismatics[i];
-            let length = match joint.drive {
-                Drive::Prescribed => path.commands[i].length,
-                Drive::Servo { .. } | Drive::Sampled(_) => path.lengths[i],
-            };
-            let turn = joint.cylinder.body.map_or(0.0, |body| turns[body]);
-            Some(Target::new(joint, length, now.lengths[i], turn))
-        });
+            let commanded = dynamics.prescribed(i).map(|drive| path.commands[drive].position);
+            let turn = joint.base.body.map_or(0.0, |body| turns[body]);
+            Some(Target::new(joint, commanded.unwrap_or(path.lengths[i]), now.lengths[i], turn))
+        };
+        let advances = |i: usize| {
+            let advance = path.commands[i].position - now.coordinates[i];
+            joint_advance(advance, mechanism.ring_turn(i, turns))
+        };
+        self.world.step(h, &self.sums, Some(turns), targets, advances);
         self.previous_wrenches.copy_from_slice(&self.now.wrenches);
         self.previous_accelerations.copy_from_slice(&self.now.accelerations);
         self.previous_step = h;

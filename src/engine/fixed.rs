@@ -10,8 +10,8 @@
 //! seventh of the extrapolation's, and a tenth in the rebound of one hit.
 
 use super::run::{Stepper, equal_step};
-use super::world::{Target, World};
-use crate::mechanism::{BodyState, Command, Drive, Dynamics, Evaluation, Mechanism};
+use super::world::{Target, World, joint_advance};
+use crate::mechanism::{BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
 /// Where inside a step the contact forces are looked at for peaks. A hard hit's force has a cusp
@@ -61,7 +61,7 @@ impl Fixed {
             now: Evaluation::new(mechanism),
             past: [zeros.clone(), zeros.clone()],
             previous_step: 0.0,
-            targets: vec![Command::default(); mechanism.prismatics.len()],
+            targets: vec![Command::default(); mechanism.actuators.len()],
             wrenches: zeros,
             turns: vec![0.0; mechanism.bodies.len()],
             inside: Evaluation::new(mechanism),
@@ -135,9 +135,9 @@ impl Stepper for Fixed {
     }
 
     // The kick of a full step is centred here: half of it belongs to the forces of before.
-    fn sample(&mut self, mechanism: &Mechanism, t: f64) {
+    fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]) {
         let before = self.now.wrenches.clone();
-        self.dynamics.sample(mechanism, t, &self.states);
+        self.dynamics.sample(mechanism, t, &self.states, due);
         self.evaluate(mechanism, t);
         if self.coupled {
             self.dynamics.replace_wrenches(&mut self.now);
@@ -164,12 +164,17 @@ impl Stepper for Fixed {
             *turn = (state.twist.z + a.z * (0.5 * dt)) * dt;
         }
         let turns = &self.turns;
-        self.world.step(dt, &self.wrenches, Some(turns), |i| {
+        let (dynamics, commands) = (&self.dynamics, &self.targets);
+        let targets = |i: usize| {
             let joint = &mechanism.prismatics[i];
-            let turn = joint.cylinder.body.map_or(0.0, |body| turns[body]);
-            (joint.drive == Drive::Prescribed)
-                .then(|| Target::new(joint, self.targets[i].length, now.lengths[i], turn))
-        });
+            let turn = joint.base.body.map_or(0.0, |body| turns[body]);
+            let length = commands[dynamics.prescribed(i)?].position;
+            Some(Target::new(joint, length, now.lengths[i], turn))
+        };
+        let advances = |i: usize| {
+            joint_advance(commands[i].position - now.coordinates[i], mechanism.ring_turn(i, turns))
+        };
+        self.world.step(dt, &self.wrenches, Some(turns), targets, advances);
         let [before, before_that] = &mut self.past;
         std::mem::swap(before, before_that);
         before.copy_from_slice(&self.now.accelerations);

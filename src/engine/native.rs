@@ -16,7 +16,7 @@
 //! the spring alone has limits like any law.
 
 use super::run::{Stepper, equal_step};
-use super::world::{Target, World};
+use super::world::{Target, World, joint_advance};
 use crate::mechanism::{BodyState, Command, Drive, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
@@ -44,7 +44,7 @@ impl Native {
             dynamics: Dynamics::new(mechanism),
             states,
             now: Evaluation::new(mechanism),
-            targets: vec![Command::default(); mechanism.prismatics.len()],
+            targets: vec![Command::default(); mechanism.actuators.len()],
         }
     }
 }
@@ -54,11 +54,16 @@ impl Stepper for Native {
         self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
         if self.last > 0.0 {
             for (i, contact) in self.now.contacts.iter_mut().enumerate() {
-                contact.normal_force = self.world.contact_impulse(i) / self.last;
+                if let Some(impulse) = self.world.joint_impulse(i) {
+                    contact.normal_force = impulse / self.last;
+                }
             }
             for (i, joint) in mechanism.prismatics.iter().enumerate() {
                 self.now.lengths[i] = joint.length(&self.states);
-                if joint.drive == Drive::Prescribed {
+            }
+            for (i, actuator) in mechanism.actuators.iter().enumerate() {
+                self.now.coordinates[i] = self.dynamics.coordinate(mechanism, i, &self.states)[0];
+                if actuator.drive == Drive::Prescribed {
                     self.now.drive_forces[i] = self.world.motor_impulse(i) / self.last;
                 }
             }
@@ -85,8 +90,8 @@ impl Stepper for Native {
         &[]
     }
 
-    fn sample(&mut self, mechanism: &Mechanism, t: f64) {
-        self.dynamics.sample(mechanism, t, &self.states);
+    fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]) {
+        self.dynamics.sample(mechanism, t, &self.states, due);
         self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
     }
 
@@ -95,11 +100,13 @@ impl Stepper for Native {
         let (dt, reached) = equal_step(self.step, t, until);
         mechanism.true_commands(reached, &mut self.targets);
         let before: Vec<Vector3<f64>> = self.states.iter().map(|s| s.twist).collect();
-        self.world.step(dt, &self.now.wrenches, None, |i| {
-            let (length, joint) = (self.targets[i].length, &mechanism.prismatics[i]);
-            let side = joint.cylinder.point.y;
-            (joint.drive == Drive::Prescribed).then_some(Target { length, side })
-        });
+        let targets = |i: usize| {
+            let length = self.targets[self.dynamics.prescribed(i)?].position;
+            Some(Target { length, side: mechanism.prismatics[i].points()[0].y })
+        };
+        let advances =
+            |i: usize| joint_advance(self.targets[i].position - self.now.coordinates[i], 0.0);
+        self.world.step(dt, &self.now.wrenches, None, targets, advances);
         self.world.read(&mut self.states);
         for ((a, state), before) in self.now.accelerations.iter_mut().zip(&self.states).zip(before)
         {

@@ -4,7 +4,7 @@ use super::adaptive::Adaptive;
 use super::fixed::Fixed;
 use super::native::Native;
 use crate::contact::Contact;
-use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
+use crate::mechanism::{Actuator, Bearing, BodyState, Drive, Evaluation, Mechanism};
 use std::ops::ControlFlow;
 
 /// How the time step is chosen.
@@ -126,8 +126,9 @@ pub(super) trait Stepper {
     /// Largest normal force (N) of each joint inside the step that ended at that instant, where the
     /// way of stepping looks there.
     fn peaks_inside(&self) -> &[f64];
-    /// Lets the sampled controllers compute what they hold from the instant last synchronised on.
-    fn sample(&mut self, mechanism: &Mechanism, t: f64);
+    /// Lets the sampled controllers that are due compute what they hold from the instant last
+    /// synchronised on.
+    fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]);
     /// Makes one step from `t` of at most `until − t` s; returns the time reached, exactly `until`
     /// if it got there.
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
@@ -202,7 +203,7 @@ fn drive(
     let mut work = Work { smallest_step: f64::INFINITY, ..Work::default() };
     let mut watch = Watch::new(mechanism);
     let mut t = 0.0;
-    let mut clock = Clock { interval: mechanism.sampling(), samples: 0 };
+    let mut clock = Clock::new(mechanism);
     for row in 0..=schedule.intervals() {
         let until = schedule.time(row);
         loop {
@@ -218,7 +219,7 @@ fn drive(
                 break;
             }
             if clock.due(t) {
-                stepper.sample(mechanism, t);
+                stepper.sample(mechanism, t, &clock.due);
             }
             let reached = stepper.advance(mechanism, t, clock.end(until));
             let dt = reached - t;
@@ -243,32 +244,44 @@ fn drive(
     Ok(work)
 }
 
-/// When controllers take samples.
+/// When controllers take samples: each at multiples of its own interval.
 #[derive(Debug)]
 struct Clock {
-    interval: Option<f64>,
-    /// Samples taken.
-    samples: u64,
+    /// Interval in s of each drive's controller, and how many samples it took.
+    intervals: Vec<Option<(f64, u64)>>,
+    /// The drives whose controllers take a sample now.
+    due: Vec<bool>,
 }
 
 impl Clock {
-    /// Whether a sample is taken at `t`, and counts it.
+    fn new(mechanism: &Mechanism) -> Self {
+        let interval = |actuator: &Actuator| match actuator.drive {
+            Drive::Sampled(cascade) => Some((cascade.interval, 0)),
+            Drive::Prescribed | Drive::Servo { .. } | Drive::Effort => None,
+        };
+        let intervals: Vec<_> = mechanism.actuators.iter().map(interval).collect();
+        Self { due: vec![false; intervals.len()], intervals }
+    }
+
+    /// Finds who takes a sample at `t` (s), and counts it; false if nobody does.
     fn due(&mut self, t: f64) -> bool {
-        // Rows and samples that mean the same time differ by rounding.
-        let due = self.interval.is_some_and(|dt| t >= self.samples as f64 * dt - 1e-9 * dt);
-        self.samples += u64::from(due);
-        due
+        for (due, interval) in self.due.iter_mut().zip(&mut self.intervals) {
+            // Rows and samples that mean the same time differ by rounding.
+            *due = interval.is_some_and(|(dt, samples)| t >= samples as f64 * dt - 1e-9 * dt);
+            if let Some((_, samples)) = interval {
+                *samples += u64::from(*due);
+            }
+        }
+        self.due.contains(&true)
     }
 
     /// The end of steps that may go as far as `until`: there, or at the next sample.
     fn end(&self, until: f64) -> f64 {
-        match self.interval {
-            Some(dt) if (self.samples as f64 - 1e-9) * dt < until => {
-                let next = self.samples as f64 * dt;
-                if (next - until).abs() < 1e-9 * dt { until } else { next }
-            }
-            _ => until,
-        }
+        self.intervals.iter().flatten().fold(until, |end, &(dt, samples)| {
+            let next = samples as f64 * dt;
+            // Samples that mean the same time as a row, or as another's, differ from it by rounding.
+            if next < end - 1e-9 * dt { next } else { end }
+        })
     }
 }
 

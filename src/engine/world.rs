@@ -3,12 +3,13 @@
 use super::leapfrog::read;
 use super::{JointColliders, Solver, physics_world, to_rapier};
 use crate::mechanism::{
-    Attachment, Bearing, BodyState, Drive, Mechanism, NativeContacts, Prismatic,
+    Attachment, Bearing, BodyState, Drive, JointIndex, Mechanism, NativeContacts, Prismatic,
 };
-use nalgebra::Vector3;
+use nalgebra::{UnitComplex, Vector2, Vector3};
 use rapier2d_f64::dynamics::{
-    ImpulseJointHandle, JointAxis, MassProperties, MotorModel, PrismaticJointBuilder,
-    RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients,
+    GenericJoint, GenericJointBuilder, ImpulseJointHandle, JointAxesMask, JointAxis,
+    MassProperties, MotorModel, PrismaticJointBuilder, RevoluteJointBuilder, RigidBodyBuilder,
+    RigidBodyHandle, SpringCoefficients,
 };
 use rapier2d_f64::math::{Pose, Rotation, Vector};
 use rapier2d_f64::pipeline::PhysicsWorld;
@@ -21,13 +22,13 @@ const MOTOR_FORCE: f64 = 1e30;
 const RIGID: SpringCoefficients<f64> =
     SpringCoefficients { natural_frequency: 1e15, damping_ratio: 1.0 };
 
-/// Where a prismatic joint goes in one step, along and across the axis that its cylinder has at the
+/// Where a prismatic joint goes in one step, along and across the axis that its base has at the
 /// step's beginning, in m.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
     /// Length of the joint along that axis; what a motor is told.
     pub length: f64,
-    /// Across: where the cylinder's attachment point would have to be for the rod's to go straight.
+    /// Across: where the base's attachment point would have to be for the slider's to go straight.
     pub side: f64,
 }
 
@@ -36,7 +37,7 @@ impl Target {
     /// in which it turns by `turn` rad from the length `before`.
     ///
     /// rapier's joint rows are linear in the step, and turn by T = tan `turn` (see [`excess`]). With
-    /// d from the cylinder's centre of mass to the rod's, u and n along and across the axis that was,
+    /// d from the base's centre of mass to the slider's, u and n along and across the axis that was,
     /// L = d·u (q = L + κ), w = d·n as the joint holds it, and w' what rapier is told for w, they ask
     /// for
     ///
@@ -45,13 +46,20 @@ impl Target {
     /// at the end, where the truth is `d·u = L cos turn − w sin turn`, `d·n = L sin turn + w cos
     /// turn`. The difference, of second order in the step, is put into the targets.
     pub fn new(joint: &Prismatic, length: f64, before: f64, turn: f64) -> Self {
-        let [cylinder, rod] = [joint.cylinder.point, joint.rod.point];
-        let (offset, w) = (rod.x - cylinder.x, cylinder.y - rod.y);
+        let [base, slider] = joint.points();
+        let (offset, w) = (slider.x - base.x, base.y - slider.y);
         let (sin, cos) = turn.sin_cos();
         let (now, before, tan) = (length - offset, before - offset, sin / cos);
         let side = now * sin + w * cos - before * tan;
-        Self { length: offset + now * cos - w * sin + tan * side, side: rod.y + side }
+        Self { length: offset + now * cos - w * sin + tan * side, side: slider.y + side }
     }
+}
+
+/// What rapier's angular velocity of a joint must be, times the step, for the joint to turn by `advance`
+/// rad in a step in which the ring's body turns by `turn` rad: rapier turns each body by the arc tangent
+/// of what its angular velocity says (see [`excess`]).
+pub(super) fn joint_advance(advance: f64, turn: f64) -> f64 {
+    (turn + advance).tan() - turn.tan()
 }
 
 /// By how much rapier's angular velocity must exceed the mean one of a step in which a body turns by
@@ -70,18 +78,41 @@ fn excess(turn: f64) -> f64 {
     turn * s / 3.0 * (1.0 + s * (0.4 + s * (17.0 / 105.0)))
 }
 
+/// A prismatic joint in rapier's world.
+struct Slide {
+    handle: ImpulseJointHandle,
+    /// Its axis in its base's axes, and where along it the base's attachment point stands, in m.
+    axis: UnitComplex<f64>,
+    along: f64,
+    /// Whether rapier's motor prescribes its length.
+    prescribed: bool,
+}
+
+/// Who computes the force of a revolute joint.
+#[derive(Clone, Copy)]
+enum Solved {
+    /// A force law, outside rapier.
+    Law,
+    /// rapier's contact between the colliders of this index.
+    Contact(usize),
+    /// rapier's joint.
+    Pivot(ImpulseJointHandle),
+}
+
 /// A rapier world that holds one mechanism, gravity included in the wrenches it is given.
 pub(super) struct World {
     physics: PhysicsWorld,
-    stepped: bool,
     inertias: Vec<f64>,
     /// By how much rapier's angular velocities exceed the mean ones of the last step, in rad/s.
     excess: Vec<f64>,
     pub handles: Vec<RigidBodyHandle>,
-    /// The prismatic joints, and whether their length is prescribed.
-    prismatics: Vec<(ImpulseJointHandle, bool)>,
+    prismatics: Vec<Slide>,
+    /// The joint and the axis of each prescribed drive's motor.
+    motors: Vec<Option<(ImpulseJointHandle, JointAxis)>>,
     /// The ideal revolute joints.
     pivots: Vec<(ImpulseJointHandle, [Attachment; 2])>,
+    /// Who computes the force of each revolute joint.
+    revolutes: Vec<Solved>,
     pub colliders: JointColliders,
 }
 
@@ -90,6 +121,8 @@ impl World {
     /// contacts need them.
     pub fn new(mechanism: &Mechanism, colliders: bool) -> Self {
         let mut physics = physics_world(0.0);
+        // Nobody reads them, and they cost a clock reading at every stage of a step.
+        physics.physics_pipeline.counters.disable();
         let native = &mechanism.native;
         let softness = SpringCoefficients {
             natural_frequency: native.frequency,
@@ -125,24 +158,33 @@ impl World {
             })
             .collect();
         let of = |a: &Attachment| a.body.map_or(ground, |i| handles[i]);
-        let prismatics = mechanism
+        let mut prismatics: Vec<Slide> = mechanism
             .prismatics
             .iter()
             .map(|joint| {
                 let builder = PrismaticJointBuilder::new(Vector::X)
                     .contacts_enabled(false)
                     .softness(RIGID)
-                    .local_anchor1(to_rapier(joint.cylinder.point))
-                    .local_anchor2(to_rapier(joint.rod.point))
+                    .local_anchor1(to_rapier(joint.base.point))
+                    .local_anchor2(to_rapier(joint.slider.point))
                     .motor_model(MotorModel::AccelerationBased)
                     .motor_max_force(MOTOR_FORCE);
-                let (cylinder, rod) = (of(&joint.cylinder), of(&joint.rod));
-                let handle = physics.impulse_joints.insert(cylinder, rod, builder, true);
-                (handle, joint.drive == Drive::Prescribed)
+                let mut builder = GenericJoint::from(builder);
+                for (frame, axis) in [&mut builder.local_frame1, &mut builder.local_frame2]
+                    .into_iter()
+                    .zip(joint.axes)
+                {
+                    frame.rotation = Rotation::from_cos_sin_unchecked(axis.re, axis.im);
+                }
+                let (base, slider) = (of(&joint.base), of(&joint.slider));
+                let handle = physics.impulse_joints.insert(base, slider, builder, true);
+                Slide { handle, axis: joint.axes[0], along: joint.points()[0].x, prescribed: false }
             })
             .collect();
         let mut pivots = Vec::new();
         let mut joint_colliders = JointColliders::default();
+        let mut revolutes = Vec::with_capacity(mechanism.revolutes.len());
+        let mut inserted = 0;
         for joint in &mechanism.revolutes {
             let bodies = [of(&joint.ring), of(&joint.journal)];
             let points = [joint.ring.point, joint.journal.point];
@@ -155,6 +197,7 @@ impl World {
                         .local_anchor2(to_rapier(points[1]));
                     let handle = physics.impulse_joints.insert(bodies[0], bodies[1], builder, true);
                     pivots.push((handle, [joint.ring, joint.journal]));
+                    revolutes.push(Solved::Pivot(handle));
                     continue;
                 }
                 Bearing::Clearance(c) => ([c.bearing_radius, c.journal_radius], 0.0, Solver::Law),
@@ -164,18 +207,53 @@ impl World {
                     ([*bearing_radius, *journal_radius], *friction, solver)
                 }
             };
+            revolutes.push(match solver {
+                Solver::Law => Solved::Law,
+                Solver::Native { .. } => Solved::Contact(inserted),
+            });
             if colliders {
                 joint_colliders.insert(&mut physics, bodies, points, radii, friction, solver);
+                inserted += 1;
             }
+        }
+        let mut motors = Vec::with_capacity(mechanism.actuators.len());
+        for actuator in &mechanism.actuators {
+            motors.push((actuator.drive == Drive::Prescribed).then(|| match actuator.joint {
+                JointIndex::Prismatic(i) => {
+                    prismatics[i].prescribed = true;
+                    (prismatics[i].handle, JointAxis::LinX)
+                }
+                JointIndex::Revolute(i) => {
+                    let handle = match revolutes[i] {
+                        Solved::Pivot(handle) => handle,
+                        Solved::Law | Solved::Contact(_) => {
+                            // A joint that locks nothing: it carries the motor.
+                            let joint = &mechanism.revolutes[i];
+                            let bodies = [of(&joint.ring), of(&joint.journal)];
+                            let free = GenericJointBuilder::new(JointAxesMask::empty())
+                                .contacts_enabled(true)
+                                .softness(RIGID);
+                            physics.impulse_joints.insert(bodies[0], bodies[1], free, true)
+                        }
+                    };
+                    if let Some(joint) = physics.impulse_joints.get_mut(handle, false) {
+                        let motor = &mut joint.data;
+                        motor.set_motor_model(JointAxis::AngX, MotorModel::AccelerationBased);
+                        motor.set_motor_max_force(JointAxis::AngX, MOTOR_FORCE);
+                    }
+                    (handle, JointAxis::AngX)
+                }
+            }));
         }
         Self {
             physics,
-            stepped: false,
             inertias: mechanism.bodies.iter().map(|body| body.inertia).collect(),
             excess: vec![0.0; mechanism.bodies.len()],
             handles,
             prismatics,
+            motors,
             pivots,
+            revolutes,
             colliders: joint_colliders,
         }
     }
@@ -188,23 +266,35 @@ impl World {
         }
     }
 
-    /// Impulse in N·s that rapier's own contact gave joint `index` in the last step. The index counts
-    /// the joints that have colliders.
-    pub fn contact_impulse(&self, index: usize) -> f64 {
-        let pair = self.colliders.pair(index);
-        let contact = pair.and_then(|[a, b]| self.physics.narrow_phase.contact_pair(a, b));
-        contact.map_or(0.0, |pair| pair.total_impulse_magnitude())
+    /// Impulse in N·s that rapier gave revolute joint `index` in the last step; none where a law computes
+    /// its force.
+    pub fn joint_impulse(&self, index: usize) -> Option<f64> {
+        match self.revolutes[index] {
+            Solved::Law => None,
+            Solved::Contact(pair) => {
+                let pair = self.colliders.pair(pair);
+                let contact = pair.and_then(|[a, b]| self.physics.narrow_phase.contact_pair(a, b));
+                Some(contact.map_or(0.0, |pair| pair.total_impulse_magnitude()))
+            }
+            Solved::Pivot(handle) => {
+                let joint = self.physics.impulse_joints.get(handle);
+                joint.map(|joint| joint.impulses.x.hypot(joint.impulses.y))
+            }
+        }
     }
 
-    /// Impulse in N·s of the motor of prismatic joint `index` on its rod in the last step.
+    /// Impulse in N·s (N·m·s) of the motor of prescribed drive `index` in the last step.
     pub fn motor_impulse(&self, index: usize) -> f64 {
-        let joint = self.physics.impulse_joints.get(self.prismatics[index].0);
-        let motor = joint.and_then(|j| j.data.motor(JointAxis::LinX));
+        let motor = self.motors[index].and_then(|(handle, axis)| {
+            let joint = self.physics.impulse_joints.get(handle)?;
+            joint.data.motor(axis)
+        });
         motor.map_or(0.0, |motor| -motor.impulse)
     }
 
     /// One rapier step of `dt` s under the given wrench on each body. `turns` says by how many rad
-    /// each body is predicted to turn in it, and `targets` where each prismatic joint goes; without
+    /// each body is predicted to turn in it, `targets` where each prismatic joint goes, and `advances` by
+    /// how many rad the joint of each prescribed drive of an angle turns; without
     /// them, bodies and joints move as rapier moves them.
     pub fn step(
         &mut self,
@@ -212,6 +302,7 @@ impl World {
         wrenches: &[Vector3<f64>],
         turns: Option<&[f64]>,
         targets: impl Fn(usize) -> Option<Target>,
+        advances: impl Fn(usize) -> f64,
     ) {
         for (i, (&handle, wrench)) in self.handles.iter().zip(wrenches).enumerate() {
             if let Some(body) = self.physics.bodies.get_mut(handle) {
@@ -228,13 +319,22 @@ impl World {
             }
         }
         let joints = &mut self.physics.impulse_joints;
-        for (i, (handle, prescribed)) in self.prismatics.iter().enumerate() {
-            if let (Some(target), Some(joint)) = (targets(i), joints.get_mut(*handle, false)) {
-                if *prescribed {
+        for (i, slide) in self.prismatics.iter().enumerate() {
+            if let (Some(target), Some(joint)) = (targets(i), joints.get_mut(slide.handle, false)) {
+                if slide.prescribed {
                     // A stiffness far beyond any mass over dt² makes the spring a constraint.
                     joint.data.set_motor(JointAxis::LinX, target.length, 0.0, MOTOR_FORCE, 0.0);
                 }
-                joint.data.local_frame1.translation.y = target.side;
+                let anchor = slide.axis * Vector2::new(slide.along, target.side);
+                joint.data.local_frame1.translation = to_rapier(anchor);
+            }
+        }
+        for (i, motor) in self.motors.iter().enumerate() {
+            if let Some((handle, axis @ JointAxis::AngX)) = motor
+                && let Some(joint) = joints.get_mut(*handle, false)
+            {
+                // A damping far beyond any inertia over dt makes the damper a constraint on the rate.
+                joint.data.set_motor(*axis, 0.0, advances(i) / dt, 0.0, MOTOR_FORCE);
             }
         }
         for (handle, sides) in &self.pivots {
@@ -247,13 +347,6 @@ impl World {
                 joint.data.local_frame2.translation = journal;
             }
         }
-        // A step rebuilds rapier's joint assembly when a body with joints was touched; the collision
-        // pipeline, asked first, takes note of touched bodies without that. Same result to the last
-        // bit, an eighth cheaper. Before the first step it would freeze the world.
-        if self.stepped && self.physics.colliders.is_empty() {
-            self.physics.detect_collisions(&(), &());
-        }
-        self.stepped = true;
         self.physics.integration_parameters.dt = dt;
         self.physics.step_with_events(&self.colliders, &());
     }

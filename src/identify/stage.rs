@@ -73,7 +73,7 @@ impl Recording {
 pub fn cascade(rig: &Scenario) -> Option<Cascade> {
     match drive(rig) {
         Drive::Sampled(cascade) => Some(cascade),
-        Drive::Prescribed | Drive::Servo { .. } => None,
+        Drive::Prescribed | Drive::Servo { .. } | Drive::Effort => None,
     }
 }
 
@@ -129,7 +129,7 @@ fn told(drive: &Cascade, log: &Log, commands: &[f64], lengths: &[f64]) -> Vec<f6
     let mut held = Held::default();
     (commands.iter().zip(lengths).enumerate())
         .map(|(k, (length, q))| {
-            let command = Command { length: *length, ..Command::default() };
+            let command = Command { position: *length, ..Command::default() };
             let added = added.get(k).copied().unwrap_or(0.0);
             let t = k as f64 * drive.interval;
             drive.force_gain * drive.sample(&mut held, t, &command, *q, added)
@@ -167,7 +167,7 @@ impl Samples {
 impl Commands for Samples {
     fn at(&self, t: f64, commands: &mut [Command]) {
         for command in commands {
-            *command = Command { length: self.at(&self.lengths, t), ..Command::default() };
+            *command = Command { position: self.at(&self.lengths, t), ..Command::default() };
         }
     }
 
@@ -304,9 +304,9 @@ pub fn simulate(
 ) -> Result<Vec<[f64; 2]>, engine::Halt> {
     let schedule = Schedule { duration: log.duration(), interval: log.interval };
     let mut rows = Vec::with_capacity(log.samples);
-    let joint = &mechanism.prismatics[0];
+    let actuator = &mechanism.actuators[0];
     engine::run(mechanism, control, schedule, &mut |instant| {
-        let [length, _] = joint.read(instant.evaluation.lengths[0], 0.0);
+        let [length, _] = actuator.read(instant.evaluation.coordinates[0], 0.0);
         rows.push([length, instant.evaluation.drive_forces[0]]);
     })?;
     rows.resize(log.samples, [f64::NAN; 2]);

@@ -1,35 +1,47 @@
 //! Putting a mechanism together: states in which every joint is closed.
 
-use super::rows::{Row, prismatic_rows, revolute_rows};
-use super::{BodyState, Command, Mechanism};
-use nalgebra::{DMatrix, DVector, UnitComplex};
+use super::rows::{Row, angle_row, prismatic_rows, revolute_rows};
+use super::{BodyState, Command, Drive, JointIndex, Mechanism, angle_near};
+use nalgebra::{DMatrix, DVector, UnitComplex, Vector3};
 
 /// Gaps in m and rad below which a joint is closed: rounding on a machine of a metre.
 const CLOSED: f64 = 1e-13;
 
+/// Rows of all joints on the velocities of their bodies, and by how much each is open.
+#[derive(Clone, Debug)]
+pub(super) struct Closure {
+    pub rows: Vec<Row>,
+    /// Gaps in m and rad.
+    pub gaps: DVector<f64>,
+    /// The drive whose command a row compares with, and the command's rate, where it does so.
+    pub driven: Vec<Option<usize>>,
+    /// The joint that a row belongs to.
+    pub joints: Vec<JointIndex>,
+}
+
 impl Mechanism {
-    /// Moves the bodies' starts as little as it takes to centre every journal and to give every
-    /// prismatic joint the length and rate that it is commanded `t` s after the start; where nothing holds
+    /// Moves the bodies' starts as little as it takes to centre every journal and to give every driven
+    /// joint the coordinate and rate that it is commanded `t` s after the start; where nothing holds
     /// a body, it keeps its motion. Newton's method on the joints' gaps, each correction the
     /// smallest that closes the linearised ones.
     ///
     /// # Errors
     /// If the joints cannot be closed from here: what remains, in m.
     pub fn close(&mut self, t: f64) -> Result<(), f64> {
-        let mut commands = vec![Command::default(); self.prismatics.len()];
+        let mut commands = vec![Command::default(); self.actuators.len()];
         self.true_commands(t, &mut commands);
         let mut states: Vec<BodyState> = self.bodies.iter().map(|b| b.start).collect();
         let mut remains = f64::INFINITY;
         for _ in 0..50 {
-            let (rows, gaps) = self.closure(&states, &commands);
-            if gaps.is_empty() {
+            let closure = self.closure(&states, &commands);
+            if closure.gaps.is_empty() {
                 return Ok(());
             }
-            remains = gaps.amax();
+            remains = closure.gaps.amax();
             if remains < CLOSED {
                 break;
             }
-            let Some(shift) = smallest(&rows, states.len(), -gaps) else { break };
+            let Some(shift) = smallest(&closure.rows, states.len(), -closure.gaps) else { break };
             for (i, state) in states.iter_mut().enumerate() {
                 state.position += shift.fixed_rows::<2>(3 * i);
                 state.rotation *= UnitComplex::new(shift[3 * i + 2]);
@@ -39,50 +51,84 @@ impl Mechanism {
         if remains.is_nan() || remains > 1e-12 {
             return Err(remains);
         }
-        let (rows, gaps) = self.closure(&states, &commands);
-        let mut rates = DVector::zeros(gaps.len());
-        for (rate, row) in rates.iter_mut().zip(&rows) {
-            for (body, jacobian) in row.bodies.iter().zip(&row.jacobians) {
-                *rate -= body.map_or(0.0, |b| jacobian.dot(&states[b].twist));
-            }
-        }
-        // The last of a prismatic joint's three rows is its length.
-        for (command, rate) in commands.iter().zip(rates.as_mut_slice().chunks_mut(3)) {
-            rate[2] += command.rate;
-        }
-        let change = smallest(&rows, states.len(), rates).ok_or(remains)?;
+        let closure = self.closure(&states, &commands);
+        let twists: Vec<Vector3<f64>> = states.iter().map(|state| state.twist).collect();
+        let rates = closure.missing_rates(&twists, &commands);
+        let change = smallest(&closure.rows, states.len(), rates).ok_or(remains)?;
         for (i, (body, state)) in self.bodies.iter_mut().zip(states).enumerate() {
             body.start = BodyState { twist: state.twist + change.fixed_rows::<3>(3 * i), ..state };
+            body.angle = angle_near(state.rotation, body.angle);
         }
         Ok(())
     }
 
-    /// Rows of all joints, prismatic ones first, and by how much each is open (m, rad).
-    fn closure(&self, states: &[BodyState], commands: &[Command]) -> (Vec<Row>, DVector<f64>) {
-        let (mut rows, mut gaps) = (Vec::new(), Vec::new());
-        for (joint, command) in self.prismatics.iter().zip(commands) {
-            let bodies = [joint.cylinder.body, joint.rod.body];
+    /// Rows of all joints at the given states: prismatic ones, revolute ones, driven angles.
+    pub(super) fn closure(&self, states: &[BodyState], commands: &[Command]) -> Closure {
+        let mut closure = Closure {
+            rows: Vec::new(),
+            gaps: DVector::zeros(0),
+            driven: Vec::new(),
+            joints: Vec::new(),
+        };
+        let mut gaps = Vec::new();
+        let follows = |joint: JointIndex| {
+            let mut actuators = self.actuators.iter();
+            actuators.position(|a| a.joint == joint && a.drive != Drive::Effort)
+        };
+        for (i, joint) in self.prismatics.iter().enumerate() {
+            let index = JointIndex::Prismatic(i);
             let telescope = joint.telescope(states);
-            let [from, to] = [&joint.cylinder, &joint.rod].map(|a| a.frame(states).centre);
-            let [a, b] = [&joint.cylinder, &joint.rod].map(|a| a.rotation(states));
-            rows.extend(prismatic_rows(&telescope, bodies));
-            gaps.extend([
-                (to - from).dot(&telescope.n),
-                a.rotation_to(&b).angle(),
-                (to - from).dot(&telescope.u) - command.length,
-            ]);
+            let [from, to] = [&joint.base, &joint.slider].map(|a| a.frame(states).centre);
+            let [a, b] = [(&joint.base, 0), (&joint.slider, 1)]
+                .map(|(a, side)| a.rotation(states) * joint.axes[side]);
+            let [side, angle, along] = prismatic_rows(&telescope, joint.bodies());
+            gaps.extend([(to - from).dot(&telescope.n), a.rotation_to(&b).angle()]);
+            closure.push(index, None, [side, angle]);
+            if let Some(drive) = follows(index) {
+                gaps.push((to - from).dot(&telescope.u) - commands[drive].position);
+                closure.push(index, Some(drive), [along]);
+            }
         }
-        for joint in &self.revolutes {
-            rows.extend(revolute_rows(joint, states));
+        for (i, joint) in self.revolutes.iter().enumerate() {
             let gap = joint.journal.frame(states).centre - joint.ring.frame(states).centre;
             gaps.extend([gap.x, gap.y]);
+            closure.push(JointIndex::Revolute(i), None, revolute_rows(joint, states));
         }
-        (rows, DVector::from_vec(gaps))
+        for (i, joint) in self.revolutes.iter().enumerate() {
+            let index = JointIndex::Revolute(i);
+            if let Some(drive) = follows(index) {
+                let commanded = UnitComplex::new(commands[drive].position);
+                gaps.push(commanded.rotation_to(&joint.rotation(states)).angle());
+                closure.push(index, Some(drive), [angle_row(joint)]);
+            }
+        }
+        closure.gaps = DVector::from_vec(gaps);
+        closure
     }
 }
 
-/// The smallest motion of `bodies` bodies that changes the rows by `change`.
-fn smallest(rows: &[Row], bodies: usize, change: DVector<f64>) -> Option<DVector<f64>> {
+impl Closure {
+    fn push<const N: usize>(&mut self, joint: JointIndex, drive: Option<usize>, rows: [Row; N]) {
+        self.rows.extend(rows);
+        self.driven.extend([drive; N]);
+        self.joints.extend([joint; N]);
+    }
+
+    /// By how much each row's rate falls short of zero, or of its command's rate.
+    pub fn missing_rates(&self, twists: &[Vector3<f64>], commands: &[Command]) -> DVector<f64> {
+        let rate = |(row, drive): (&Row, &Option<usize>)| {
+            let moving =
+                row.bodies.iter().zip(&row.jacobians).fold(0.0, |sum, (body, jacobian)| {
+                    sum - body.map_or(0.0, |b| jacobian.dot(&twists[b]))
+                });
+            moving + drive.map_or(0.0, |drive| commands[drive].rate)
+        };
+        DVector::from_iterator(self.rows.len(), self.rows.iter().zip(&self.driven).map(rate))
+    }
+}
+
+/// Rows as a matrix on the twists of `bodies` bodies.
+pub(super) fn matrix(rows: &[Row], bodies: usize) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(rows.len(), 3 * bodies);
     for (i, row) in rows.iter().enumerate() {
         for (body, jacobian) in row.bodies.iter().zip(&row.jacobians) {
@@ -91,6 +137,15 @@ fn smallest(rows: &[Row], bodies: usize, change: DVector<f64>) -> Option<DVector
                 place += jacobian.transpose();
             }
         }
+    }
+    matrix
+}
+
+/// The smallest motion of `bodies` bodies that changes the rows by `change`.
+pub(super) fn smallest(rows: &[Row], bodies: usize, change: DVector<f64>) -> Option<DVector<f64>> {
+    let matrix = matrix(rows, bodies);
+    if matrix.iter().chain(change.iter()).any(|x| !x.is_finite()) {
+        return None;
     }
     matrix.svd(true, true).solve(&change, 1e-12).ok()
 }

@@ -53,7 +53,7 @@ impl Cascade {
         let [before, mean_before] = held.last.unwrap_or([length; 2]);
         let mean = 0.5 * (length + before);
         let rate = (mean - mean_before) / self.interval;
-        let asked = self.velocity_gain * (self.position_gain * (command.length - length) - rate);
+        let asked = self.velocity_gain * (self.position_gain * (command.position - length) - rate);
         let voltage = asked.clamp(-self.limit, self.limit) + added;
         *held = Held {
             last: Some([length, mean]),
@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn output_is_that_of_the_difference_equation() {
         let mut held = Held::default();
-        let command = Command { length: 1e-3, ..Command::default() };
+        let command = Command { position: 1e-3, ..Command::default() };
         let lengths = [0.0, 1e-6, 4e-6, 9e-6];
         let mut before = [0.0, 0.0];
         for (k, q) in lengths.into_iter().enumerate() {
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn force_follows_with_its_lag_and_without_jumps() {
         let mut held = Held::default();
-        let command = Command { length: 1e-4, ..Command::default() };
+        let command = Command { position: 1e-4, ..Command::default() };
         let u = CASCADE.sample(&mut held, 0.0, &command, 0.0, 0.0);
         assert_eq!(CASCADE.force(&held, 0.0), 0.0);
         let later = CASCADE.force(&held, 2e-3);

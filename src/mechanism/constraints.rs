@@ -7,14 +7,18 @@
 //! (e.g. Featherstone, *Rigid Body Dynamics Algorithms*, 2008, §3.2).
 
 use super::rows::Row;
-use super::{Bearing, Mechanism};
-use nalgebra::Vector3;
+use super::{Bearing, Drive, JointIndex, Mechanism};
+use nalgebra::{DMatrix, DVector, Vector3};
 
-/// A rigid joint by its place among those of its kind.
+/// What holds bodies together rigidly.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum RigidJoint {
+pub(super) enum Rigid {
+    /// A prismatic joint, and the drive that prescribes its length if one does.
     Prismatic(usize),
+    /// An ideal revolute joint.
     Revolute(usize),
+    /// The prescribed angle of a revolute joint, ideal or not.
+    Angle { drive: usize, joint: usize },
 }
 
 /// The rows of one group and the workspace that solving for their forces needs.
@@ -27,6 +31,10 @@ pub(super) struct Constraints {
     matrix: Vec<f64>,
     /// λ of each row.
     pub multipliers: Vec<f64>,
+    diagonal: Vec<f64>,
+    backup: Vec<f64>,
+    /// Whether the rows last solved depended on each other.
+    pub redundant: bool,
 }
 
 impl Constraints {
@@ -65,7 +73,7 @@ impl Constraints {
             self.weighted.push(weighted);
             self.multipliers.push(rhs);
         }
-        solve_in_place(&mut self.matrix, &mut self.multipliers);
+        self.solve_system();
         for ((row, weighted), &lambda) in
             self.rows.iter().zip(&self.weighted).zip(&self.multipliers)
         {
@@ -76,16 +84,52 @@ impl Constraints {
             }
         }
     }
+
+    /// λ from the lower triangle in `matrix` and the right-hand side in `multipliers`, in place. Rows that
+    /// depend on each other (a parallelogram's, or those of any loop in a singular pose) have no unique λ:
+    /// then the smallest one, each row measured by its own diagonal.
+    fn solve_system(&mut self) {
+        let n = self.multipliers.len();
+        self.redundant = false;
+        self.diagonal.clear();
+        self.diagonal.extend((0..n).map(|i| self.matrix[i * n + i]));
+        self.backup.clone_from(&self.multipliers);
+        if factorise_and_solve(&mut self.matrix, &mut self.multipliers, &self.diagonal) {
+            return;
+        }
+        self.redundant = true;
+        let entry = |i: usize, j: usize| {
+            let mut sum = 0.0;
+            let (a, b) = (&self.rows[i], &self.rows[j]);
+            for (body, weighted) in a.bodies.iter().zip(&self.weighted[i]) {
+                for (other, jacobian) in b.bodies.iter().zip(&b.jacobians) {
+                    if body.is_some() && body == other {
+                        sum += weighted.dot(jacobian);
+                    }
+                }
+            }
+            sum
+        };
+        self.multipliers = smallest_solution(n, entry, &self.backup);
+    }
 }
 
+/// Share of a row's own diagonal below which its pivot is rounding: rows that depend on the ones before
+/// leave 1e-16 to 1e-14 of it, rows that differ by a microradian leave 1e-12.
+const DEPENDENT: f64 = 1e-13;
+
 /// Cholesky solution of a symmetric positive definite system given by its lower triangle (row
-/// major); the right-hand side becomes the solution. In place because it runs several times a step
-/// on systems of two or three rows, where an allocation would cost more than the solution.
-fn solve_in_place(a: &mut [f64], b: &mut [f64]) {
+/// major); the right-hand side becomes the solution. False, and nothing of use, where a row depends on
+/// those before it. In place because it runs several times a step on systems of two or three rows, where
+/// an allocation would cost more than the solution.
+fn factorise_and_solve(a: &mut [f64], b: &mut [f64], diagonal: &[f64]) -> bool {
     let n = b.len();
     for j in 0..n {
         for k in 0..j {
             a[j * n + j] -= a[j * n + k] * a[j * n + k];
+        }
+        if a[j * n + j] <= DEPENDENT * diagonal[j] {
+            return false;
         }
         let pivot = a[j * n + j].sqrt();
         a[j * n + j] = pivot;
@@ -106,20 +150,50 @@ fn solve_in_place(a: &mut [f64], b: &mut [f64]) {
         }
         b[j] /= a[j * n + j];
     }
+    true
 }
 
-/// The rigid joints, grouped by the bodies that they connect. The ground connects nothing: it does
-/// not move.
-pub(super) fn groups(mechanism: &Mechanism) -> Vec<Vec<RigidJoint>> {
+/// The smallest λ with `A λ = b` in the sense of least squares, A symmetric and positive semidefinite of
+/// any rank: with rows and columns scaled to a diagonal of ones, the pseudo-inverse by eigenvalues.
+fn smallest_solution(n: usize, entry: impl Fn(usize, usize) -> f64, b: &[f64]) -> Vec<f64> {
+    let scale: Vec<f64> = (0..n).map(|i| entry(i, i).max(f64::MIN_POSITIVE).sqrt()).collect();
+    let matrix = DMatrix::from_fn(n, n, |i, j| {
+        let (i, j) = (i.max(j), i.min(j));
+        entry(i, j) / (scale[i] * scale[j])
+    });
+    let rhs = DVector::from_fn(n, |i, _| b[i] / scale[i]);
+    if rhs.iter().chain(matrix.iter()).any(|x| !x.is_finite()) {
+        return vec![f64::NAN; n];
+    }
+    let eigen = matrix.symmetric_eigen();
+    let largest = eigen.eigenvalues.amax();
+    let mut along = eigen.eigenvectors.tr_mul(&rhs);
+    for (component, value) in along.iter_mut().zip(&eigen.eigenvalues) {
+        *component = if *value > DEPENDENT * largest { *component / value } else { 0.0 };
+    }
+    let solution = eigen.eigenvectors * along;
+    solution.iter().zip(&scale).map(|(x, s)| x / s).collect()
+}
+
+/// What holds bodies rigidly, grouped by the bodies that it connects. The ground connects nothing: it
+/// does not move.
+pub(super) fn groups(mechanism: &Mechanism) -> Vec<Vec<Rigid>> {
     let prismatics = mechanism.prismatics.iter().enumerate();
     let revolutes = mechanism.revolutes.iter().enumerate();
-    let joints =
-        prismatics.map(|(i, j)| (RigidJoint::Prismatic(i), [j.cylinder.body, j.rod.body])).chain(
+    let angles = mechanism.actuators.iter().enumerate().filter_map(|(drive, actuator)| {
+        let JointIndex::Revolute(joint) = actuator.joint else { return None };
+        let prescribed = actuator.drive == Drive::Prescribed;
+        prescribed.then(|| (Rigid::Angle { drive, joint }, mechanism.revolutes[joint].bodies()))
+    });
+    let joints = prismatics
+        .map(|(i, joint)| (Rigid::Prismatic(i), joint.bodies()))
+        .chain(
             revolutes
-                .filter(|(_, j)| matches!(j.bearing, Bearing::Ideal))
-                .map(|(i, j)| (RigidJoint::Revolute(i), [j.ring.body, j.journal.body])),
-        );
-    let mut groups: Vec<(Vec<usize>, Vec<RigidJoint>)> = Vec::new();
+                .filter(|(_, joint)| matches!(joint.bearing, Bearing::Ideal))
+                .map(|(i, joint)| (Rigid::Revolute(i), joint.bodies())),
+        )
+        .chain(angles);
+    let mut groups: Vec<(Vec<usize>, Vec<Rigid>)> = Vec::new();
     for (joint, bodies) in joints {
         let bodies: Vec<usize> = bodies.into_iter().flatten().collect();
         let (touching, mut rest): (Vec<_>, Vec<_>) =

@@ -1,6 +1,8 @@
 //! One prismatic joint with its drive: a load that slides on the ground along the x axis.
 
-use super::{Attachment, Body, BodyState, Commands, Drive, Mechanism, NativeContacts, Prismatic};
+use super::{
+    Actuator, Attachment, Body, BodyState, Commands, Drive, JointIndex, Mechanism, Prismatic,
+};
 use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::sync::Arc;
 
@@ -16,30 +18,19 @@ pub fn build(
     commands: Arc<dyn Commands>,
     gravity: Vector2<f64>,
 ) -> Mechanism {
-    let load = Body {
-        name: "load".to_owned(),
-        mass,
-        inertia: INERTIA,
-        start: state(start),
-        reference: Vector2::zeros(),
-    };
+    let load = Body::new("load", mass, INERTIA, state(start));
     Mechanism {
-        bodies: vec![load],
         revolutes: Vec::new(),
         prismatics: vec![Prismatic {
             name: "P1".to_owned(),
-            cylinder: Attachment { body: None, point: Vector2::zeros() },
-            rod: Attachment { body: Some(0), point: Vector2::zeros() },
-            drive,
-            transmission: None,
-            reading_errors: Vec::new(),
+            base: Attachment { body: None, point: Vector2::zeros() },
+            slider: Attachment { body: Some(0), point: Vector2::zeros() },
+            axes: [UnitComplex::identity(); 2],
         }],
+        actuators: vec![Actuator::new("P1", JointIndex::Prismatic(0), drive)],
         commands,
-        epoch: 0.0,
         gravity,
-        loads: Vec::new(),
-        native: NativeContacts::default(),
-        output: 0,
+        ..Mechanism::free(vec![load])
     }
 }
 

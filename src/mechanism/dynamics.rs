@@ -4,14 +4,15 @@
 //! accelerations follow from Gauss' principle (`constraints.rs`). Groups touch each other
 //! through clearance joints only, so each is a small dense system: a leg has three rows.
 
-use super::constraints::{Constraints, RigidJoint, groups};
-use super::rows::{prismatic_rows, revolute_rows};
+use super::constraints::{Constraints, Rigid, groups};
+use super::rows::{angle_row, prismatic_rows, revolute_rows};
 use super::telescope::Telescope;
 use super::{
-    Bearing, BodyState, Command, Drive, Evaluation, Held, Mechanism, Memory, Prismatic, Situation,
+    Bearing, BodyState, Command, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic,
+    Situation, angle_near,
 };
 use crate::contact::circle_in_ring;
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
 #[derive(Clone, Debug)]
@@ -22,11 +23,17 @@ pub struct Dynamics {
     /// Prismatic joints that alone hold two moving bodies, and these: solved in closed form.
     telescopes: Vec<(usize, [usize; 2])>,
     /// The other rigid joints, group by group.
-    groups: Vec<Vec<RigidJoint>>,
+    groups: Vec<Vec<Rigid>>,
     coupled: bool,
     /// Each prismatic joint at the state last asked for.
     prismatics: Vec<Telescope>,
-    /// What each prismatic joint's sampled controller holds.
+    /// The drive that prescribes each prismatic joint's length.
+    prescribed: Vec<Option<usize>>,
+    /// Prismatic joints whose state no drive's force asks for.
+    passive: Vec<usize>,
+    /// Angle of each driven revolute joint at the last step's end, in rad: whole turns are counted.
+    angles: Vec<f64>,
+    /// What each drive's sampled controller holds.
     held: Vec<Held>,
     /// What each load remembers of the end of the last step.
     memories: Vec<Memory>,
@@ -49,16 +56,30 @@ impl Dynamics {
         let bodies = &mechanism.bodies;
         let (mut telescopes, mut others) = (Vec::new(), Vec::new());
         for group in groups(mechanism) {
-            if let [RigidJoint::Prismatic(i)] = group[..]
-                && let joint = &mechanism.prismatics[i]
-                && let (Some(cylinder), Some(rod)) = (joint.cylinder.body, joint.rod.body)
-            {
-                telescopes.push((i, [cylinder, rod]));
-            } else {
-                others.push(group);
+            match Self::telescope(mechanism, &group) {
+                Some(telescope) => telescopes.push(telescope),
+                None => others.push(group),
             }
         }
-        let beside = |joint: &Prismatic| joint.cylinder.point.y != joint.rod.point.y;
+        let beside = |joint: &Prismatic| {
+            let [base, slider] = joint.points();
+            base.y != slider.y
+        };
+        let mut prescribed = vec![None; mechanism.prismatics.len()];
+        let mut passive = vec![true; mechanism.prismatics.len()];
+        for (i, actuator) in mechanism.actuators.iter().enumerate() {
+            if let JointIndex::Prismatic(joint) = actuator.joint {
+                if actuator.drive == Drive::Prescribed {
+                    prescribed[joint] = Some(i);
+                } else {
+                    passive[joint] = false;
+                }
+            }
+        }
+        let angles = mechanism.actuators.iter().map(|actuator| match actuator.joint {
+            JointIndex::Revolute(joint) => mechanism.start_angle(joint),
+            JointIndex::Prismatic(_) => 0.0,
+        });
         Self {
             coupled: !others.is_empty() || mechanism.prismatics.iter().any(beside),
             inverse_masses: bodies.iter().map(|b| inverse(b.mass, b.inertia)).collect(),
@@ -75,7 +96,10 @@ impl Dynamics {
                 .iter()
                 .map(|joint| Telescope::new(joint, &starts))
                 .collect(),
-            held: vec![Held::default(); mechanism.prismatics.len()],
+            prescribed,
+            passive: (0..passive.len()).filter(|&i| passive[i]).collect(),
+            angles: angles.collect(),
+            held: vec![Held::default(); mechanism.actuators.len()],
             memories: mechanism
                 .loads
                 .iter()
@@ -85,6 +109,13 @@ impl Dynamics {
                 .collect(),
             constraints: Constraints::default(),
         }
+    }
+
+    /// The prismatic joint and its two moving bodies, if a group is nothing else.
+    fn telescope(mechanism: &Mechanism, group: &[Rigid]) -> Option<(usize, [usize; 2])> {
+        let [Rigid::Prismatic(i)] = group else { return None };
+        let joint = &mechanism.prismatics[*i];
+        Some((*i, [joint.base.body?, joint.slider.body?]))
     }
 
     /// Whether rigid joints act on each other: where they share a body, or a prismatic joint's axis
@@ -98,23 +129,51 @@ impl Dynamics {
         &self.inverse_masses
     }
 
-    /// Lets the sampled controllers compute what they hold from time `t` (s) on.
-    pub fn sample(&mut self, mechanism: &Mechanism, t: f64, states: &[BodyState]) {
-        let mut commands = vec![Command::default(); mechanism.prismatics.len()];
-        let now = mechanism.epoch + t;
-        mechanism.commands.at(now, &mut commands);
-        for (i, joint) in mechanism.prismatics.iter().enumerate() {
-            if let Drive::Sampled(cascade) = joint.drive {
-                let state = Telescope::new(joint, states);
-                let [length, _] = joint.read(state.length, state.length_rate);
-                let added = mechanism.commands.added(i, now);
-                cascade.sample(&mut self.held[i], t, &commands[i], length, added);
+    /// True coordinate (m or rad, whole turns counted from the last step's end) and rate of the joint of
+    /// drive `index`.
+    pub fn coordinate(
+        &mut self,
+        mechanism: &Mechanism,
+        index: usize,
+        states: &[BodyState],
+    ) -> [f64; 2] {
+        match mechanism.actuators[index].joint {
+            JointIndex::Prismatic(i) => {
+                let state = &mut self.prismatics[i];
+                *state = Telescope::new(&mechanism.prismatics[i], states);
+                [state.length, state.length_rate]
+            }
+            JointIndex::Revolute(i) => {
+                let joint = &mechanism.revolutes[i];
+                [angle_near(joint.rotation(states), self.angles[index]), joint.spin(states)]
             }
         }
     }
 
-    /// Fills `out` with commands, wrenches, contacts, lengths and servo forces at time `t` (s) and
-    /// the given states. Accelerations and prescribed drive forces are
+    /// The drive that prescribes the length of prismatic joint `index`, if one does.
+    pub fn prescribed(&self, index: usize) -> Option<usize> {
+        self.prescribed[index]
+    }
+
+    /// Lets the sampled controllers that are `due` compute what they hold from time `t` (s) on.
+    pub fn sample(&mut self, mechanism: &Mechanism, t: f64, states: &[BodyState], due: &[bool]) {
+        let mut commands = vec![Command::default(); mechanism.actuators.len()];
+        let now = mechanism.epoch + t;
+        mechanism.commands.at(now, &mut commands);
+        for (i, actuator) in mechanism.actuators.iter().enumerate() {
+            if let Drive::Sampled(cascade) = actuator.drive
+                && due[i]
+            {
+                let [position, rate] = self.coordinate(mechanism, i, states);
+                let [position, _] = actuator.read(position, rate);
+                let added = mechanism.commands.added(i, now);
+                cascade.sample(&mut self.held[i], t, &commands[i], position, added);
+            }
+        }
+    }
+
+    /// Fills `out` with commands, wrenches, contacts, coordinates and drive efforts at time `t` (s) and
+    /// the given states. Accelerations and efforts of prescribed drives are
     /// [`accelerations`](Self::accelerations)' business, for the same states.
     pub fn forces(
         &mut self,
@@ -125,7 +184,8 @@ impl Dynamics {
     ) {
         out.t = t;
         out.wrenches.copy_from_slice(&self.weights);
-        for (joint, contact) in mechanism.revolutes.iter().zip(&mut out.contacts) {
+        for (i, joint) in mechanism.revolutes.iter().enumerate() {
+            let contact = &mut out.contacts[i];
             let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
             if let Bearing::Clearance(clearance) = &joint.bearing {
                 let (state, forces) = match &joint.out_of_round {
@@ -135,7 +195,9 @@ impl Dynamics {
                     }
                 };
                 *contact = state;
+                out.reactions[i] = Vector2::zeros();
                 if let Some([on_bearing, on_journal]) = forces {
+                    out.reactions[i] = on_journal.xy();
                     add(&mut out.wrenches, joint.ring.body, on_bearing);
                     add(&mut out.wrenches, joint.journal.body, on_journal);
                 }
@@ -149,49 +211,72 @@ impl Dynamics {
                 }
             }
         }
-        for (i, joint) in mechanism.prismatics.iter().enumerate() {
-            if let Drive::Sampled(cascade) = joint.drive {
-                self.prismatics[i] = Telescope::new(joint, states);
-                let force = cascade.force(&self.held[i], t);
-                out.drive_forces[i] = force;
-                let [on_cylinder, on_rod] = self.prismatics[i].drive(force);
-                add(&mut out.wrenches, joint.cylinder.body, on_cylinder);
-                add(&mut out.wrenches, joint.rod.body, on_rod);
-            }
-            if let Drive::Servo { stiffness, damping } = joint.drive {
-                let state = &mut self.prismatics[i];
-                *state = Telescope::new(joint, states);
-                out.command(mechanism);
-                let command = &out.commands[i];
-                let [length, rate] = joint.read(state.length, state.length_rate);
-                let (error, error_rate) = (command.length - length, command.rate - rate);
-                let force = match &joint.transmission {
-                    None => stiffness * error + damping * error_rate,
-                    Some(link) => link.force([stiffness, damping], error, error_rate),
-                };
-                out.drive_forces[i] = force;
-                let [on_cylinder, on_rod] = state.drive(force);
-                add(&mut out.wrenches, joint.cylinder.body, on_cylinder);
-                add(&mut out.wrenches, joint.rod.body, on_rod);
-            }
-        }
+        self.drive(mechanism, t, states, out);
         let at = Situation { t: mechanism.epoch + t, mechanism, states };
         for (load, memory) in mechanism.loads.iter().zip(&self.memories) {
             load.add_after(at, *memory, &mut out.wrenches);
         }
     }
 
-    /// Lets the loads remember time `t` (s) and these states: what is looked at from now on comes after
-    /// them.
+    /// Adds the efforts of all drives but prescribed ones.
+    fn drive(&mut self, mechanism: &Mechanism, t: f64, states: &[BodyState], out: &mut Evaluation) {
+        for (i, actuator) in mechanism.actuators.iter().enumerate() {
+            if actuator.drive == Drive::Prescribed {
+                continue;
+            }
+            let [position, rate] = self.coordinate(mechanism, i, states);
+            out.coordinates[i] = position;
+            let effort = match actuator.drive {
+                Drive::Prescribed => continue,
+                Drive::Sampled(cascade) => cascade.force(&self.held[i], t),
+                Drive::Effort => {
+                    out.command(mechanism);
+                    out.commands[i].position
+                }
+                Drive::Servo { stiffness, damping } => {
+                    out.command(mechanism);
+                    let command = &out.commands[i];
+                    let [position, rate] = actuator.read(position, rate);
+                    let (error, error_rate) = (command.position - position, command.rate - rate);
+                    match &actuator.transmission {
+                        None => stiffness * error + damping * error_rate,
+                        Some(link) => link.force([stiffness, damping], error, error_rate),
+                    }
+                }
+            };
+            out.drive_forces[i] = effort;
+            match actuator.joint {
+                JointIndex::Prismatic(joint) => {
+                    let [on_base, on_slider] = self.prismatics[joint].drive(effort);
+                    let joint = &mechanism.prismatics[joint];
+                    add(&mut out.wrenches, joint.base.body, on_base);
+                    add(&mut out.wrenches, joint.slider.body, on_slider);
+                }
+                JointIndex::Revolute(joint) => {
+                    let joint = &mechanism.revolutes[joint];
+                    add(&mut out.wrenches, joint.ring.body, Vector3::new(0.0, 0.0, -effort));
+                    add(&mut out.wrenches, joint.journal.body, Vector3::new(0.0, 0.0, effort));
+                }
+            }
+        }
+    }
+
+    /// Lets loads and drives remember time `t` (s) and these states: what is looked at from now on comes
+    /// after them.
     pub fn remember(&mut self, mechanism: &Mechanism, t: f64, states: &[BodyState]) {
         let at = Situation { t: mechanism.epoch + t, mechanism, states };
         for (load, memory) in mechanism.loads.iter().zip(&mut self.memories) {
             *memory = load.remember(at, *memory);
         }
+        for (angle, actuator) in self.angles.iter_mut().zip(&mechanism.actuators) {
+            if let JointIndex::Revolute(i) = actuator.joint {
+                *angle = angle_near(mechanism.revolutes[i].rotation(states), *angle);
+            }
+        }
     }
 
     /// Fills `out.accelerations` from `out.wrenches` and the rigid joints, and, where drives are
-    /// prescribed, the drive forces that the command takes.
+    /// prescribed, the efforts that the command takes.
     pub fn accelerations(
         &mut self,
         mechanism: &Mechanism,
@@ -202,18 +287,24 @@ impl Dynamics {
         {
             *a = w.component_mul(m);
         }
-        for (joint, state) in mechanism.prismatics.iter().zip(&mut self.prismatics) {
-            if joint.drive == Drive::Prescribed {
-                out.command(mechanism);
-                *state = Telescope::new(joint, states);
-            }
+        for &i in &self.passive {
+            self.prismatics[i] = Telescope::new(&mechanism.prismatics[i], states);
         }
         for (length, state) in out.lengths.iter_mut().zip(&self.prismatics) {
             *length = state.length;
         }
+        for (i, actuator) in mechanism.actuators.iter().enumerate() {
+            if actuator.drive == Drive::Prescribed {
+                out.command(mechanism);
+                out.coordinates[i] = match actuator.joint {
+                    JointIndex::Prismatic(joint) => self.prismatics[joint].length,
+                    JointIndex::Revolute(_) => self.coordinate(mechanism, i, states)[0],
+                };
+            }
+        }
         for &(i, bodies) in &self.telescopes {
-            let prescribed = mechanism.prismatics[i].drive == Drive::Prescribed;
-            let extension = prescribed.then_some(out.commands[i].acceleration);
+            let prescribed = self.prescribed[i];
+            let extension = prescribed.map(|drive| out.commands[drive].acceleration);
             let masses = bodies.map(|b| self.masses[b]);
             let wrenches = bodies.map(|b| out.wrenches[b]);
             let (accelerations, force) =
@@ -221,47 +312,61 @@ impl Dynamics {
             for (body, a) in bodies.into_iter().zip(accelerations) {
                 out.accelerations[body] = a;
             }
-            if prescribed {
-                out.drive_forces[i] = force;
+            if let Some(drive) = prescribed {
+                out.drive_forces[drive] = force;
             }
         }
         for g in 0..self.groups.len() {
-            self.constraints.rows.clear();
-            for joint in &self.groups[g] {
-                match *joint {
-                    RigidJoint::Prismatic(i) => {
-                        let joint = &mechanism.prismatics[i];
-                        let bodies = [joint.cylinder.body, joint.rod.body];
-                        let [side, angle, mut along] = prismatic_rows(&self.prismatics[i], bodies);
-                        self.constraints.rows.extend([side, angle]);
-                        if joint.drive == Drive::Prescribed {
-                            along.bias -= out.commands[i].acceleration;
-                            self.constraints.rows.push(along);
-                        }
+            self.solve_group(g, mechanism, states, out);
+        }
+    }
+
+    /// Accelerations and joint forces of one group.
+    fn solve_group(
+        &mut self,
+        g: usize,
+        mechanism: &Mechanism,
+        states: &[BodyState],
+        out: &mut Evaluation,
+    ) {
+        let rows = &mut self.constraints.rows;
+        rows.clear();
+        for joint in &self.groups[g] {
+            match *joint {
+                Rigid::Prismatic(i) => {
+                    let [side, angle, mut along] =
+                        prismatic_rows(&self.prismatics[i], mechanism.prismatics[i].bodies());
+                    rows.extend([side, angle]);
+                    if let Some(drive) = self.prescribed[i] {
+                        along.bias -= out.commands[drive].acceleration;
+                        rows.push(along);
                     }
-                    RigidJoint::Revolute(i) => {
-                        self.constraints
-                            .rows
-                            .extend(revolute_rows(&mechanism.revolutes[i], states));
-                    }
+                }
+                Rigid::Revolute(i) => rows.extend(revolute_rows(&mechanism.revolutes[i], states)),
+                Rigid::Angle { drive, joint } => {
+                    let mut row = angle_row(&mechanism.revolutes[joint]);
+                    row.bias -= out.commands[drive].acceleration;
+                    rows.push(row);
                 }
             }
-            self.constraints.solve(&self.inverse_masses, &mut out.accelerations);
-            let mut multipliers = self.constraints.multipliers.as_slice();
-            for joint in &self.groups[g] {
-                match *joint {
-                    RigidJoint::Prismatic(i)
-                        if mechanism.prismatics[i].drive == Drive::Prescribed =>
-                    {
-                        out.drive_forces[i] = multipliers[2];
-                        multipliers = &multipliers[3..];
-                    }
-                    RigidJoint::Prismatic(_) => multipliers = &multipliers[2..],
-                    RigidJoint::Revolute(i) => {
-                        out.contacts[i].normal_force = multipliers[0].hypot(multipliers[1]);
-                        multipliers = &multipliers[2..];
+        }
+        self.constraints.solve(&self.inverse_masses, &mut out.accelerations);
+        let mut multipliers = self.constraints.multipliers.iter();
+        let mut next = || multipliers.next().copied().unwrap_or_default();
+        for joint in &self.groups[g] {
+            match *joint {
+                Rigid::Prismatic(i) => {
+                    let _side_and_angle = [next(), next()];
+                    if let Some(drive) = self.prescribed[i] {
+                        out.drive_forces[drive] = next();
                     }
                 }
+                Rigid::Revolute(i) => {
+                    let force = Vector2::new(next(), next());
+                    out.reactions[i] = force;
+                    out.contacts[i].normal_force = force.x.hypot(force.y);
+                }
+                Rigid::Angle { drive, .. } => out.drive_forces[drive] = next(),
             }
         }
     }
@@ -278,8 +383,8 @@ impl Dynamics {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::{Attachment, Body, Commands};
-    use nalgebra::{UnitComplex, Vector2};
+    use crate::mechanism::{Actuator, Attachment, Body, Commands};
+    use nalgebra::UnitComplex;
     use std::sync::Arc;
 
     #[derive(Debug)]
@@ -287,7 +392,7 @@ mod tests {
 
     impl Commands for Constant {
         fn at(&self, _t: f64, commands: &mut [Command]) {
-            commands.fill(Command { length: 0.3, rate: 0.2, acceleration: 7.0 });
+            commands.fill(Command { position: 0.3, rate: 0.2, acceleration: 7.0 });
         }
     }
 
@@ -299,34 +404,26 @@ mod tests {
         let apart = rotation * at;
         let sliding = rotation * Vector2::new(0.2, 0.0);
         let turned = Vector2::new(-apart.y, apart.x) * spin;
-        let body = |name: &str, mass, inertia, position: Vector2<f64>, v: Vector2<f64>| Body {
-            name: name.into(),
-            mass,
-            inertia,
-            start: BodyState { position, rotation, twist: Vector3::new(v.x, v.y, spin) },
-            reference: Vector2::zeros(),
+        let body = |name: &str, mass, inertia, position: Vector2<f64>, v: Vector2<f64>| {
+            let twist = Vector3::new(v.x, v.y, spin);
+            Body::new(name, mass, inertia, BodyState { position, rotation, twist })
         };
         let attachment = |i, x| Attachment { body: Some(i), point: Vector2::new(x, 0.01) };
+        let bodies = vec![
+            body("cylinder", 0.14, 4e-4, Vector2::zeros(), Vector2::new(0.1, 0.3)),
+            body("rod", 0.05, 2e-4, apart, Vector2::new(0.1, 0.3) + sliding + turned),
+        ];
         Mechanism {
-            bodies: vec![
-                body("cylinder", 0.14, 4e-4, Vector2::zeros(), Vector2::new(0.1, 0.3)),
-                body("rod", 0.05, 2e-4, apart, Vector2::new(0.1, 0.3) + sliding + turned),
-            ],
-            revolutes: Vec::new(),
             prismatics: vec![Prismatic {
                 name: "P1".into(),
-                cylinder: attachment(0, -0.1),
-                rod: attachment(1, 0.1),
-                drive,
-                reading_errors: Vec::new(),
-                transmission: None,
+                base: attachment(0, -0.1),
+                slider: attachment(1, 0.1),
+                axes: [UnitComplex::identity(); 2],
             }],
+            actuators: vec![Actuator::new("P1", JointIndex::Prismatic(0), drive)],
             commands: Arc::new(Constant),
-            epoch: 0.0,
             gravity: Vector2::new(0.5, -9.81),
-            loads: Vec::new(),
-            output: 1,
-            native: Default::default(),
+            ..Mechanism::free(bodies)
         }
     }
 
@@ -340,7 +437,7 @@ mod tests {
             let mut general = closed.clone();
             assert_eq!(general.telescopes.len(), 1);
             general.telescopes.clear();
-            general.groups.push(vec![RigidJoint::Prismatic(0)]);
+            general.groups.push(vec![Rigid::Prismatic(0)]);
             let [a, b] = [&mut closed, &mut general].map(|dynamics| {
                 let mut now = Evaluation::new(&mechanism);
                 dynamics.forces(&mechanism, 0.0, &states, &mut now);

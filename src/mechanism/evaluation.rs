@@ -2,7 +2,7 @@
 
 use super::{Command, Drive, Mechanism};
 use crate::contact::Contact;
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 /// Everything that is known of a mechanism at one instant beside its state.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +11,7 @@ pub struct Evaluation {
     pub t: f64,
     /// Time for which the commands were asked last.
     commanded: f64,
-    /// Command of each prismatic joint; once something has asked for them at this time.
+    /// Command of each drive; once something has asked for them at this time.
     pub commands: Vec<Command>,
     /// Wrench of gravity, contacts and servos on each body, about its centre of mass.
     pub wrenches: Vec<Vector3<f64>>,
@@ -19,9 +19,14 @@ pub struct Evaluation {
     pub accelerations: Vec<Vector3<f64>>,
     /// Contact in each revolute joint; of an ideal one the size of its force.
     pub contacts: Vec<Contact>,
+    /// Force of each revolute joint on its journal's body in N, world directions.
+    pub reactions: Vec<Vector2<f64>>,
     /// Length of each prismatic joint in m.
     pub lengths: Vec<f64>,
-    /// Force of each drive on its rod in N, positive when it pushes outward.
+    /// True coordinate of each driven joint in m or rad.
+    pub coordinates: Vec<f64>,
+    /// Effort of each drive: force on the slider in N, positive when it lengthens the joint; torque on the
+    /// journal's body in N·m, positive counterclockwise.
     pub drive_forces: Vec<f64>,
 }
 
@@ -29,7 +34,7 @@ impl Evaluation {
     /// An evaluation of the right size, all zero.
     pub fn new(mechanism: &Mechanism) -> Self {
         let bodies = mechanism.bodies.len();
-        let drives = mechanism.prismatics.len();
+        let drives = mechanism.actuators.len();
         Self {
             t: 0.0,
             commanded: f64::NAN,
@@ -37,7 +42,9 @@ impl Evaluation {
             wrenches: vec![Vector3::zeros(); bodies],
             accelerations: vec![Vector3::zeros(); bodies],
             contacts: vec![Contact::default(); mechanism.revolutes.len()],
-            lengths: vec![0.0; drives],
+            reactions: vec![Vector2::zeros(); mechanism.revolutes.len()],
+            lengths: vec![0.0; mechanism.prismatics.len()],
+            coordinates: vec![0.0; drives],
             drive_forces: vec![0.0; drives],
         }
     }
@@ -47,9 +54,9 @@ impl Evaluation {
     pub(super) fn command(&mut self, mechanism: &Mechanism) {
         if self.commanded != self.t {
             mechanism.commands.at(mechanism.epoch + self.t, &mut self.commands);
-            for (command, joint) in self.commands.iter_mut().zip(&mechanism.prismatics) {
-                if joint.drive == Drive::Prescribed && !joint.reading_errors.is_empty() {
-                    *command = joint.true_command(*command);
+            for (command, actuator) in self.commands.iter_mut().zip(&mechanism.actuators) {
+                if actuator.drive == Drive::Prescribed && !actuator.reading_errors.is_empty() {
+                    *command = actuator.true_command(*command);
                 }
             }
             self.commanded = self.t;

@@ -1,6 +1,6 @@
 //! What acts on a mechanism beside gravity, contacts and drives.
 
-use super::{Attachment, BodyState, Drive, Mechanism};
+use super::{BodyState, JointIndex, Mechanism};
 use nalgebra::{Vector2, Vector3};
 use std::fmt::Debug;
 
@@ -67,10 +67,17 @@ impl Situation<'_> {
         [joint.length, joint.length_rate]
     }
 
+    /// Length in m that the encoder of prismatic joint `index` reads at a true length (m) and rate (m/s);
+    /// the true one where it has no drive.
+    pub fn reading(self, index: usize, [length, rate]: [f64; 2]) -> f64 {
+        let mut drives = self.mechanism.actuators.iter();
+        let drive = drives.find(|actuator| actuator.joint == JointIndex::Prismatic(index));
+        drive.map_or(length, |actuator| actuator.read(length, rate)[0])
+    }
+
     /// Rate in rad/s at which revolute joint `index` turns: of the journal's body against the ring's.
     pub fn turning(self, index: usize) -> f64 {
-        let joint = &self.mechanism.revolutes[index];
-        joint.journal.frame(self.states).spin - joint.ring.frame(self.states).spin
+        self.mechanism.revolutes[index].spin(self.states)
     }
 
     /// Adds a torque (N·m) on the journal's body of revolute joint `index`, against the ring's.
@@ -83,37 +90,14 @@ impl Situation<'_> {
         }
     }
 
-    /// Adds a force (N, positive when it extends) between cylinder and rod of prismatic joint `index`.
+    /// Adds a force (N, positive when it extends) between base and slider of prismatic joint `index`.
     pub fn push_rod(self, index: usize, force: f64, wrenches: &mut [Vector3<f64>]) {
         let joint = &self.mechanism.prismatics[index];
         let pair = joint.telescope(self.states).drive(force);
-        for (body, wrench) in [joint.cylinder.body, joint.rod.body].into_iter().zip(pair) {
+        for (body, wrench) in [joint.base.body, joint.slider.body].into_iter().zip(pair) {
             if let Some(body) = body {
                 wrenches[body] += wrench;
             }
         }
-    }
-}
-
-impl Mechanism {
-    /// What one N·m in revolute joint `index` accelerates the joint by in rad/s², each body turning about
-    /// the joint by itself: `Σ 1/(I + m r²)`, r the distance of the joint from the centre of mass.
-    pub fn joint_lightness(&self, index: usize) -> f64 {
-        let joint = &self.revolutes[index];
-        let lightness = |attachment: &Attachment| {
-            attachment.body.map_or(0.0, |i| {
-                let body = &self.bodies[i];
-                1.0 / (body.inertia + body.mass * attachment.point.norm_squared())
-            })
-        };
-        lightness(&joint.ring) + lightness(&joint.journal)
-    }
-
-    /// The longest step in s that a damper of at most `damping` N·s/m along prismatic joint `index`
-    /// stands, or `None` where there is none; a prescribed length does not heed it.
-    pub fn rod_damper_step(&self, index: usize, damping: f64) -> Option<f64> {
-        let joint = &self.prismatics[index];
-        let felt = joint.drive != Drive::Prescribed && damping > 0.0;
-        felt.then(|| self.stroke_mass(joint) / damping)
     }
 }

@@ -3,11 +3,8 @@
 //! Angles are those of the arm, from the pivot to its centre of mass, against the upward vertical: π
 //! hangs, and `(m a² + I) θ̈ = m a g sin θ`.
 
-use super::{
-    Attachment, Bearing, Body, BodyState, Command, Commands, Mechanism, NativeContacts, Revolute,
-};
+use super::{Attachment, Bearing, Body, BodyState, Mechanism, Revolute};
 use nalgebra::{UnitComplex, Vector2, Vector3};
-use std::sync::Arc;
 
 /// The arm of a pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,26 +39,12 @@ pub fn angle(state: &BodyState, near: f64) -> [f64; 2] {
     [near + turn, state.twist.z]
 }
 
-/// Nothing is commanded.
-#[derive(Debug)]
-struct Idle;
-
-impl Commands for Idle {
-    fn at(&self, _: f64, _: &mut [Command]) {}
-}
-
 /// Builds the pendulum: the joint `A1` at the origin, released at an angle in rad with a rate in
 /// rad/s. With clearance the journal starts in the middle of its ring, which the ground carries.
 pub fn build(arm: Arm, bearing: Bearing, start: [f64; 2], gravity: Vector2<f64>) -> Mechanism {
-    let body = Body {
-        name: "arm".to_owned(),
-        mass: arm.mass,
-        inertia: arm.inertia,
-        start: arm.state(start),
-        reference: Vector2::zeros(),
-    };
+    let body =
+        Body { angle: start[0], ..Body::new("arm", arm.mass, arm.inertia, arm.state(start)) };
     Mechanism {
-        bodies: vec![body],
         revolutes: vec![Revolute {
             name: "A1".to_owned(),
             ring: Attachment { body: None, point: Vector2::zeros() },
@@ -69,13 +52,8 @@ pub fn build(arm: Arm, bearing: Bearing, start: [f64; 2], gravity: Vector2<f64>)
             bearing,
             out_of_round: None,
         }],
-        prismatics: Vec::new(),
-        commands: Arc::new(Idle),
-        epoch: 0.0,
         gravity,
-        loads: Vec::new(),
-        native: NativeContacts::default(),
-        output: 0,
+        ..Mechanism::free(vec![body])
     }
 }
 

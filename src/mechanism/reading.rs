@@ -1,15 +1,15 @@
-//! What the encoder of a prismatic joint reads, against its true length.
+//! What the encoder of a driven joint reads, against its true coordinate.
 
-use super::{Command, Evaluation, Mechanism, Prismatic};
+use super::{Actuator, Command, Evaluation, Mechanism};
 use std::fmt::Debug;
 
-/// How a prismatic joint's true length differs from what its encoder and its drive read.
+/// How a driven joint's true length differs from what its encoder and its drive read.
 pub trait ReadingError: Debug + Send + Sync {
     /// `true − read` in m at the read length `read` (m), and its first and second derivative by it.
     fn at(&self, read: f64) -> [f64; 3];
 }
 
-impl Prismatic {
+impl Actuator {
     /// True length in m at a read length, and its first and second derivative by it.
     fn true_length(&self, read: f64) -> [f64; 3] {
         self.reading_errors.iter().fold([read, 1.0, 0.0], |sum, error| {
@@ -41,9 +41,9 @@ impl Prismatic {
 
     /// The motion of the true length that a motion of the read length means.
     pub(crate) fn true_command(&self, read: Command) -> Command {
-        let [length, first, second] = self.true_length(read.length);
+        let [length, first, second] = self.true_length(read.position);
         Command {
-            length,
+            position: length,
             rate: first * read.rate,
             acceleration: first * read.acceleration + second * read.rate * read.rate,
         }
@@ -51,14 +51,14 @@ impl Prismatic {
 }
 
 impl Mechanism {
-    /// Length in m that the encoder of prismatic joint `index` shows at an instant. It sits at the
+    /// Length in m that the encoder of drive `index` shows at an instant. It sits at the
     /// drive's end of the [`Transmission`](super::Transmission): play and give show there, beside the
     /// errors of the encoder itself.
     pub fn encoder(&self, index: usize, now: &Evaluation) -> f64 {
-        let joint = &self.prismatics[index];
-        let [read, _] = joint.read(now.lengths[index], 0.0);
-        let error = now.commands[index].length - read;
+        let actuator = &self.actuators[index];
+        let [read, _] = actuator.read(now.coordinates[index], 0.0);
+        let error = now.commands[index].position - read;
         let force = now.drive_forces[index];
-        read + joint.transmission.map_or(0.0, |link| link.ahead(error, force))
+        read + actuator.transmission.map_or(0.0, |link| link.ahead(error, force))
     }
 }

@@ -25,7 +25,7 @@ fn row(direction: Vector2<f64>, moment: f64) -> Vector3<f64> {
 ///
 /// * length `q̈ = d̈·u + α w + 2ω ḋ·n − ω² L`
 /// * sideways `s̈ = d̈·n − α L − 2ω ḋ·u − ω² w = 0`
-/// * angle `α_rod − α_cylinder = 0`.
+/// * angle `α_slider − α_base = 0`.
 pub(super) fn prismatic_rows(joint: &Telescope, bodies: [Option<usize>; 2]) -> [Row; 3] {
     let Telescope { u, n, rate, spin, .. } = *joint;
     let [length, side] = joint.offset;
@@ -54,4 +54,14 @@ pub(super) fn revolute_rows(joint: &Revolute, states: &[BodyState]) -> [Row; 2] 
         jacobians: [row(-e, -ring.arm.perp(&e)), row(e, journal.arm.perp(&e))],
         bias: centripetal.dot(&e),
     })
+}
+
+/// The row of a revolute joint's angle, `α_journal − α_ring`, without a target; its force is the torque
+/// on the journal's body.
+pub(super) fn angle_row(joint: &Revolute) -> Row {
+    Row {
+        bodies: [joint.ring.body, joint.journal.body],
+        jacobians: [-Vector3::z(), Vector3::z()],
+        bias: 0.0,
+    }
 }

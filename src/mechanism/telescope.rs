@@ -1,11 +1,11 @@
 //! A prismatic joint at one state, and the motion of the two bodies that it alone connects.
 
 use super::{BodyState, Prismatic};
-use nalgebra::{UnitComplex, Vector2, Vector3};
+use nalgebra::{Vector2, Vector3};
 
-/// Geometry of a prismatic joint. With u the cylinder's axis, n = u turned by +90°, ω the angular
-/// velocity that both bodies share (`u̇ = ω n`, `ṅ = −ω u`), d from the cylinder's centre of mass to
-/// the rod's: `L = d·u`, `w = d·n`, and the joint's length is L plus a constant.
+/// Geometry of a prismatic joint. With u the joint's axis, n = u turned by +90°, ω the angular
+/// velocity that both bodies share (`u̇ = ω n`, `ṅ = −ω u`), d from the base's centre of mass to
+/// the slider's: `L = d·u`, `w = d·n`, and the joint's length is L plus a constant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Telescope {
     pub u: Vector2<f64>,
@@ -40,32 +40,32 @@ impl Telescope {
                 (states[i].position, states[i].twist.xy())
             })
         };
-        let (axis, spin) = joint
-            .cylinder
-            .body
-            .map_or((UnitComplex::identity(), 0.0), |i| (states[i].rotation, states[i].twist.z));
+        let (axis, spin) = joint.base.body.map_or((joint.axes[0], 0.0), |i| {
+            (states[i].rotation * joint.axes[0], states[i].twist.z)
+        });
         let (u, n) = (Vector2::new(axis.re, axis.im), Vector2::new(-axis.im, axis.re));
-        let (from, to) = (place(joint.cylinder.body), place(joint.rod.body));
+        let (from, to) = (place(joint.base.body), place(joint.slider.body));
         let (d, rate) = (to.0 - from.0, to.1 - from.1);
         let offset = [d.dot(&u), d.dot(&n)];
+        let [base, slider] = joint.points();
         Self {
             u,
             n,
             offset,
             rate,
             spin,
-            length: offset[0] + joint.rod.point.x - joint.cylinder.point.x,
+            length: offset[0] + slider.x - base.x,
             length_rate: rate.dot(&u) + spin * offset[1],
         }
     }
 
-    /// Wrenches on cylinder and rod of a drive force (N, positive when it extends).
+    /// Wrenches on base and slider of a drive force (N, positive when it extends).
     pub fn drive(&self, force: f64) -> [Vector3<f64>; 2] {
         let f = self.u * force;
         [Vector3::new(-f.x, -f.y, self.offset[1] * force), Vector3::new(f.x, f.y, 0.0)]
     }
 
-    /// Accelerations of cylinder and rod under the given wrenches, and the force of the drive, for
+    /// Accelerations of base and slider under the given wrenches, and the force of the drive, for
     /// two moving bodies that no other rigid joint holds. `extension` is the prescribed q̈, if the
     /// drive prescribes it.
     ///

@@ -17,7 +17,7 @@ impl Commands for Along {
         let point = self.0.at(t);
         for command in commands {
             *command = Command {
-                length: point.pose.x,
+                position: point.pose.x,
                 rate: point.rate.x,
                 acceleration: point.acceleration.x,
             };

@@ -26,7 +26,7 @@ impl<W: Write> TimeSeries<W> {
     pub fn new(mut out: W, mechanism: &Mechanism, phi: f64) -> io::Result<Self> {
         let mut line = "t,x,y,phi,vx,vy,omega,ax,ay,alpha".to_owned();
         for letter in ["q", "F"] {
-            for i in 1..=mechanism.prismatics.len() {
+            for i in 1..=mechanism.actuators.len() {
                 // Writing to a string cannot fail, here and below.
                 let _ = write!(line, ",{letter}{i}");
             }
@@ -54,8 +54,8 @@ impl<W: Write> TimeSeries<W> {
         self.numbers([&self.phi.clone()]);
         self.numbers(state.twist.iter());
         self.numbers(mechanism.output_acceleration(instant.states, &now.accelerations).iter());
-        for (joint, length) in mechanism.prismatics.iter().zip(&now.lengths) {
-            self.numbers([&joint.read(*length, 0.0)[0]]);
+        for (actuator, coordinate) in mechanism.actuators.iter().zip(&now.coordinates) {
+            self.numbers([&actuator.read(*coordinate, 0.0)[0]]);
         }
         self.numbers(&now.drive_forces);
         for (contact, tally) in now.contacts.iter().zip(instant.tallies) {

@@ -224,7 +224,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
 
 /// Extremes of the ideal machine over the motion.
 fn ideal(machine: &mut Machine) -> Ideal {
-    let drives = machine.mechanism.prismatics.len();
+    let drives = machine.mechanism.actuators.len();
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; drives];
     let mut peak = 0.0f64;
     for k in 0..=INSTANTS {

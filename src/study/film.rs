@@ -126,10 +126,10 @@ fn outline(mechanism: &Mechanism, body: Option<usize>) -> Outline {
         add(&joint.journal);
     }
     for joint in &mechanism.prismatics {
-        if add(&joint.rod) {
+        if add(&joint.slider) {
             width_m = ROD;
         }
-        if add(&joint.cylinder) {
+        if add(&joint.base) {
             width_m = CYLINDER;
         }
     }
@@ -145,7 +145,7 @@ fn outline(mechanism: &Mechanism, body: Option<usize>) -> Outline {
 /// The curves: forces in the joints, of the drives and what the ideal machine's take, acceleration
 /// of the output and of the ideal machine's, path error.
 fn charts(mechanism: &Mechanism) -> Vec<SceneChart> {
-    let (joints, drives) = (mechanism.revolutes.len(), mechanism.prismatics.len());
+    let (joints, drives) = (mechanism.revolutes.len(), mechanism.actuators.len());
     let curve = |name: &str, signal: usize, reference: bool| SceneCurve {
         name: name.to_owned(),
         signal,
@@ -153,7 +153,7 @@ fn charts(mechanism: &Mechanism) -> Vec<SceneChart> {
     };
     let contacts = mechanism.revolutes.iter().enumerate();
     let contacts = contacts.filter(|(_, joint)| radial_clearance(&joint.bearing).is_some());
-    let actuators = mechanism.prismatics.iter().enumerate().flat_map(|(i, drive)| {
+    let actuators = mechanism.actuators.iter().enumerate().flat_map(|(i, drive)| {
         let ideal = format!("{}, ideal", drive.name);
         [curve(&drive.name, joints + i, false), curve(&ideal, joints + drives + i, true)]
     });

@@ -61,7 +61,7 @@ impl Gallery {
     pub fn new(mechanism: &Mechanism, schedule: Schedule) -> Self {
         let envelope = || Envelope::new(STRETCHES);
         let path = || Recent::new(PATH_ROWS);
-        let drives = mechanism.prismatics.iter().map(|joint| Drive {
+        let drives = mechanism.actuators.iter().map(|joint| Drive {
             name: joint.name.clone(),
             force: envelope(),
             ideal: envelope(),

@@ -8,9 +8,7 @@ use freeplay::contact::{
 use freeplay::engine::{Instant, Schedule, StepControl, Work, run};
 use freeplay::mechanism::motion::Circle;
 use freeplay::mechanism::three_rpr::{Geometry, InverseKinematics, LegBars, build};
-use freeplay::mechanism::{
-    Bearing, BodyState, Command, Commands, Drive, Dynamics, Evaluation, Mechanism,
-};
+use freeplay::mechanism::{Bearing, BodyState, Drive, Dynamics, Evaluation, Mechanism};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -126,14 +124,6 @@ pub fn platform_error(
     .unwrap();
     assert_eq!(k, rows);
     (worst, work)
-}
-
-/// Commands of a mechanism without prismatic joints.
-#[derive(Debug)]
-pub struct NoCommands;
-
-impl Commands for NoCommands {
-    fn at(&self, _: f64, _: &mut [Command]) {}
 }
 
 /// The machine without clearance at one instant: it moves exactly as commanded.

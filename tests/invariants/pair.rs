@@ -1,11 +1,9 @@
 //! Two free bodies with one joint: nothing else can take momentum or energy.
 
-use crate::common::{NoCommands, hertz, kinetic_energy};
+use crate::common::{hertz, kinetic_energy};
 use crate::sampling::{config, vector};
 use freeplay::contact::{Clearance, CoulombFriction, HertzStep};
-use freeplay::mechanism::{
-    Attachment, Bearing, Body, BodyState, Mechanism, NativeContacts, Revolute,
-};
+use freeplay::mechanism::{Attachment, Bearing, Body, BodyState, Mechanism, Revolute};
 use nalgebra::{UnitComplex, Vector2, Vector3};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -66,25 +64,20 @@ impl Pair {
             let rotation = UnitComplex::new(self.angles[i]);
             let arm = rotation * self.points[i];
             let velocity = velocity - turned(arm) * self.spins[i];
-            Body {
-                name: format!("body {i}"),
-                mass: self.masses[i],
-                inertia: inertia(i),
-                start: BodyState {
-                    position: centre - arm,
-                    rotation,
-                    twist: Vector3::new(velocity.x, velocity.y, self.spins[i]),
-                },
-                reference: Vector2::zeros(),
-            }
+            let start = BodyState {
+                position: centre - arm,
+                rotation,
+                twist: Vector3::new(velocity.x, velocity.y, self.spins[i]),
+            };
+            Body::new(&format!("body {i}"), self.masses[i], inertia(i), start)
         };
         let journal = self.ring + self.eccentricity * self.clearance;
         let attachment = |i: usize| Attachment { body: Some(i), point: self.points[i] };
+        let bodies = vec![
+            body(0, self.ring, self.velocity),
+            body(1, journal, self.velocity + self.relative),
+        ];
         Mechanism {
-            bodies: vec![
-                body(0, self.ring, self.velocity),
-                body(1, journal, self.velocity + self.relative),
-            ],
             revolutes: vec![Revolute {
                 name: "joint".into(),
                 ring: attachment(0),
@@ -97,13 +90,7 @@ impl Pair {
                 }),
                 out_of_round: None,
             }],
-            prismatics: Vec::new(),
-            commands: Arc::new(NoCommands),
-            epoch: 0.0,
-            gravity: Vector2::zeros(),
-            loads: Vec::new(),
-            native: NativeContacts::default(),
-            output: 1,
+            ..Mechanism::free(bodies)
         }
     }
 

@@ -33,8 +33,8 @@ fn mirrored(mechanism: &Mechanism) -> Mechanism {
         joint.journal.point.y *= -1.0;
     }
     for joint in &mut mirror.prismatics {
-        joint.cylinder.point.y *= -1.0;
-        joint.rod.point.y *= -1.0;
+        joint.base.point.y *= -1.0;
+        joint.slider.point.y *= -1.0;
     }
     mirror.gravity.y *= -1.0;
     mirror

@@ -18,7 +18,7 @@ pub fn machine(case: &Case) -> Machine {
         drive: match case.drive {
             Drive::Prescribed => minimal_coordinates::Drive::Prescribed,
             Drive::Servo { .. } => minimal_coordinates::Drive::Servo,
-            Drive::Sampled(_) => unreachable!("no case has a sampled controller"),
+            Drive::Sampled(_) | Drive::Effort => unreachable!("no case has such a drive"),
         },
         gravity: [0.0, case.gravity],
         friction: case.friction,

@@ -41,7 +41,7 @@ fn friction_of_an_actuator_is_what_its_drive_gives_more() {
         dry * (q.rate / 1e-3).tanh() + 7.0 * q.rate
     });
     drive_gives("screw-ripple", 0, "amplitude_N = 2; pitch_m = 0.01; phase_rad = 0.3", |q| {
-        -2.0 * (TAU * q.length / 0.01 + 0.3).sin()
+        -2.0 * (TAU * q.position / 0.01 + 0.3).sin()
     });
 }
 
@@ -73,10 +73,10 @@ const OMEGA: f64 = 20.0;
 
 impl Commands for Signals {
     fn at(&self, t: f64, commands: &mut [Command]) {
-        commands.fill(Command { length: 0.3 + 0.05 * t, rate: 0.05, acceleration: 0.0 });
+        commands.fill(Command { position: 0.3 + 0.05 * t, rate: 0.05, acceleration: 0.0 });
         let (sin, cos) = (OMEGA * t).sin_cos();
         commands[1] =
-            Command { length: sin, rate: OMEGA * cos, acceleration: -OMEGA * OMEGA * sin };
+            Command { position: sin, rate: OMEGA * cos, acceleration: -OMEGA * OMEGA * sin };
     }
 }
 
@@ -92,10 +92,10 @@ fn a_lagging_servo_is_a_first_order_filter() {
     for t in INSTANTS {
         let mut commands = [Command::default(); 3];
         mechanism.commands.at(t, &mut commands);
-        assert!((commands[0].length - (0.3 + 0.05 * (t - tau))).abs() < 1e-13);
+        assert!((commands[0].position - (0.3 + 0.05 * (t - tau))).abs() < 1e-13);
         assert!((commands[0].rate - 0.05).abs() < 1e-13);
         let (sin, cos) = (OMEGA * t + phase).sin_cos();
-        assert!((commands[1].length - gain * sin).abs() < 1e-7);
+        assert!((commands[1].position - gain * sin).abs() < 1e-7);
         assert!((commands[1].rate - OMEGA * gain * cos).abs() < 1e-6);
         assert!((commands[1].acceleration + OMEGA * OMEGA * gain * sin).abs() < 1e-4);
     }
@@ -142,11 +142,11 @@ fn links_between_drive_and_rod_give_way_by_their_load() {
             let force = now.drive_forces[leg];
             let what = format!("{kind}, {mode}, leg {leg}: {force} N");
             assert!((force - expected[leg]).abs() < 1e-4, "{what}, expected {}", expected[leg]);
-            let given = commands[leg].length - now.lengths[leg];
+            let given = commands[leg].position - now.lengths[leg];
             let due = force * (servo + compliance) + 0.5 * play * force.signum();
             assert!((given - due).abs() < 1e-9, "{what}: gives {given:e}, expected {due:e}");
             // The encoder sits at the drive: what it misses of the command is the servo's own give.
-            let missed = commands[leg].length - readings[leg];
+            let missed = commands[leg].position - readings[leg];
             assert!((missed - force * servo).abs() < 1e-9, "{what}: encoder off by {missed:e}");
         }
         assert!(now.drive_forces.iter().any(|f| f.abs() > 1.0));
@@ -156,9 +156,9 @@ fn links_between_drive_and_rod_give_way_by_their_load() {
 #[test]
 fn within_its_play_a_drive_gives_nothing() {
     let keys = effect("drive-backlash", "play_m = 2e-4");
-    let mut machine = ideal(&keys, &["drive.mode=servo"]).mechanism;
-    for joint in &mut machine.prismatics {
-        assert!(matches!(joint.drive, Drive::Servo { .. }));
+    let machine = ideal(&keys, &["drive.mode=servo"]).mechanism;
+    for actuator in &machine.actuators {
+        assert!(matches!(actuator.drive, Drive::Servo { .. }));
     }
     let (machine, _) = at(&machine, 0.13);
     for (shift, free) in [(-9e-5, true), (9e-5, true), (-3e-4, false), (3e-4, false)] {
@@ -167,14 +167,14 @@ fn within_its_play_a_drive_gives_nothing() {
         let along = states[1].rotation * Vector2::new(shift, 0.0);
         states[1].position += along;
         let now = evaluate(&machine, &states);
-        let e = now.commands[0].length - now.lengths[0];
+        let e = now.commands[0].position - now.lengths[0];
         assert!((e + shift).abs() < 1e-12);
         let force = if free { 0.0 } else { 5e5 * (e - 1e-4 * e.signum()) };
         // The rates agree to rounding, so that damping has no part.
         assert!((now.drive_forces[0] - force).abs() < 1e-6, "{shift}: {}", now.drive_forces[0]);
         let read = machine.encoder(0, &now);
         let expected =
-            if free { now.commands[0].length } else { now.lengths[0] + 1e-4 * e.signum() };
+            if free { now.commands[0].position } else { now.lengths[0] + 1e-4 * e.signum() };
         assert!((read - expected).abs() < 1e-12, "{shift}");
     }
 }

@@ -26,10 +26,13 @@ fn closes(keys: &str, kind: &str, anchor: Vector2<f64>, true_length: impl Fn(f64
             let arm = Rotation2::new(pose.z) * GEOMETRY.corner(leg);
             let length_rate = d.normalize().dot(&(rate.xy() + turned(arm) * rate.z));
             let truth = |q: f64| if leg == 0 { true_length(q) } else { q };
-            let slope = (truth(command.length + 1e-6) - truth(command.length - 1e-6)) / 2e-6;
-            assert!((d.norm() - truth(command.length)).abs() < 1e-12, "{kind} at {t}, leg {leg}");
+            let slope = (truth(command.position + 1e-6) - truth(command.position - 1e-6)) / 2e-6;
+            assert!((d.norm() - truth(command.position)).abs() < 1e-12, "{kind} at {t}, leg {leg}");
             assert!((length_rate - slope * command.rate).abs() < 1e-7, "{kind} at {t}, leg {leg}");
-            assert!((mechanism.encoder(leg, &now) - command.length).abs() < 1e-12, "{kind} at {t}");
+            assert!(
+                (mechanism.encoder(leg, &now) - command.position).abs() < 1e-12,
+                "{kind} at {t}"
+            );
         }
         let moved = (pose - machine.motion.at(t).pose).norm();
         assert!(moved > 1e-5, "{kind} at {t} moves the platform by {moved:e}");
@@ -55,7 +58,7 @@ fn a_run_with_a_wrong_encoder_follows_the_true_lengths() {
         let Machine { mechanism, motion, .. } = assembled(&format!("{LIVELY}{keys}"), &[law]);
         let schedule = Schedule { duration: 0.1, interval: 0.005 };
         run(&mechanism, StepControl::Fixed(1e-5), schedule, &mut |instant: &Instant| {
-            let read = GEOMETRY.inverse(&motion.at(instant.t))[0].length;
+            let read = GEOMETRY.inverse(&motion.at(instant.t))[0].position;
             let truth = read + 3e-4 * (TAU * read / 0.02).sin();
             let length = instant.evaluation.lengths[0];
             assert!((length - truth).abs() < 1e-9, "{law} at {}: {length} {truth}", instant.t);

@@ -61,7 +61,7 @@ pub fn recorded(trial: &Trial) -> Result<(Case, Vec<Setting>), SearchError> {
         let shape = [(); 4].map(|()| uniform(&mut random));
         let pose = |i: usize| path(run, shape, i as f64 * interval);
         let length = |i: usize, leg: usize| {
-            geometry.inverse(&PathPoint { pose: pose(i), ..PathPoint::default() })[leg].length
+            geometry.inverse(&PathPoint { pose: pose(i), ..PathPoint::default() })[leg].position
         };
         let channels = Channel::all(3).into_iter().map(|channel| {
             let values = (0..samples).map(|i| match channel {

@@ -129,7 +129,7 @@ pub fn along(model: &Scenario, machine: Machine, log: &Log) -> Result<Log, Calib
 fn stage_along(model: &Scenario, log: &Log) -> Result<Vec<(Channel, Vec<f64>)>, CalibrateError> {
     let sampled = match drive(model) {
         Drive::Sampled(cascade) => Some(cascade),
-        Drive::Prescribed | Drive::Servo { .. } => None,
+        Drive::Prescribed | Drive::Servo { .. } | Drive::Effort => None,
     };
     let commands: Arc<dyn Commands> = match sampled {
         Some(_) => Arc::new(Samples::of(log)),

@@ -3,7 +3,8 @@
 use super::{Geometry, InverseKinematics, JOINTS};
 use crate::mechanism::motion::PathPoint;
 use crate::mechanism::{
-    Attachment, Bearing, Body, BodyState, Drive, Mechanism, NativeContacts, Prismatic, Revolute,
+    Actuator, Attachment, Bearing, Body, BodyState, Drive, JointIndex, Mechanism, Prismatic,
+    Revolute,
 };
 use nalgebra::{Rotation2, UnitComplex, Vector2, Vector3};
 use std::f64::consts::PI;
@@ -48,32 +49,28 @@ pub fn build(
     let states = ideal_states(&geometry, &bars, &kinematics.motion.at(0.0));
     let inertias = [bars.inertia(bars.cylinder), bars.inertia(bars.rod)];
     let mut bodies = Vec::with_capacity(7);
-    let mut prismatics = Vec::with_capacity(3);
+    let mut prismatics: Vec<Prismatic> = Vec::with_capacity(3);
+    let mut actuators = Vec::with_capacity(3);
     let half = [0.5 * bars.cylinder[0], 0.5 * bars.rod[0]];
     let at = |body, x| Attachment { body: Some(body), point: Vector2::new(x, 0.0) };
     for leg in 0..3 {
         for (part, name) in ["cylinder", "rod"].iter().enumerate() {
-            bodies.push(Body {
-                name: format!("{name} {}", leg + 1),
-                mass: inertias[part].0,
-                inertia: inertias[part].1,
-                start: states[2 * leg + part],
-                reference: Vector2::zeros(),
-            });
+            let (mass, inertia) = inertias[part];
+            let name = format!("{name} {}", leg + 1);
+            bodies.push(Body::new(&name, mass, inertia, states[2 * leg + part]));
         }
         prismatics.push(Prismatic {
             name: format!("P{}", leg + 1),
-            cylinder: at(2 * leg, -half[0]),
-            rod: at(2 * leg + 1, half[1]),
-            drive,
-            reading_errors: Vec::new(),
-            transmission: None,
+            base: at(2 * leg, -half[0]),
+            slider: at(2 * leg + 1, half[1]),
+            axes: [UnitComplex::identity(); 2],
         });
+        let joint = JointIndex::Prismatic(leg);
+        actuators.push(Actuator::new(&prismatics[leg].name, joint, drive));
     }
     let (mass, inertia) = platform;
-    let start = states[6];
-    let reference = Vector2::zeros();
-    bodies.push(Body { name: "platform".into(), mass, inertia, start, reference });
+    let angle = kinematics.motion.at(0.0).pose.z;
+    bodies.push(Body { angle, ..Body::new("platform", mass, inertia, states[6]) });
     let revolutes = joints
         .into_iter()
         .enumerate()
@@ -89,15 +86,12 @@ pub fn build(
         })
         .collect();
     Mechanism {
-        bodies,
         revolutes,
         prismatics,
+        actuators,
         commands: Arc::new(kinematics),
-        epoch: 0.0,
         gravity,
-        loads: Vec::new(),
-        native: NativeContacts::default(),
-        output: 6,
+        ..Mechanism::free(bodies)
     }
 }
 

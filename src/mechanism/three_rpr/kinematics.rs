@@ -46,7 +46,7 @@ impl Geometry {
             let length = d.norm();
             let length_rate = d.dot(&rate) / length;
             Command {
-                length,
+                position: length,
                 rate: length_rate,
                 acceleration: (rate.norm_squared() + d.dot(&acceleration)
                     - length_rate * length_rate)
@@ -134,7 +134,7 @@ mod tests {
         let point = PathPoint { pose, ..PathPoint::default() };
         let expected = [0.3782082287, 0.2927485581, 0.3317249828];
         for (command, q) in PAPER.inverse(&point).iter().zip(expected) {
-            assert!((command.length - q).abs() < 5e-11, "{} {q}", command.length);
+            assert!((command.position - q).abs() < 5e-11, "{} {q}", command.position);
         }
     }
 
@@ -147,7 +147,7 @@ mod tests {
             let at = |t: f64| PAPER.inverse(&motion.at(t));
             let (before, now, after) = (at(t - h), at(t), at(t + h));
             for leg in 0..3 {
-                let rate = (after[leg].length - before[leg].length) / (2.0 * h);
+                let rate = (after[leg].position - before[leg].position) / (2.0 * h);
                 let acceleration = (after[leg].rate - before[leg].rate) / (2.0 * h);
                 assert!((rate - now[leg].rate).abs() < 1e-8);
                 assert!((acceleration - now[leg].acceleration).abs() < 1e-6);
@@ -160,7 +160,7 @@ mod tests {
         for pose in [[0.05, 0.0, 0.52], [-0.03, 0.04, 0.9], [0.0, 0.0, 1.5]] {
             let pose = Vector3::from(pose);
             let lengths = PAPER.inverse(&PathPoint { pose, ..PathPoint::default() });
-            let lengths = lengths.map(|c| c.length);
+            let lengths = lengths.map(|c| c.position);
             let found = PAPER.forward(lengths, pose + Vector3::new(5e-3, -4e-3, 0.1));
             assert!((found.expect("converges") - pose).norm() < 1e-12);
         }

@@ -48,12 +48,12 @@ pub fn reach(geometry: &Geometry, motion: &dyn Motion, duration: f64, stroke: [f
         let point = motion.at(t);
         for (i, command) in geometry.inverse(&point).iter().enumerate() {
             let [low, high] = &mut reach.lengths[i];
-            *low = low.min(command.length);
-            *high = high.max(command.length);
+            *low = low.min(command.position);
+            *high = high.max(command.position);
             reach.fastest_leg = reach.fastest_leg.max(command.rate.abs());
-            let excess = (stroke[0] - command.length).max(command.length - stroke[1]);
+            let excess = (stroke[0] - command.position).max(command.position - stroke[1]);
             if excess > 0.0 && worst[i].is_none_or(|(e, _)| excess > e) {
-                let breach = StrokeBreach { leg: i + 1, t, length: command.length };
+                let breach = StrokeBreach { leg: i + 1, t, length: command.position };
                 worst[i] = Some((excess, breach));
             }
         }

@@ -107,7 +107,7 @@ impl Probe {
         let clearance = s.joints.iter().any(|joint| joint.clearance_m.is_some());
         // An ideal joint transmits forces, but nothing in it touches or gives way.
         let contact = |value: f64| if clearance { value } else { f64::NAN };
-        let driven = !machine.mechanism.prismatics.is_empty();
+        let driven = !machine.mechanism.actuators.is_empty();
         let drive = |value: f64| if driven { value } else { f64::NAN };
         let values = [
             s.rms_path_error_m,

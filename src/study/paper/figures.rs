@@ -51,7 +51,7 @@ fn trace(scenario: &Scenario, clearance: f64) -> Result<Vec<Signal>, PaperError>
     let mut machine = machine(scenario, clearance, 0, 1)?;
     let (mechanism, ideal) = (&machine.mechanism, &mut machine.ideal);
     let mut signals: Vec<Signal> =
-        (0..3 + mechanism.prismatics.len()).map(|_| Signal::new()).collect();
+        (0..3 + mechanism.actuators.len()).map(|_| Signal::new()).collect();
     // What a run that breaks down has shown before is drawn.
     let _ = engine::run(mechanism, machine.control, machine.schedule, &mut |instant| {
         let ideal = ideal.at(instant.t);

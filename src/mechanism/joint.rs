@@ -1,0 +1,145 @@
+//! Joints between two bodies: revolute ones with or without clearance, and prismatic ones.
+
+use super::{Attachment, BodyState};
+use crate::contact::{Clearance, OutOfRound};
+use nalgebra::{UnitComplex, Vector2};
+use std::f64::consts::TAU;
+
+/// How a revolute joint holds its two bodies together.
+#[derive(Clone, Debug)]
+pub enum Bearing {
+    /// The two centres coincide exactly.
+    Ideal,
+    /// The journal moves freely inside the ring and hits it under a force law.
+    Clearance(Clearance),
+    /// The same geometry, left to the contacts of the physics engine.
+    Native {
+        /// Inner radius of the bearing ring in m.
+        bearing_radius: f64,
+        /// Radius of the journal in m.
+        journal_radius: f64,
+        /// Coefficient of friction μ.
+        friction: f64,
+    },
+}
+
+/// How the physics engine's own contacts behave, in all joints that are left to them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NativeContacts {
+    /// Share of its normal speed that a journal keeps when it hits after a flight.
+    pub restitution: f64,
+    /// Natural frequency f of a lasting contact in Hz: it gives way like a spring of `m (2πf)²`,
+    /// m the mass that the two bodies oppose to it.
+    pub frequency: f64,
+    /// Damping ratio of that spring.
+    pub damping_ratio: f64,
+    /// Sweeps of the solver over all joints and contacts in each step.
+    pub iterations: usize,
+    /// Whether a journal that would arrive within the step is stopped at the ring at once, whatever
+    /// the spring. The physics engine's way; the force of such a stop is `m v/dt`.
+    pub predictive: bool,
+}
+
+impl Default for NativeContacts {
+    /// As the physics engine has them for its moving bodies.
+    fn default() -> Self {
+        Self {
+            restitution: 0.0,
+            frequency: 30.0,
+            damping_ratio: 10.0,
+            iterations: 1,
+            predictive: true,
+        }
+    }
+}
+
+/// A revolute joint: a bearing ring on one body, a journal on another. Its coordinate is the angle of
+/// the journal's body less that of the ring's.
+#[derive(Clone, Debug)]
+pub struct Revolute {
+    /// Name, such as `A1`.
+    pub name: String,
+    /// Centre of the bearing ring.
+    pub ring: Attachment,
+    /// Centre of the journal.
+    pub journal: Attachment,
+    /// What the joint does.
+    pub bearing: Bearing,
+    /// How its ring departs from a circle, if it does; [`Bearing::Clearance`] alone looks at it.
+    pub out_of_round: Option<OutOfRound>,
+}
+
+/// A prismatic joint: a slider that moves along an axis of its base, both keeping the angle between
+/// them. Its coordinate is the distance along the axis from the base's attachment point to the
+/// slider's.
+#[derive(Clone, Debug)]
+pub struct Prismatic {
+    /// Name, such as `P1`.
+    pub name: String,
+    /// The body that carries the axis, and the point from which the length counts.
+    pub base: Attachment,
+    /// The body that slides, and the point to which the length counts.
+    pub slider: Attachment,
+    /// Direction of the axis in the axes of the base's body and of the slider's body. The two directions
+    /// coincide in the world: that is the angle that the joint keeps.
+    pub axes: [UnitComplex<f64>; 2],
+}
+
+impl Prismatic {
+    /// The two bodies; the ground has none.
+    pub fn bodies(&self) -> [Option<usize>; 2] {
+        [self.base.body, self.slider.body]
+    }
+
+    /// Attachment points of base and slider from their centres of mass, along and across the axis, in m.
+    pub fn points(&self) -> [Vector2<f64>; 2] {
+        [self.axes[0].inverse() * self.base.point, self.axes[1].inverse() * self.slider.point]
+    }
+}
+
+/// A joint by its place among those of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointIndex {
+    /// Among [`Mechanism::revolutes`](super::Mechanism::revolutes).
+    Revolute(usize),
+    /// Among [`Mechanism::prismatics`](super::Mechanism::prismatics).
+    Prismatic(usize),
+}
+
+impl Revolute {
+    /// The two bodies, the ring's first; the ground has none.
+    pub fn bodies(&self) -> [Option<usize>; 2] {
+        [self.ring.body, self.journal.body]
+    }
+
+    /// Rotation of the journal's body against the ring's.
+    pub fn rotation(&self, states: &[BodyState]) -> UnitComplex<f64> {
+        self.ring.rotation(states).rotation_to(&self.journal.rotation(states))
+    }
+
+    /// Angular velocity of the journal's body less that of the ring's in rad/s.
+    pub fn spin(&self, states: &[BodyState]) -> f64 {
+        self.journal.spin(states) - self.ring.spin(states)
+    }
+}
+
+/// The angle in rad nearest to `near` among those of a rotation, which differ by whole turns.
+pub fn angle_near(rotation: UnitComplex<f64>, near: f64) -> f64 {
+    let angle = rotation.angle();
+    angle + TAU * ((near - angle) / TAU).round()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn angles_go_on_past_half_a_turn() {
+        for (angle, near, expected) in
+            [(-3.0, 3.0, TAU - 3.0), (3.0, -3.0, 3.0 - TAU), (0.1, 4.0 * PI, 4.0 * PI + 0.1)]
+        {
+            assert!((angle_near(UnitComplex::new(angle), near) - expected).abs() < 1e-14);
+        }
+    }
+}
