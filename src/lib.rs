@@ -15,6 +15,7 @@
 //! | [`effects`] | what may act on a machine undeclared: payloads, friction, worn joints, late servos |
 //! | [`engine`] | the only room that knows rapier: ring shape, contact hook, stepping |
 //! | [`scenario`] | the TOML file, validated |
+//! | [`model`] | scenario → bodies, joints, drives → a machine put together |
 //! | [`simulate`] | scenario → mechanism → samples and summary |
 //! | [`identify`] | parameters of one joint from a recording of it alone |
 //! | [`report`] | pictures and the page, from plain data |
@@ -32,6 +33,7 @@ pub mod engine;
 pub mod identify;
 pub mod measure;
 pub mod mechanism;
+pub mod model;
 pub mod report;
 pub mod scenario;
 pub mod simulate;

@@ -1,7 +1,7 @@
 //! The text of `freeplay check`.
 
 use crate::report::{length, number};
-use crate::scenario::{DriveMode, Law};
+use crate::scenario::Law;
 use crate::study::CheckedMachine;
 use std::fmt::Write as _;
 
@@ -43,6 +43,35 @@ fn machine(text: &mut Text, m: &CheckedMachine) {
     }
 }
 
+/// What drives and loops of a machine other than the 3-RPR go through.
+fn path(text: &mut Text, m: &CheckedMachine) {
+    text.line("\nMotion");
+    let f = &m.freedoms;
+    let mut value = format!("{} (Grübler counts {}), {} driven", f.free, f.counted, f.driven);
+    if !f.loose.is_empty() {
+        let _ = write!(value, "; left to forces: {}", f.loose.join(", "));
+    }
+    text.entry("freedoms", &value);
+    if !f.redundant.is_empty() {
+        text.entry("redundant joints", &f.redundant.join(", "));
+    }
+    for of in &m.loops {
+        let sense = if of.area_m2 > 0.0 { "counterclockwise" } else { "clockwise" };
+        let value = format!("{sense}, {:.4} m²; mirrored is the other branch", of.area_m2.abs());
+        text.entry(&format!("loop {}", of.joints.join("-")), &value);
+    }
+    for drive in &m.drives {
+        let (Some([low, high]), Some(fastest)) = (drive.used, drive.fastest) else { continue };
+        let unit = drive.unit;
+        let mut value = format!("{low:.4} to {high:.4} {unit}, up to {} {unit}/s", number(fastest));
+        if let Some(share) = drive.share_of_fastest_point {
+            let _ =
+                write!(value, "; the machine moves up to {} times as fast", number(1.0 / share));
+        }
+        text.entry(&format!("drive {}", drive.joint), &value);
+    }
+}
+
 /// The travel of the legs of a machine that has some.
 fn motion(text: &mut Text, m: &CheckedMachine) {
     let (Some(fastest), Some(distance), Some(t), Some(circumradius)) = (
@@ -51,6 +80,7 @@ fn motion(text: &mut Text, m: &CheckedMachine) {
         m.singularity_time_s,
         m.platform_circumradius_m,
     ) else {
+        path(text, m);
         return;
     };
     text.line("\nMotion");
@@ -108,24 +138,32 @@ fn joints(text: &mut Text, m: &CheckedMachine) {
 
 fn drives(text: &mut Text, m: &CheckedMachine) {
     text.line("\nDrives");
+    let (force, stiffnesses) = match m.drives.first().map(|drive| drive.unit) {
+        Some("rad") => ("N m", "N m/rad and {} N m s/rad"),
+        _ => ("N", "N/m and {} N s/m"),
+    };
     let kind = match (m.drive, m.servo_stiffness, m.servo_damping) {
-        (DriveMode::Servo, Some(stiffness), Some(damping)) => {
-            format!("servo, {} N/m and {} N s/m", number(stiffness), number(damping))
+        ("none", ..) => "none".to_owned(),
+        ("servo", Some(stiffness), Some(damping)) => {
+            let units = stiffnesses.replace("{}", &number(damping));
+            format!("servo, {} {units}", number(stiffness))
         }
-        (DriveMode::Sampled, ..) => "sampled controller".to_owned(),
-        _ => "prescribed: lengths follow the command exactly".to_owned(),
+        ("sampled", ..) => "sampled controller".to_owned(),
+        ("prescribed", ..) => "prescribed: joints follow the command exactly".to_owned(),
+        (other, ..) => other.to_owned(),
     };
     text.entry("kind", &kind);
     match &m.ideal {
         Some(ideal) => {
             text.line("  without clearance the motion takes");
-            for (i, [low, high]) in (1..).zip(&ideal.actuator_forces) {
-                let value = format!("{} to {} N", number(*low), number(*high));
-                text.entry(&format!("  actuator {i}"), &value);
+            for (drive, [low, high]) in m.drives.iter().zip(&ideal.actuator_forces) {
+                let value = format!("{} to {} {force}", number(*low), number(*high));
+                text.entry(&format!("  drive {}", drive.joint), &value);
             }
             let peak = format!("up to {} m/s²", number(ideal.peak_platform_acceleration_m_s2));
             text.entry("  acceleration", &peak);
         }
+        None if m.drives.is_empty() || !m.freedoms.loose.is_empty() => {}
         None => text.line("  at a singularity no finite forces carry the motion"),
     }
 }

@@ -64,7 +64,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let options = Options { steps, starts: arguments.starts.into() };
     let mut scenario = arguments.scenario.load()?;
     scenario.contact.law = Law::HertzStep;
-    refuse_errors(findings(&scenario, &assemble(&scenario)?))?;
+    refuse_errors(findings(&scenario, &mut assemble(&scenario)?))?;
     let simulated = simulated_time(&scenario, &options)?;
     let folder = arguments.folder.prepare("compare", &scenario.name, COMPARE_FILE)?;
 

@@ -10,6 +10,7 @@ mod check_text;
 mod compare;
 mod completions;
 mod effects;
+mod expand;
 mod failure;
 mod merge;
 mod options;
@@ -47,6 +48,7 @@ Examples:
   freeplay check my-machine.toml                what can be said without simulating
   freeplay sweep --vary joints.clearance=1e-8..1e-3:log:100     many clearances, one table
   freeplay calibrate --rig rig.toml --data run.csv   what a declared model lacks, by measured data
+  freeplay expand                               the same machine, body by body, to be changed
   freeplay effects payload                      what a scenario can add to a machine
 
 Exit codes: 0 done, 2 wrong input, 1 anything else.";
@@ -63,6 +65,7 @@ enum Command {
     Sweep(sweep::Arguments),
     Merge(merge::Arguments),
     Effects(effects::Arguments),
+    Expand(expand::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -79,6 +82,7 @@ pub fn main() -> ExitCode {
         Command::Sweep(arguments) => sweep::main(&arguments),
         Command::Merge(arguments) => merge::main(&arguments),
         Command::Effects(arguments) => effects::main(&arguments),
+        Command::Expand(arguments) => expand::main(&arguments),
         Command::Completions(arguments) => completions::main(&arguments),
     };
     match done {

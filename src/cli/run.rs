@@ -45,7 +45,7 @@ Examples:
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.load()?;
     let mut machine = assemble(&scenario)?;
-    refuse_errors(findings(&scenario, &machine))?;
+    refuse_errors(findings(&scenario, &mut machine))?;
     let folder = arguments.folder.prepare("run", &scenario.name, SUMMARY_FILE)?;
 
     let mut progress = Progress::new(scenario.simulation.duration, arguments.print.quiet);

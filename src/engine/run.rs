@@ -4,7 +4,9 @@ use super::adaptive::Adaptive;
 use super::fixed::Fixed;
 use super::native::Native;
 use crate::contact::Contact;
-use crate::mechanism::{Actuator, Bearing, BodyState, Drive, Evaluation, Mechanism};
+use crate::mechanism::{
+    Actuator, Bearing, BodyState, Drive, Evaluation, JointIndex, Mechanism, angle_near,
+};
 use std::ops::ControlFlow;
 
 /// How the time step is chosen.
@@ -65,8 +67,10 @@ pub struct Tally {
 pub struct Peaks {
     /// Of the output body's acceleration |(a_x, a_y)| in m/s².
     pub acceleration: f64,
-    /// Of a drive force |F| in N.
+    /// Of the force |F| of a drive of a prismatic joint in N.
     pub drive_force: f64,
+    /// Of the torque of a drive of a revolute joint in N·m.
+    pub drive_torque: f64,
 }
 
 /// Everything that is known at one instant. States, accelerations and forces belong together:
@@ -77,6 +81,8 @@ pub struct Instant<'a> {
     pub t: f64,
     /// State of each body.
     pub states: &'a [BodyState],
+    /// Angle of each body in rad, whole turns counted since the start.
+    pub angles: &'a [f64],
     /// Forces, accelerations, contacts, commands.
     pub evaluation: &'a Evaluation,
     /// One per revolute joint.
@@ -233,9 +239,9 @@ fn drive(
                 work.step_error = Some(work.step_error.map_or(error, |worst| worst.max(error)));
             }
         }
-        let Watch { tallies, peaks, .. } = &watch;
+        let Watch { tallies, peaks, angles, .. } = &watch;
         let (states, evaluation) = (stepper.states(), stepper.evaluation());
-        let instant = Instant { t, states, evaluation, tallies, peaks: *peaks };
+        let instant = Instant { t, states, angles, evaluation, tallies, peaks: *peaks };
         if observe(&instant).is_break() {
             break;
         }
@@ -290,6 +296,8 @@ impl Clock {
 struct Watch {
     tallies: Vec<Tally>,
     peaks: Peaks,
+    /// Angle of each body in rad, whole turns counted.
+    angles: Vec<f64>,
     /// Contacts at the instant before, and the time in s since then.
     before: Vec<Contact>,
     dt: f64,
@@ -301,6 +309,7 @@ impl Watch {
         Self {
             tallies: vec![Tally::default(); joints],
             peaks: Peaks::default(),
+            angles: mechanism.bodies.iter().map(|body| body.angle).collect(),
             before: vec![Contact::default(); joints],
             dt: 0.0,
         }
@@ -335,8 +344,15 @@ impl Watch {
         }
         let acceleration = mechanism.output_acceleration(states, &now.accelerations).xy().norm();
         self.peaks.acceleration = self.peaks.acceleration.max(acceleration);
-        for force in &now.drive_forces {
-            self.peaks.drive_force = self.peaks.drive_force.max(force.abs());
+        for (actuator, effort) in mechanism.actuators.iter().zip(&now.drive_forces) {
+            let peak = match actuator.joint {
+                JointIndex::Prismatic(_) => &mut self.peaks.drive_force,
+                JointIndex::Revolute(_) => &mut self.peaks.drive_torque,
+            };
+            *peak = peak.max(effort.abs());
+        }
+        for (angle, state) in self.angles.iter_mut().zip(states) {
+            *angle = angle_near(state.rotation, *angle);
         }
     }
 

@@ -1,8 +1,7 @@
 //! Cubic splines through samples.
 
-/// A cubic spline with continuous first and second derivatives, natural at its ends (second
-/// derivative zero), constant outside. Equations: de Boor, *A Practical Guide to Splines*, ch. IV,
-/// with the second derivatives as unknowns.
+/// A cubic spline with continuous first and second derivatives, constant outside. Equations: de Boor,
+/// *A Practical Guide to Splines*, ch. IV, with the second derivatives as unknowns.
 #[derive(Clone, Debug)]
 pub struct CubicSpline {
     t: Vec<f64>,
@@ -11,7 +10,47 @@ pub struct CubicSpline {
 }
 
 impl CubicSpline {
-    /// The spline through (`t`, `value`), `t` strictly increasing, both of the same length ≥ 2.
+    /// The spline through (`t`, `value`), `t` strictly increasing, both of the same length ≥ 4, whose third
+    /// derivative is continuous at the second and the last but one sample ("not a knot"): accurate to the
+    /// fourth order up to its ends, whatever the second derivative is there.
+    pub fn not_a_knot(t: &[f64], value: &[f64]) -> Self {
+        let n = t.len();
+        if n < 4 {
+            return Self::natural(t, value);
+        }
+        let h = |i: usize| t[i + 1] - t[i];
+        let mut curvature = vec![0.0; n];
+        let mut upper = vec![0.0; n];
+        for i in 1..n - 1 {
+            let (before, after) = (h(i - 1), h(i));
+            let slopes = (value[i + 1] - value[i]) / after - (value[i] - value[i - 1]) / before;
+            // The end's second derivative in terms of the next two: y₀″ = (1 + r) y₁″ − r y₂″.
+            let (mut lower, mut middle, mut above) = (before, 2.0 * (before + after), after);
+            if i == 1 {
+                let ratio = before / after;
+                (lower, middle, above) =
+                    (0.0, middle + before * (1.0 + ratio), above - before * ratio);
+            }
+            if i == n - 2 {
+                let ratio = after / before;
+                (lower, middle, above) =
+                    (lower - after * ratio, middle + after * (1.0 + ratio), 0.0);
+            }
+            let pivot = middle - lower * upper[i - 1];
+            upper[i] = above / pivot;
+            curvature[i] = (6.0 * slopes - lower * curvature[i - 1]) / pivot;
+        }
+        for i in (1..n - 2).rev() {
+            curvature[i] -= upper[i] * curvature[i + 1];
+        }
+        let end = |h0: f64, h1: f64, c1: f64, c2: f64| c1 + (c1 - c2) * (h0 / h1);
+        curvature[0] = end(h(0), h(1), curvature[1], curvature[2]);
+        curvature[n - 1] = end(h(n - 2), h(n - 3), curvature[n - 2], curvature[n - 3]);
+        Self { t: t.to_vec(), value: value.to_vec(), curvature }
+    }
+
+    /// The spline through (`t`, `value`), `t` strictly increasing, both of the same length ≥ 2, whose second
+    /// derivative is zero at both ends.
     pub fn natural(t: &[f64], value: &[f64]) -> Self {
         let n = t.len();
         let mut curvature = vec![0.0; n];
@@ -67,6 +106,19 @@ impl CubicSpline {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_cubic_is_reproduced_up_to_its_ends() {
+        let t = [0.0, 0.1, 0.25, 0.4, 0.7, 1.0];
+        let cubic = |t: f64| 1.0 + 2.0 * t - 3.0 * t * t + 4.0 * t * t * t;
+        let spline = CubicSpline::not_a_knot(&t, &t.map(cubic));
+        for at in [0.0, 0.03, 0.5, 0.99, 1.0] {
+            let [value, rate, second] = spline.at(at);
+            assert!((value - cubic(at)).abs() < 1e-14);
+            assert!((rate - (2.0 - 6.0 * at + 12.0 * at * at)).abs() < 1e-12);
+            assert!((second - (-6.0 + 24.0 * at)).abs() < 1e-10);
+        }
+    }
 
     #[test]
     fn follows_a_sine_to_fourth_order() {

@@ -1,8 +1,8 @@
 //! Putting a mechanism together: states in which every joint is closed.
 
 use super::rows::{Row, angle_row, prismatic_rows, revolute_rows};
-use super::{BodyState, Command, Drive, JointIndex, Mechanism, angle_near};
-use nalgebra::{DMatrix, DVector, UnitComplex, Vector3};
+use super::{Bearing, BodyState, Command, Drive, JointIndex, Mechanism, angle_near};
+use nalgebra::{DMatrix, DVector, UnitComplex, Vector2, Vector3};
 
 /// Gaps in m and rad below which a joint is closed: rounding on a machine of a metre.
 const CLOSED: f64 = 1e-13;
@@ -19,9 +19,73 @@ pub(super) struct Closure {
     pub joints: Vec<JointIndex>,
 }
 
+/// A joint that cannot be closed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenJoint {
+    /// The joint.
+    pub joint: JointIndex,
+    /// How far it stays open, in m (rad).
+    pub gap: f64,
+}
+
 impl Mechanism {
+    /// Puts the mechanism together from guessed starts, driven joints at their coordinates `t` s after the
+    /// start: least squares on the joints' gaps, damped so that no step leaves the branch that the guess is
+    /// nearest to (Levenberg–Marquardt), then [`close`](Self::close).
+    ///
+    /// # Errors
+    /// If the joints cannot be closed from here: the one that stays open the farthest.
+    pub fn assemble(&mut self, t: f64) -> Result<(), OpenJoint> {
+        let mut commands = vec![Command::default(); self.actuators.len()];
+        self.true_commands(t, &mut commands);
+        let size = self.size();
+        let mut states: Vec<BodyState> = self.bodies.iter().map(|b| b.start).collect();
+        let mut closure = self.closure(&states, &commands);
+        let mut damping = 1e-3;
+        for _ in 0..500 {
+            if closure.gaps.is_empty() || closure.gaps.amax() < 1e-9 * size {
+                break;
+            }
+            let Some(shift) = closure.damped_step(states.len(), size, damping) else { break };
+            // A step of a radian, or of the whole machine, means nothing: damp it.
+            let far = shift.amax() > 0.5 * size;
+            let moved: Vec<BodyState> = states
+                .iter()
+                .enumerate()
+                .map(|(i, state)| BodyState {
+                    position: state.position + shift.fixed_rows::<2>(3 * i),
+                    rotation: state.rotation * UnitComplex::new(shift[3 * i + 2] / size),
+                    ..*state
+                })
+                .collect();
+            let next = self.closure(&moved, &commands);
+            if !far && next.gaps.norm() < closure.gaps.norm() {
+                (states, closure) = (moved, next);
+                damping = (damping * 0.3).max(1e-12);
+            } else if damping > 1e8 {
+                break;
+            } else {
+                damping *= 4.0;
+            }
+        }
+        for (body, state) in self.bodies.iter_mut().zip(&states) {
+            body.angle = angle_near(state.rotation, body.angle);
+            body.start = *state;
+        }
+        self.close(t).map_err(|_| {
+            let worst = (0..closure.gaps.len())
+                .max_by(|&a, &b| closure.gaps[a].abs().total_cmp(&closure.gaps[b].abs()));
+            let joint = worst.map_or(JointIndex::Revolute(0), |row| closure.joints[row]);
+            let rows = (0..closure.gaps.len())
+                .filter(|&row| closure.joints[row] == joint && closure.driven[row].is_none());
+            let gap = rows.fold(0.0, |gap: f64, row| gap.hypot(closure.gaps[row]));
+            OpenJoint { joint, gap: if gap > 0.0 { gap } else { closure.gaps.amax() } }
+        })
+    }
+
     /// Moves the bodies' starts as little as it takes to centre every journal and to give every driven
-    /// joint the coordinate and rate that it is commanded `t` s after the start; where nothing holds
+    /// joint the coordinate and rate that it is commanded `t` s after the start (the rate of a joint that is
+    /// not prescribed: just before, as a table that begins there rests till then); where nothing holds
     /// a body, it keeps its motion. Newton's method on the joints' gaps, each correction the
     /// smallest that closes the linearised ones.
     ///
@@ -51,6 +115,14 @@ impl Mechanism {
         if remains.is_nan() || remains > 1e-12 {
             return Err(remains);
         }
+        // A drive that only pulls cannot have started the machine: it moves as commanded just before.
+        let mut before = commands.clone();
+        self.true_commands(t - f64::MIN_POSITIVE, &mut before);
+        for ((command, before), actuator) in commands.iter_mut().zip(before).zip(&self.actuators) {
+            if actuator.drive != Drive::Prescribed {
+                command.rate = before.rate;
+            }
+        }
         let closure = self.closure(&states, &commands);
         let twists: Vec<Vector3<f64>> = states.iter().map(|state| state.twist).collect();
         let rates = closure.missing_rates(&twists, &commands);
@@ -60,6 +132,41 @@ impl Mechanism {
             body.angle = angle_near(state.rotation, body.angle);
         }
         Ok(())
+    }
+
+    /// The same mechanism with the start of its output body displaced by `shift` (m), as far as rigid joints and
+    /// prescribed drives let it: bodies move together, by as little as that takes.
+    pub fn displaced(&self, shift: Vector2<f64>) -> Self {
+        let states: Vec<BodyState> = self.bodies.iter().map(|b| b.start).collect();
+        let closure = self.closure(&states, &vec![Command::default(); self.actuators.len()]);
+        let rigid = |i: usize| match (closure.driven[i], closure.joints[i]) {
+            (Some(drive), _) => self.actuators[drive].drive == Drive::Prescribed,
+            (None, JointIndex::Prismatic(_)) => true,
+            (None, JointIndex::Revolute(i)) => matches!(self.revolutes[i].bearing, Bearing::Ideal),
+        };
+        let rows: Vec<Row> =
+            (0..closure.rows.len()).filter(|&i| rigid(i)).map(|i| closure.rows[i]).collect();
+        let held = |row: &Row| row.bodies.contains(&Some(self.output));
+        let mut displaced = self.clone();
+        if !rows.iter().any(held) {
+            displaced.bodies[self.output].start.position += shift;
+            return displaced;
+        }
+        // What is left of the displacement where the rows stay as they are, at its full size.
+        let mut motion = DVector::zeros(3 * states.len());
+        motion.fixed_rows_mut::<2>(3 * self.output).copy_from(&shift);
+        let change = -(matrix(&rows, states.len()) * &motion);
+        let Some(correction) = smallest(&rows, states.len(), change) else { return displaced };
+        motion += correction;
+        if motion.norm() < 1e-3 * shift.norm() {
+            return displaced;
+        }
+        motion *= shift.norm() / motion.norm();
+        for (i, body) in displaced.bodies.iter_mut().enumerate() {
+            body.start.position += motion.fixed_rows::<2>(3 * i);
+            body.start.rotation *= UnitComplex::new(motion[3 * i + 2]);
+        }
+        displaced
     }
 
     /// Rows of all joints at the given states: prismatic ones, revolute ones, driven angles.
@@ -108,6 +215,23 @@ impl Mechanism {
 }
 
 impl Closure {
+    /// The step of least squares on the gaps, damped: `−Jᵀ (J Jᵀ + λ)⁻¹ g`, angles as arcs at `size` m.
+    fn damped_step(&self, bodies: usize, size: f64, damping: f64) -> Option<DVector<f64>> {
+        let mut jacobian = matrix(&self.rows, bodies);
+        for i in 0..bodies {
+            jacobian.column_mut(3 * i + 2).scale_mut(1.0 / size);
+        }
+        let mut gram = &jacobian * jacobian.transpose();
+        for i in 0..gram.nrows() {
+            gram[(i, i)] += damping;
+        }
+        if gram.iter().chain(self.gaps.iter()).any(|x| !x.is_finite()) {
+            return None;
+        }
+        let multipliers = gram.cholesky()?.solve(&-&self.gaps);
+        Some(jacobian.transpose() * multipliers)
+    }
+
     fn push<const N: usize>(&mut self, joint: JointIndex, drive: Option<usize>, rows: [Row; N]) {
         self.rows.extend(rows);
         self.driven.extend([drive; N]);

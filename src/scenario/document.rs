@@ -65,6 +65,8 @@ impl Document {
             )
         })?;
 
+        let keys = self.by_place(&keys);
+        let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
         let path = keys.join(".");
         if let Some(section) = path.strip_suffix(".kind") {
             self.forget_other_kind(section, &value);
@@ -86,6 +88,28 @@ impl Document {
         *node = value;
         self.origins.replace(&path);
         Ok(())
+    }
+
+    /// The same path with places in lists for the names of their elements: `joint.A.clearance` is
+    /// `joint.2.clearance`.
+    fn by_place(&self, keys: &[&str]) -> Vec<String> {
+        let mut node = self.table.get(keys[0]);
+        let mut path = vec![keys[0].to_owned()];
+        for key in &keys[1..] {
+            let place = match node {
+                Some(Value::Array(elements)) => named(elements, key),
+                _ => None,
+            };
+            path.push(place.map_or_else(|| (*key).to_owned(), |place| place.to_string()));
+            node = match node {
+                Some(Value::Array(elements)) => {
+                    path.last().and_then(|key| elements.get(key.parse::<usize>().ok()?))
+                }
+                Some(Value::Table(table)) => table.get(*key),
+                _ => None,
+            };
+        }
+        path
     }
 
     fn forget_other_kind(&mut self, section: &str, new_kind: &Value) {
@@ -134,6 +158,11 @@ impl Origins {
                 None => return self.in_file(None),
             }
         }
+    }
+
+    /// Whether something was written at `path`.
+    pub(super) fn has(&self, path: &str) -> bool {
+        self.places.contains_key(path)
     }
 
     fn in_file(&self, line: Option<u32>) -> Location {
@@ -209,6 +238,15 @@ fn child<'a>(node: &'a mut Value, key: &str, rest: &[&str]) -> Result<&'a mut Va
         }
         other => Err(format!("is one {}, neither section nor list", other.type_str())),
     }
+}
+
+/// The element of a list of sections that is called `name`, or is about the joint of that name.
+fn named(elements: &[Value], name: &str) -> Option<usize> {
+    let calls = |element: &Value| {
+        let key = |key| element.get(key).and_then(Value::as_str);
+        key("name").or_else(|| key("joint")).or_else(|| key("column")) == Some(name)
+    };
+    elements.iter().position(calls)
 }
 
 /// A bare word is a string; what begins like a list, a table or a quoted string must be one.

@@ -10,23 +10,24 @@
 
 mod document;
 mod problem;
+mod read;
 mod reader;
 mod sections;
 #[cfg(test)]
 mod tests;
 mod validate;
+mod validate_described;
+mod write;
 
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 pub use problem::{Location, Problem, Problems};
 pub use sections::*;
 
-use crate::effects::{Setting, Wrong};
+use crate::effects::Setting;
 use document::{Document, Origins};
-use reader::Reader;
 
 /// The text of the scenario that is used when no file is given.
 pub const DEFAULT_TOML: &str = include_str!("../../assets/default.toml");
@@ -37,6 +38,9 @@ const DEFAULT_SOURCE: &str = "built-in default";
 /// Fixed step of the physics engine's own contacts where none is given, s: short against the time
 /// that journals of the paper's machine take from hit to hit.
 const NATIVE_STEP: f64 = 1e-5;
+
+/// Clearance in m of machines with a kind where none is given: the paper's.
+const PAPER_CLEARANCE: f64 = 5e-4;
 
 /// The text of a scenario, read once: however many variants are made of it, all are made of the same.
 #[derive(Debug, Clone)]
@@ -78,14 +82,14 @@ impl Source {
 }
 
 /// A validated scenario: what the file and the overrides say, the rest filled with defaults.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct Scenario {
     /// What the results are called. Default "default".
     pub name: String,
     /// Seed of all random numbers, 0 to 2⁶³ − 1 (the range of TOML). Default 1: any would do, as
     /// long as it is the same each time.
     pub seed: u64,
-    /// `[mechanism]`
+    /// `[mechanism]`, or the sections that describe one.
     pub mechanism: Mechanism,
     /// `[legs]`
     pub legs: Legs,
@@ -95,27 +99,26 @@ pub struct Scenario {
     pub contact: Contact,
     /// `[native]`
     pub native: Native,
-    /// `[drive]`
+    /// `[drive]`: all drives, or those that a described machine's `[[drive]]`s leave out.
     pub drive: Drive,
     /// `[environment]`
     pub environment: Environment,
     /// `[sensors]`; absent unless a rig declares its instruments.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub sensors: Option<Sensors>,
     /// `[columns]`; absent unless a rig says what its logs' columns are.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub columns: Option<Columns>,
     /// `[motion]`
     pub motion: Motion,
+    /// What a described machine's `[motion]` moves.
+    pub target: Option<Target>,
     /// `[simulation]`
     pub simulation: Simulation,
     /// `[[effect]]`, any number of them: what acts on the machine beside what is declared above.
-    #[serde(rename = "effect", skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<Setting>,
-    #[serde(skip)]
     folder: PathBuf,
-    #[serde(skip)]
     origins: Origins,
+    /// Sections that are there and mean nothing to this machine.
+    unused: Vec<&'static str>,
 }
 
 impl Scenario {
@@ -140,7 +143,7 @@ impl Scenario {
         if !refused.is_empty() {
             return Err(Problems(refused));
         }
-        let scenario = read(document)?;
+        let scenario = read::scenario(document)?;
         scenario.validate()?;
         Ok(scenario)
     }
@@ -161,6 +164,37 @@ impl Scenario {
         }
     }
 
+    /// Whether the text gives a section as a list.
+    pub(crate) fn is_list(&self, section: &str) -> bool {
+        self.origins.has(&format!("{section}.0"))
+    }
+
+    /// The names of all files that the scenario refers to.
+    pub fn files(&self) -> Vec<String> {
+        self.clone().files_mut().into_iter().map(|file| file.clone()).collect()
+    }
+
+    fn files_mut(&mut self) -> Vec<&mut String> {
+        let mut files: Vec<&mut String> = Vec::new();
+        match &mut self.motion {
+            Motion::Table(table) => files.push(&mut table.file),
+            Motion::Joints(joints) => {
+                files.extend(joints.iter_mut().filter_map(|joint| match &mut joint.path {
+                    JointPath::Table(table) => Some(&mut table.file),
+                    _ => None,
+                }));
+            }
+            _ => {}
+        }
+        if let Mechanism::Described(described) = &mut self.mechanism {
+            files.extend(described.drives.iter_mut().filter_map(|drive| match drive {
+                JointDrive::Force(force) => force.file.as_mut(),
+                _ => None,
+            }));
+        }
+        files
+    }
+
     /// A complaint about the key `path` that says where the key was written.
     pub fn problem(
         &self,
@@ -176,150 +210,45 @@ impl Scenario {
         }
     }
 
+    /// Radial clearance in m of revolute joint `index` of a machine with a kind: as given, or that of the
+    /// paper's machine.
+    pub fn clearance(&self, index: usize) -> f64 {
+        self.joints.clearance.as_ref().map_or(PAPER_CLEARANCE, |values| values.at(index))
+    }
+
+    /// The same scenario about a machine that describes itself.
+    pub fn with_described(
+        &self,
+        described: Described,
+        motion: Motion,
+        target: Option<Target>,
+    ) -> Scenario {
+        let mechanism = Mechanism::Described(Box::new(described));
+        Scenario { mechanism, motion, target, ..self.clone() }
+    }
+
+    /// What is there and has no meaning for this machine.
+    pub fn unused(&self) -> Vec<Problem> {
+        let unused = |section: &&str| {
+            self.problem(
+                section,
+                "is not used: it means nothing to this machine",
+                "take it out, or see `freeplay expand` for the sections of this machine",
+            )
+        };
+        self.unused.iter().map(unused).collect()
+    }
+
     /// The scenario as TOML with every default filled in. It loads back to the same scenario from
     /// any folder, and two files that say the same give the same text. Left out is only what has
     /// no value: `[sensors]` that are not there, and `contact.stiffness` when it follows from E,
     /// ν and the radii.
     pub fn to_toml(&self) -> String {
-        let mut full = self.clone();
-        if let Mechanism::ThreeRpr(machine) = &mut full.mechanism {
-            machine.platform_inertia = Some(machine.platform_inertia());
-        }
-        if self.drive.mode == DriveMode::Sampled {
-            full.drive.sampled = Some(self.drive.sampled());
-        }
-        full.simulation.settle = Some(full.simulation.settle());
-        full.simulation.set_step_control(self.step_control());
-        full.effects = self.effects.iter().map(Setting::filled).collect();
-        if let Motion::Table(table) = &mut full.motion {
-            let file = self.resolve(&table.file);
-            let file = std::path::absolute(&file).unwrap_or(file);
-            table.file = file.to_string_lossy().into_owned();
-        }
-        // No input makes this fail: no field has a type that TOML cannot express.
-        toml::to_string(&full).expect("tables, lists, numbers and words are TOML")
+        write::text(self)
     }
 
     /// SHA-256 of [`Scenario::to_toml`] in hexadecimal: the same for files that mean the same.
     pub fn hash(&self) -> String {
         Sha256::digest(self.to_toml()).iter().map(|byte| format!("{byte:02x}")).collect()
-    }
-}
-
-/// The sections of a file before each is read by itself.
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct TopLevel {
-    name: String,
-    seed: u64,
-    mechanism: toml::Table,
-    legs: toml::Table,
-    joints: toml::Table,
-    contact: toml::Table,
-    native: toml::Table,
-    drive: toml::Table,
-    environment: toml::Table,
-    sensors: Option<toml::Table>,
-    columns: Option<toml::Table>,
-    motion: toml::Table,
-    simulation: toml::Table,
-    effect: Vec<toml::Table>,
-}
-
-impl Default for TopLevel {
-    fn default() -> Self {
-        TopLevel {
-            name: "default".to_owned(),
-            seed: 1,
-            mechanism: toml::Table::new(),
-            legs: toml::Table::new(),
-            joints: toml::Table::new(),
-            contact: toml::Table::new(),
-            native: toml::Table::new(),
-            drive: toml::Table::new(),
-            environment: toml::Table::new(),
-            sensors: None,
-            columns: None,
-            motion: toml::Table::new(),
-            simulation: toml::Table::new(),
-            effect: Vec::new(),
-        }
-    }
-}
-
-/// Gives the document its meaning: keys and types, not yet the sense of the values.
-fn read(document: Document) -> Result<Scenario, Problems> {
-    let mut reader = Reader::new(&document.origins);
-    for (path, number) in document.not_finite() {
-        reader.complain(&path, format!("is {number}"), "expected a finite number".to_owned());
-    }
-    let top: TopLevel = reader.read("", document.table);
-    let scenario = Scenario {
-        name: top.name,
-        seed: top.seed,
-        mechanism: read_mechanism(&mut reader, top.mechanism),
-        legs: reader.read("legs", top.legs),
-        joints: reader.read("joints", top.joints),
-        contact: reader.read("contact", top.contact),
-        native: reader.read("native", top.native),
-        drive: reader.read("drive", top.drive),
-        environment: reader.read("environment", top.environment),
-        sensors: top.sensors.map(|table| reader.read("sensors", table)),
-        columns: top.columns.map(|table| reader.read("columns", table)),
-        motion: read_motion(&mut reader, top.motion),
-        simulation: reader.read("simulation", top.simulation),
-        effects: read_effects(&mut reader, top.effect),
-        folder: PathBuf::new(),
-        origins: document.origins.clone(),
-    };
-    if reader.problems.is_empty() { Ok(scenario) } else { Err(Problems(reader.problems)) }
-}
-
-// serde's own tagged enums would lose the path of a wrong key, hence the dispatch by hand.
-fn read_mechanism(reader: &mut Reader<'_>, mut table: toml::Table) -> Mechanism {
-    if !table.contains_key("kind") {
-        reader.complain(
-            "mechanism.kind",
-            "is missing".to_owned(),
-            "write kind = \"3rpr\" under [mechanism]".to_owned(),
-        );
-    }
-    match reader.take_kind("mechanism", &mut table, &Mechanism::KINDS) {
-        Some("drive-stage") => Mechanism::DriveStage(reader.read("mechanism", table)),
-        Some("pendulum") => Mechanism::Pendulum(reader.read("mechanism", table)),
-        _ => Mechanism::ThreeRpr(reader.read("mechanism", table)),
-    }
-}
-
-fn read_effects(reader: &mut Reader<'_>, tables: Vec<toml::Table>) -> Vec<Setting> {
-    let mut effects = Vec::new();
-    for (i, mut table) in tables.into_iter().enumerate() {
-        let section = format!("effect.{i}");
-        let Some(kind) = table.remove("kind") else {
-            let help = "write kind = \"…\"; `freeplay effects` lists them".to_owned();
-            reader.complain(&format!("{section}.kind"), "is missing".to_owned(), help);
-            continue;
-        };
-        let name = kind.as_str().map_or_else(|| kind.to_string(), str::to_owned);
-        match Setting::from_table(&name, &table) {
-            Ok(setting) => effects.push(setting),
-            Err(Wrong { key, message, help }) => {
-                reader.complain(&format!("{section}.{key}"), message, help);
-            }
-        }
-    }
-    effects
-}
-
-fn read_motion(reader: &mut Reader<'_>, mut table: toml::Table) -> Motion {
-    let given = table.contains_key("kind");
-    match reader.take_kind("motion", &mut table, &Motion::KINDS) {
-        Some("line") => Motion::Line(reader.read("motion", table)),
-        Some("quintic") => Motion::Quintic(reader.read("motion", table)),
-        Some("multisine") => Motion::Multisine(reader.read("motion", table)),
-        Some("table") => Motion::Table(reader.read("motion", table)),
-        // An unknown kind is reported; its keys belong to nothing that could be checked.
-        None if given => Motion::default(),
-        _ => Motion::Circle(reader.read("motion", table)),
     }
 }

@@ -42,6 +42,34 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Reads `table` as a `T` without defaults; `None` after a complaint.
+    pub(super) fn required<T: DeserializeOwned>(
+        &mut self,
+        section: &str,
+        table: Table,
+    ) -> Option<T> {
+        match serde_path_to_error::deserialize(Value::Table(table)) {
+            Ok(value) => Some(value),
+            Err(error) => {
+                let keys = dotted(error.path());
+                let message = error.inner().message();
+                match message.strip_prefix("missing field `") {
+                    Some(field) => {
+                        let key = field.split('`').next().unwrap_or_default();
+                        let help = format!("write {key} = …");
+                        self.complain(&join(section, key), "is missing".to_owned(), help);
+                    }
+                    None => {
+                        let path = join(section, &keys);
+                        let (message, help) = explain(&path, message);
+                        self.complain(&path, message, help);
+                    }
+                }
+                None
+            }
+        }
+    }
+
     /// Takes `kind` out of a section; `None` when it is not there or not one of `known`.
     pub(super) fn take_kind(
         &mut self,
@@ -49,12 +77,23 @@ impl<'a> Reader<'a> {
         table: &mut Table,
         known: &[&'static str],
     ) -> Option<&'static str> {
+        self.take_kind_of(section, section, table, known)
+    }
+
+    /// The same of a table at `path`, which is a kind of `what`.
+    pub(super) fn take_kind_of(
+        &mut self,
+        path: &str,
+        what: &str,
+        table: &mut Table,
+        known: &[&'static str],
+    ) -> Option<&'static str> {
         let kind = table.remove("kind")?;
         let found = known.iter().find(|name| kind.as_str() == Some(name));
         if found.is_none() {
             self.complain(
-                &format!("{section}.kind"),
-                format!("{kind} is not a kind of {section}"),
+                &format!("{path}.kind"),
+                format!("{kind} is not a kind of {what}"),
                 suggest(kind.as_str().unwrap_or_default(), known),
             );
         }

@@ -1,6 +1,6 @@
 //! Values that are surely wrong by themselves. What is merely unusual passes.
 
-use super::{JOINTS, Mechanism, Motion, Problem, Problems, Scenario};
+use super::{Mechanism, Motion, PerJoint, Problem, Problems, Scenario};
 
 impl Scenario {
     /// All values that cannot be right.
@@ -19,6 +19,9 @@ impl Scenario {
     }
 }
 
+/// Keys and values.
+type Numbers<'a> = &'a [(&'a str, f64)];
+
 struct Checks<'a> {
     scenario: &'a Scenario,
     problems: Vec<Problem>,
@@ -26,21 +29,70 @@ struct Checks<'a> {
 
 impl Checks<'_> {
     fn mechanism(&mut self) {
-        match &self.scenario.mechanism {
+        let (lengths, masses): (Numbers<'_>, Numbers<'_>) = match &self.scenario.mechanism {
             Mechanism::ThreeRpr(machine) => {
-                self.positive("mechanism.base_side", machine.base_side, "m");
-                self.positive("mechanism.platform_side", machine.platform_side, "m");
-                self.positive("mechanism.platform_mass", machine.platform_mass, "kg");
                 if let Some(inertia) = machine.platform_inertia {
                     self.positive("mechanism.platform_inertia", inertia, "kg m²");
                 }
+                (
+                    &[("base_side", machine.base_side), ("platform_side", machine.platform_side)],
+                    &[("platform_mass", machine.platform_mass)],
+                )
             }
-            Mechanism::DriveStage(stage) => self.positive("mechanism.mass", stage.mass, "kg"),
+            Mechanism::DriveStage(stage) => (&[], &[("mass", stage.mass)]),
             Mechanism::Pendulum(arm) => {
-                self.positive("mechanism.mass", arm.mass, "kg");
                 self.positive("mechanism.inertia", arm.inertia, "kg m²");
-                self.positive("mechanism.length", arm.length, "m");
+                (&[("length", arm.length)], &[("mass", arm.mass)])
             }
+            Mechanism::SliderCrank(m) => (
+                &[("crank", m.crank), ("rod", m.rod)],
+                &[
+                    ("crank_mass", m.crank_mass),
+                    ("rod_mass", m.rod_mass),
+                    ("slider_mass", m.slider_mass),
+                ],
+            ),
+            Mechanism::FourBar(m) => {
+                self.positive("mechanism.linear_density", m.linear_density, "kg/m");
+                (
+                    &[
+                        ("ground", m.ground),
+                        ("crank", m.crank),
+                        ("coupler", m.coupler),
+                        ("rocker", m.rocker),
+                    ],
+                    &[],
+                )
+            }
+            Mechanism::FiveBar(m) => {
+                self.positive("mechanism.linear_density", m.linear_density, "kg/m");
+                (&[("ground", m.ground), ("crank", m.crank), ("rod", m.rod)], &[])
+            }
+            Mechanism::ThreeRrr(m) => {
+                self.positive("mechanism.linear_density", m.linear_density, "kg/m");
+                (
+                    &[
+                        ("base_side", m.base_side),
+                        ("platform_side", m.platform_side),
+                        ("crank", m.crank),
+                        ("rod", m.rod),
+                    ],
+                    &[("platform_mass", m.platform_mass)],
+                )
+            }
+            Mechanism::DoublePendulum(m) => (
+                &[("lengths.0", m.lengths[0]), ("lengths.1", m.lengths[1])],
+                &[("masses.0", m.masses[0]), ("masses.1", m.masses[1])],
+            ),
+            Mechanism::Described(described) => {
+                self.problems.extend(super::validate_described::problems(self.scenario, described));
+                (&[], &[])
+            }
+        };
+        let lengths = lengths.iter().map(|(key, value)| (key, *value, "m")).collect::<Vec<_>>();
+        let masses = masses.iter().map(|(key, value)| (key, *value, "kg"));
+        for (key, value, unit) in lengths.into_iter().chain(masses) {
+            self.positive(&format!("mechanism.{key}"), value, unit);
         }
     }
 
@@ -75,12 +127,14 @@ impl Checks<'_> {
         let joints = &self.scenario.joints;
         let radius = joints.bearing_radius;
         self.positive("joints.bearing_radius", radius, "m");
-        self.each_joint(
-            "joints.clearance",
-            &joints.clearance,
-            |c| 0.0 < c && c < radius,
-            &format!("expected above 0 and below the bearing radius, {radius} m"),
-        );
+        if let Some(clearance) = &joints.clearance {
+            self.each_joint(
+                "joints.clearance",
+                clearance,
+                |c| 0.0 < c && c < radius,
+                &format!("expected above 0 and below the bearing radius, {radius} m"),
+            );
+        }
         self.each_joint("joints.friction", &joints.friction, |mu| mu >= 0.0, "expected 0 or more");
     }
 
@@ -178,7 +232,7 @@ impl Checks<'_> {
                 "names no file".to_owned(),
                 "expected a CSV file with the columns t,x,y,phi",
             ),
-            Motion::Table(_) => {}
+            Motion::Table(_) | Motion::Joints(_) | Motion::Rest => {}
         }
     }
 
@@ -241,14 +295,24 @@ impl Checks<'_> {
     fn each_joint(
         &mut self,
         path: &str,
-        values: &[f64; 6],
+        values: &PerJoint,
         in_range: impl Fn(f64) -> bool,
         help: &str,
     ) {
-        let outside: Vec<String> = JOINTS
-            .iter()
-            .zip(values)
-            .filter(|(_, value)| !in_range(**value))
+        let names = self.scenario.mechanism.revolute_names();
+        let listed = values.values().len();
+        if listed != 1 && listed != names.len() {
+            let (count, names) = (names.len(), names.join(" "));
+            self.complain(
+                path,
+                format!("found a list of {listed}"),
+                &format!("expected one number for all joints or {count} ({names})"),
+            );
+            return;
+        }
+        let values = names.iter().enumerate().map(|(i, name)| (name, values.at(i)));
+        let outside: Vec<String> = values
+            .filter(|(_, value)| !in_range(*value))
             .map(|(joint, value)| format!("{value} at {joint}"))
             .collect();
         if !outside.is_empty() {

@@ -1,9 +1,11 @@
 //! What can be said against a machine before it is simulated.
 
-use super::assemble::Machine;
 use super::three_rpr;
+use crate::contact::StiffnessForm;
 use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
-use crate::scenario::{self, Law, Problem, Scenario, StiffnessForm};
+use crate::mechanism::{Bearing, JointIndex, Mechanism};
+use crate::model::{Machine, Singular, radial_clearance};
+use crate::scenario::{self, Problem, Scenario};
 use std::fmt;
 
 /// How bad a [`Finding`] is.
@@ -51,32 +53,164 @@ impl fmt::Display for Finding {
 /// any real contact: at 1e-6 m it is a hundred times that of two convex bodies.
 const SMALLEST_CONFORMAL_CLEARANCE: f64 = 1e-6;
 
+/// Gain from a drive's error to the machine's fastest point beyond which a pose counts as singular: a
+/// clearance of 0.1 mm, or an encoder's step times so much, is a centimetre of the machine.
+const REFUSED_GAIN: f64 = 200.0;
+
+/// The gain beyond which a pose is doubtful: forces grow with it.
+const DOUBTFUL_GAIN: f64 = 50.0;
+
+/// Radius of gyration, in sizes of the mechanism, beyond which no body can have it: a ring of its mass would
+/// reach five times as far as the machine.
+const LARGEST_GYRATION: f64 = 5.0;
+
 /// Everything wrong or doubtful about a machine and its motion.
-pub fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
-    let mut found = Vec::new();
+pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {
+    let mut found: Vec<Finding> = scenario.unused().into_iter().map(Finding::warning).collect();
     match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(kind) => {
             three_rpr::findings(scenario, kind, &*machine.motion, &mut found);
         }
-        scenario::Mechanism::DriveStage(_) | scenario::Mechanism::Pendulum(_) => {}
+        _ => driven_path(scenario, machine, &mut found),
     }
+    found.extend(inertias(scenario, machine));
+    found.extend(redundant(scenario, machine));
     found.extend(step(scenario, machine));
     found.extend(rows(scenario));
-    found.extend(conformal(scenario));
+    found.extend(conformal(scenario, machine));
     found.extend(table_end(scenario, machine));
     found
 }
 
+/// The place of a joint's key in the file, where the file has one.
+fn joint_key(scenario: &Scenario, name: &str) -> String {
+    let joints = scenario.mechanism.described().map(|described| &described.joints);
+    let place = joints.and_then(|joints| joints.iter().position(|joint| joint.name() == name));
+    place.map_or_else(|| "mechanism".to_owned(), |i| format!("joint.{i}"))
+}
+
+/// Drives that leave their range, toggles, singular poses, loops that turn over.
+fn driven_path(scenario: &Scenario, machine: &mut Machine, found: &mut Vec<Finding>) {
+    let Some(path) = machine.driven_path() else { return };
+    let mechanism = &machine.mechanism;
+    let unit = |drive: usize| match mechanism.actuators[drive].joint {
+        JointIndex::Revolute(_) => "rad",
+        JointIndex::Prismatic(_) => "m",
+    };
+    for (drive, t, coordinate) in &path.breaches {
+        let name = &mechanism.actuators[*drive].name;
+        let message = format!(
+            "{name} would have to be {coordinate:.4} {} at t = {t:.4} s, outside its range",
+            unit(*drive)
+        );
+        let help = "choose a smaller motion, or another range of the joint";
+        let key = format!("{}.range", joint_key(scenario, name));
+        found.push(Finding::error(scenario.problem(&key, message, help)));
+    }
+    if let Some((t, coordinates)) = &path.stuck {
+        let at: Vec<String> = coordinates
+            .iter()
+            .enumerate()
+            .map(|(i, q)| format!("{} = {q:.4} {}", mechanism.actuators[i].name, unit(i)))
+            .collect();
+        let message = format!(
+            "drives the machine beyond its reach at t = {t:.4} s: it locks near {}, where a loop is stretched \
+             out or folded",
+            at.join(", ")
+        );
+        let help = "keep the drive within the toggle, or choose other lengths";
+        found.push(Finding::error(scenario.problem("motion", message, help)));
+        return;
+    }
+    found.extend(path.singular.and_then(|singular| singular_pose(scenario, mechanism, singular)));
+    for (of, t) in &path.turned {
+        let names: Vec<&str> = of.joints.iter().map(|&joint| mechanism.joint_name(joint)).collect();
+        let message = format!(
+            "turns the loop {} over at t = {t:.4} s: its area changes sign on the way",
+            names.join("-")
+        );
+        let help = "make sure that this is the assembly that you mean";
+        found.push(Finding::warning(scenario.problem("motion", message, help)));
+    }
+}
+
+/// A pose in which the drives hold the machine badly or not at all.
+fn singular_pose(
+    scenario: &Scenario,
+    mechanism: &Mechanism,
+    Singular { t, share, drive }: Singular,
+) -> Option<Finding> {
+    let gain = 1.0 / share;
+    let name = &mechanism.actuators[drive].name;
+    if gain > REFUSED_GAIN {
+        let message = format!(
+            "passes a singular pose at t = {t:.4} s: there the machine moves although {name} and all other \
+             drives hold, and no finite force holds it"
+        );
+        let help = "keep the motion away from there, or drive another joint";
+        return Some(Finding::error(scenario.problem("motion", message, help)));
+    }
+    (gain > DOUBTFUL_GAIN).then(|| {
+        let message = format!(
+            "comes near a singular pose at t = {t:.4} s: an error of {name}, or play of its size, moves the \
+             machine {gain:.0} times as far"
+        );
+        let help = "keep the motion farther from there: forces grow alike";
+        Finding::warning(scenario.problem("motion", message, help))
+    })
+}
+
+/// Inertias that no body of this machine can have.
+fn inertias(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
+    let Some(described) = scenario.mechanism.described() else { return Vec::new() };
+    let size = machine.mechanism.size();
+    let bodies = machine.mechanism.bodies.iter().filter_map(|body| {
+        let gyration = (body.inertia / body.mass).sqrt();
+        let place = described.bodies.iter().position(|described| described.name == body.name)?;
+        (gyration > LARGEST_GYRATION * size).then(|| {
+            let message = format!(
+                "of {} kg m² makes the radius of gyration of \"{}\" {gyration:.3} m, in a machine of \
+                 {size:.3} m",
+                body.inertia, body.name
+            );
+            let help = "expected kg m² about the body's own centre of mass: 1 kg mm² is 1e-6 kg m²";
+            Finding::error(scenario.problem(&format!("body.{place}.inertia"), message, help))
+        })
+    });
+    bodies.collect()
+}
+
+/// Joints that say the same twice.
+fn redundant(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
+    let mechanism = &machine.mechanism;
+    let states: Vec<_> = mechanism.bodies.iter().map(|body| body.start).collect();
+    let freedoms = mechanism.freedoms(&states);
+    let first = *freedoms.redundant.first()?;
+    let names: Vec<&str> =
+        freedoms.redundant.iter().map(|&joint| mechanism.joint_name(joint)).collect();
+    let message = format!(
+        "{} hold the machine more often than it takes: its motion is determined, how they share the load \
+         is not",
+        names.join(", ")
+    );
+    let help =
+        "the smallest forces are reported; a clearance in one of them decides who bears what";
+    let key = joint_key(scenario, mechanism.joint_name(first));
+    Some(Finding::warning(scenario.problem(&key, message, help)))
+}
+
 /// A step that the machine does not stand, or that its law cannot take.
 fn step(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
-    match (scenario.contact.law, machine.control) {
-        (Law::Native, StepControl::Tolerance(_)) => Some(Finding::error(scenario.problem(
+    let has = |of: fn(&Bearing) -> bool| machine.mechanism.revolutes.iter().any(|j| of(&j.bearing));
+    let native = has(|bearing| matches!(bearing, Bearing::Native { .. }));
+    match machine.control {
+        StepControl::Tolerance(_) if native => Some(Finding::error(scenario.problem(
             "simulation.tolerance",
             "does not go with contact.law = \"native\": the physics engine's own contacts have no \
              error estimate",
             "set simulation.step instead, such as 1e-5",
         ))),
-        (Law::HertzStep, StepControl::Fixed(step)) => {
+        StepControl::Fixed(step) if !native => {
             let longest = machine.mechanism.longest_step(TYPICAL_IMPACT_SPEED)?;
             let what = if machine.mechanism.longest_servo_step() == Some(longest) {
                 "servos"
@@ -105,7 +239,7 @@ fn two_digits_below(limit: f64) -> f64 {
 
 /// A motion table that ends before the run does: the machine is commanded to stop there, at once.
 fn table_end(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
-    let (end, duration) = (machine.motion.known_until(), scenario.simulation.duration);
+    let (end, duration) = (machine.known_until, scenario.simulation.duration);
     // 1e-9 forgives rounding.
     (end < duration * (1.0 - 1e-9)).then(|| {
         let message = format!(
@@ -138,12 +272,14 @@ fn rows(scenario: &Scenario) -> Option<Finding> {
 }
 
 /// A conformal stiffness out of its range.
-fn conformal(scenario: &Scenario) -> Option<Finding> {
+fn conformal(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
     let contact = &scenario.contact;
-    let computed = contact.law == Law::HertzStep
-        && contact.stiffness.is_none()
-        && contact.stiffness_form == StiffnessForm::Conformal;
-    let smallest = scenario.joints.clearance.iter().copied().fold(f64::INFINITY, f64::min);
+    let joints = machine.mechanism.revolutes.iter();
+    let under_law = joints.filter(|joint| matches!(joint.bearing, Bearing::Clearance(_)));
+    let clearances = under_law.filter_map(|joint| radial_clearance(&joint.bearing));
+    let smallest = clearances.fold(f64::INFINITY, f64::min);
+    let computed =
+        contact.stiffness.is_none() && contact.stiffness_form == StiffnessForm::Conformal;
     (computed && smallest < SMALLEST_CONFORMAL_CLEARANCE).then(|| {
         let message = format!(
             "is conformal at a clearance of {smallest:e} m: this stiffness grows without bound as \

@@ -1,11 +1,10 @@
 //! `summary.json`: the main figures of a run, gathered row by row in constant memory.
 
-use super::assemble::{Machine, radial_clearance};
-use super::ideal::IdealInstant;
 use super::provenance::Provenance;
 use crate::engine::{Instant, StepControl, Work};
-use crate::mechanism::Mechanism;
-use crate::scenario::{DriveMode, Law, Scenario};
+use crate::mechanism::{Drive, JointIndex, Mechanism};
+use crate::model::{IdealInstant, Machine, radial_clearance};
+use crate::scenario::{Law, Scenario};
 use serde::Serialize;
 
 /// The main figures of a run. Peaks, means and fractions leave out the first `settle_s` seconds; all
@@ -19,8 +18,8 @@ pub struct Summary {
     pub seed: u64,
     /// Contact law.
     pub law: Law,
-    /// Kind of drive.
-    pub drive: DriveMode,
+    /// Kind of the drives; "none" without any, "mixed" where they differ.
+    pub drive: &'static str,
     /// Fixed step asked for in s, if it is fixed.
     pub step_s: Option<f64>,
     /// Velocity error allowed for one step in m/s, if the step follows it.
@@ -36,9 +35,15 @@ pub struct Summary {
     pub peak_contact_force: f64,
     /// Largest |(a_x, a_y)| of the output body in m/s², over all steps.
     pub peak_platform_acceleration_m_s2: f64,
-    /// Largest |F| of any drive in N, over all steps.
+    /// Largest |F| of any drive of a prismatic joint in N, over all steps.
     #[serde(rename = "peak_actuator_force_N")]
     pub peak_actuator_force: f64,
+    /// Largest torque of a drive of a revolute joint in N·m, over all steps; none without such drives.
+    #[serde(rename = "peak_actuator_torque_Nm", skip_serializing_if = "Option::is_none")]
+    pub peak_actuator_torque: Option<f64>,
+    /// The same of the ideal machine, over all rows.
+    #[serde(rename = "ideal_peak_actuator_torque_Nm", skip_serializing_if = "Option::is_none")]
+    pub ideal_peak_actuator_torque: Option<f64>,
     /// The same of the ideal machine, over all rows.
     pub ideal_peak_platform_acceleration_m_s2: f64,
     /// The same of the ideal machine, over all rows.
@@ -53,6 +58,9 @@ pub struct Summary {
     /// Root mean square over the rows and the drives of F − ideal, in N.
     #[serde(rename = "rms_actuator_force_deviation_N")]
     pub rms_actuator_force_deviation: f64,
+    /// The same of the drives of revolute joints, in N·m; none without such drives.
+    #[serde(rename = "rms_actuator_torque_deviation_Nm", skip_serializing_if = "Option::is_none")]
+    pub rms_actuator_torque_deviation: Option<f64>,
     /// Share of time that a joint spends in contact, mean of all joints.
     pub contact_fraction: f64,
     /// Contacts begun in all joints.
@@ -117,11 +125,13 @@ pub struct Recorder {
     /// Time of the first row after the start that is left out, and of the last row, in s.
     span: Option<[f64; 2]>,
     rows: u64,
-    /// Sums over the rows of squared deviations: position, acceleration, drive forces.
-    squares: [f64; 3],
+    /// Sums over the rows of squared deviations: position, acceleration, drive forces, drive torques.
+    squares: [f64; 4],
     peak_acceleration: f64,
     peak_drive_force: f64,
-    ideal_peaks: [f64; 2],
+    peak_drive_torque: f64,
+    /// Of acceleration, drive forces, drive torques.
+    ideal_peaks: [f64; 3],
     max_path_error: f64,
     joints: Vec<JointRecord>,
 }
@@ -153,11 +163,12 @@ impl Recorder {
             settle: settle * (1.0 - 1e-9),
             span: None,
             rows: 0,
-            squares: [0.0; 3],
+            squares: [0.0; 4],
             // f64::max takes the other value for a NaN: the first one counted.
             peak_acceleration: f64::NAN,
             peak_drive_force: f64::NAN,
-            ideal_peaks: [f64::NAN; 2],
+            peak_drive_torque: f64::NAN,
+            ideal_peaks: [f64::NAN; 3],
             max_path_error: f64::NAN,
             joints: joints.collect(),
         }
@@ -177,21 +188,31 @@ impl Recorder {
         let acceleration = mechanism.output_acceleration(states, &now.accelerations);
         let acceleration = (acceleration - ideal.acceleration).xy();
         let path_error = (mechanism.output_state(states).position - ideal.position).norm();
-        let drives = now.drive_forces.iter().zip(ideal.drive_forces);
-        let drive_count = ideal.drive_forces.len().max(1) as f64;
+        let turns = |i: usize| matches!(mechanism.actuators[i].joint, JointIndex::Revolute(_));
+        let deviation = |of_revolute: bool| {
+            let drives = (0..now.drive_forces.len()).filter(|&i| turns(i) == of_revolute);
+            let square = |i: usize| (now.drive_forces[i] - ideal.drive_forces[i]).powi(2);
+            let count = drives.clone().count().max(1) as f64;
+            drives.map(square).sum::<f64>() / count
+        };
+        let largest = |of_revolute: bool| {
+            let drives = (0..now.drive_forces.len()).filter(|&i| turns(i) == of_revolute);
+            drives.fold(0.0f64, |peak, i| peak.max(ideal.drive_forces[i].abs()))
+        };
         let deviations = [
             path_error * path_error,
             acceleration.norm_squared(),
-            drives.map(|(force, ideal)| (force - ideal).powi(2)).sum::<f64>() / drive_count,
+            deviation(false),
+            deviation(true),
         ];
         for (sum, square) in self.squares.iter_mut().zip(deviations) {
             *sum += square;
         }
         self.rows += 1;
         self.max_path_error = self.max_path_error.max(path_error);
-        let ideal_force = ideal.drive_forces.iter().fold(0.0f64, |peak, f| peak.max(f.abs()));
         self.ideal_peaks[0] = self.ideal_peaks[0].max(ideal.acceleration.xy().norm());
-        self.ideal_peaks[1] = self.ideal_peaks[1].max(ideal_force);
+        self.ideal_peaks[1] = self.ideal_peaks[1].max(largest(false));
+        self.ideal_peaks[2] = self.ideal_peaks[2].max(largest(true));
 
         for ((joint, contact), tally) in
             self.joints.iter_mut().zip(&now.contacts).zip(instant.tallies)
@@ -206,6 +227,7 @@ impl Recorder {
         if !first || instant.t == 0.0 {
             self.peak_acceleration = self.peak_acceleration.max(instant.peaks.acceleration);
             self.peak_drive_force = self.peak_drive_force.max(instant.peaks.drive_force);
+            self.peak_drive_torque = self.peak_drive_torque.max(instant.peaks.drive_torque);
             for (joint, tally) in self.joints.iter_mut().zip(instant.tallies) {
                 joint.peak = joint.peak.max(tally.peak);
             }
@@ -230,6 +252,8 @@ impl Recorder {
         let impacts = joints.iter().map(|joint| joint.impacts).sum();
         let fractions: f64 = joints.iter().map(|joint| joint.contact_fraction).sum();
         let penetration = |joint: &JointRecord| Some(joint.max_eccentricity - joint.clearance?);
+        let mut actuators = machine.mechanism.actuators.iter();
+        let torques = actuators.any(|a| matches!(a.joint, JointIndex::Revolute(_)));
         let (step_s, tolerance_m_s) = match machine.control {
             StepControl::Fixed(step) => (Some(step), None),
             StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
@@ -238,7 +262,7 @@ impl Recorder {
             provenance: Provenance::of(scenario),
             seed: scenario.seed,
             law: scenario.contact.law,
-            drive: scenario.drive.mode,
+            drive: kind_of_drives(&machine.mechanism),
             step_s,
             tolerance_m_s,
             halted,
@@ -249,10 +273,13 @@ impl Recorder {
             peak_actuator_force: self.peak_drive_force,
             ideal_peak_platform_acceleration_m_s2: self.ideal_peaks[0],
             ideal_peak_actuator_force: self.ideal_peaks[1],
+            peak_actuator_torque: torques.then_some(self.peak_drive_torque),
+            ideal_peak_actuator_torque: torques.then_some(self.ideal_peaks[2]),
             rms_path_error_m: rms(0),
             max_path_error_m: self.max_path_error,
             rms_acceleration_deviation_m_s2: rms(1),
             rms_actuator_force_deviation: rms(2),
+            rms_actuator_torque_deviation: torques.then_some(rms(3)),
             contact_fraction: fractions / joints.len() as f64,
             impacts,
             impacts_per_s: impacts as f64 / time,
@@ -269,6 +296,19 @@ impl Recorder {
             files,
         }
     }
+}
+
+/// The kind that all drives have.
+pub fn kind_of_drives(mechanism: &Mechanism) -> &'static str {
+    let kind = |drive: &Drive| match drive {
+        Drive::Prescribed => "prescribed",
+        Drive::Servo { .. } => "servo",
+        Drive::Sampled(_) => "sampled",
+        Drive::Effort => "force",
+    };
+    let mut kinds = mechanism.actuators.iter().map(|actuator| kind(&actuator.drive));
+    let Some(first) = kinds.next() else { return "none" };
+    if kinds.all(|kind| kind == first) { first } else { "mixed" }
 }
 
 impl JointRecord {

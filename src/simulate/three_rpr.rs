@@ -1,17 +1,9 @@
-//! What assembling and checking a 3-RPR takes: the only file of this room that knows that machine.
+//! What can be said against the motion of a 3-RPR, in the words of that machine.
 
-use super::assemble::{bearing, drive};
 use super::checks::Finding;
-use super::ideal::Ideal;
 use crate::mechanism::motion::Motion;
-use crate::mechanism::three_rpr::{
-    Geometry, InverseKinematics, LegBars, Reach, build, ideal_states, reach,
-};
-use crate::mechanism::{Bearing, Drive, Mechanism};
+use crate::model::leg_use;
 use crate::scenario::{self, Scenario, ThreeRpr};
-use nalgebra::Vector2;
-use std::array;
-use std::sync::Arc;
 
 /// Distance from singularity, as a share of the platform's circumradius, below which a motion is
 /// refused: the actuators then hold the platform's angle with arms of less than 3 mm on the paper's
@@ -23,39 +15,6 @@ const DOUBTFUL_SHARE: f64 = 0.2;
 
 /// π/6 rad, the angle of the default motions: far from both singularities.
 const SAFE_PHI: &str = "0.5236";
-
-/// The machine, and itself without clearance.
-pub(super) fn assemble(
-    scenario: &Scenario,
-    machine: &ThreeRpr,
-    motion: Arc<dyn Motion>,
-) -> (Mechanism, Ideal) {
-    let kinematics = InverseKinematics { geometry: geometry(machine), motion };
-    let platform = (machine.platform_mass, machine.platform_inertia());
-    let legs = &scenario.legs;
-    let bars = LegBars {
-        density: legs.density,
-        cylinder: [legs.cylinder_length, legs.cylinder_diameter],
-        rod: [legs.rod_length, legs.rod_diameter],
-    };
-    let gravity: Vector2<f64> = scenario.environment.gravity.into();
-    let joints = array::from_fn(|i| bearing(scenario, i));
-    let mechanism = build(kinematics.clone(), platform, bars, joints, drive(scenario), gravity);
-    let joints = [const { Bearing::Ideal }; 6];
-    let ideal = build(kinematics.clone(), platform, bars, joints, Drive::Prescribed, gravity);
-    let InverseKinematics { geometry, motion } = kinematics;
-    let states = move |t| ideal_states(&geometry, &bars, &motion.at(t));
-    (mechanism, Ideal::new(ideal, Box::new(states)))
-}
-
-fn geometry(machine: &ThreeRpr) -> Geometry {
-    Geometry { base_side: machine.base_side, platform_side: machine.platform_side }
-}
-
-/// How far each leg travels, and how near the machine comes to a singularity.
-pub fn leg_use(scenario: &Scenario, machine: &ThreeRpr, motion: &dyn Motion) -> Reach {
-    reach(&geometry(machine), motion, scenario.simulation.duration, scenario.legs.stroke)
-}
 
 /// Legs that leave their stroke, and a platform that comes near a singularity.
 pub(super) fn findings(
@@ -119,6 +78,7 @@ fn size_key(scenario: &Scenario) -> &'static str {
         scenario::Motion::Quintic(_) => "motion.to",
         scenario::Motion::Multisine(_) => "motion.terms",
         scenario::Motion::Table(_) => "motion.file",
+        scenario::Motion::Joints(_) | scenario::Motion::Rest => "motion",
     }
 }
 
@@ -129,5 +89,6 @@ fn angle_key(scenario: &Scenario) -> &'static str {
         scenario::Motion::Quintic(_) => "motion.to",
         scenario::Motion::Multisine(_) => "motion.center",
         scenario::Motion::Table(_) => "motion.file",
+        scenario::Motion::Joints(_) | scenario::Motion::Rest => "motion",
     }
 }

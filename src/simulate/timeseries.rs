@@ -2,42 +2,52 @@
 
 use crate::engine::Instant;
 use crate::mechanism::Mechanism;
-use std::f64::consts::{PI, TAU};
+use crate::model::Layout;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// Writes rows as CSV: pose, velocity and acceleration of the output body, length and force of each
-/// drive, and for each joint the eccentricity |e|, the normal force, and its peak since the previous
-/// row. Nothing but the present line is kept.
+/// Writes rows as CSV: pose, velocity and acceleration of each output, coordinate and effort of each
+/// drive, and for each joint with a declared clearance the eccentricity |e|, the normal force, and its peak
+/// since the previous row. Nothing but the present line is kept.
 #[derive(Debug)]
 pub struct TimeSeries<W> {
     out: W,
     line: String,
-    /// Angle of the output body at the row before, in rad, without jumps by whole turns.
-    phi: f64,
+    layout: Layout,
 }
 
+/// Pose of an output and its derivatives, each followed by the output's label.
+const OUTPUT: [&str; 9] = ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
+
 impl<W: Write> TimeSeries<W> {
-    /// Writes the header. `phi` is the output body's angle at t = 0 in rad: rotations do not tell
-    /// whole turns apart, columns do.
+    /// Writes the header of the columns of `layout`.
     ///
     /// # Errors
     /// If `out` refuses.
-    pub fn new(mut out: W, mechanism: &Mechanism, phi: f64) -> io::Result<Self> {
-        let mut line = "t,x,y,phi,vx,vy,omega,ax,ay,alpha".to_owned();
-        for letter in ["q", "F"] {
-            for i in 1..=mechanism.actuators.len() {
-                // Writing to a string cannot fail, here and below.
-                let _ = write!(line, ",{letter}{i}");
+    pub fn new(mut out: W, mechanism: &Mechanism, layout: &Layout) -> io::Result<Self> {
+        let mut line = "t".to_owned();
+        // Writing to a string cannot fail, here and below.
+        for output in &layout.outputs {
+            for quantity in OUTPUT {
+                let _ = write!(line, ",{}", quoted(&format!("{quantity}{}", output.label)));
             }
         }
-        for joint in &mechanism.revolutes {
-            let name = &joint.name;
-            let _ = write!(line, ",ecc_{name},force_{name},force_{name}_max");
+        for letter in ["q", "F"] {
+            for label in &layout.drives {
+                let _ = write!(line, ",{}", quoted(&format!("{letter}{label}")));
+            }
+        }
+        for &joint in &layout.joints {
+            let name = &mechanism.revolutes[joint].name;
+            let columns =
+                [format!("ecc_{name}"), format!("force_{name}"), format!("force_{name}_max")];
+            for column in columns {
+                let _ = write!(line, ",{}", quoted(&column));
+            }
         }
         line.push('\n');
         out.write_all(line.as_bytes())?;
-        Ok(Self { out, line, phi })
+        Ok(Self { out, line, layout: layout.clone() })
     }
 
     /// Writes one row.
@@ -45,21 +55,33 @@ impl<W: Write> TimeSeries<W> {
     /// # Errors
     /// If the file refuses.
     pub fn row(&mut self, mechanism: &Mechanism, instant: &Instant) -> io::Result<()> {
-        let state = mechanism.output_state(instant.states);
         let now = instant.evaluation;
-        self.phi = unwrapped(state.rotation.angle(), self.phi);
         self.line.clear();
         let _ = write!(self.line, "{}", tidy(instant.t));
-        self.numbers(state.position.iter());
-        self.numbers([&self.phi.clone()]);
-        self.numbers(state.twist.iter());
-        self.numbers(mechanism.output_acceleration(instant.states, &now.accelerations).iter());
+        for i in 0..self.layout.outputs.len() {
+            let output = &self.layout.outputs[i];
+            let reference = mechanism.bodies[output.body].reference;
+            let state = output.state(instant.states, reference);
+            let acceleration = output.acceleration(
+                &instant.states[output.body],
+                now.accelerations[output.body],
+                reference,
+            );
+            let phi = instant.angles[output.body] + output.angle;
+            self.numbers(state.position.iter());
+            self.numbers([&phi]);
+            self.numbers(state.twist.iter());
+            self.numbers(acceleration.iter());
+        }
         for (actuator, coordinate) in mechanism.actuators.iter().zip(&now.coordinates) {
             self.numbers([&actuator.read(*coordinate, 0.0)[0]]);
         }
         self.numbers(&now.drive_forces);
-        for (contact, tally) in now.contacts.iter().zip(instant.tallies) {
-            self.numbers([&contact.eccentricity.norm(), &contact.normal_force, &tally.peak]);
+        for i in 0..self.layout.joints.len() {
+            let joint = self.layout.joints[i];
+            let contact = &now.contacts[joint];
+            let peak = instant.tallies[joint].peak;
+            self.numbers([&contact.eccentricity.norm(), &contact.normal_force, &peak]);
         }
         self.line.push('\n');
         self.out.write_all(self.line.as_bytes())
@@ -85,9 +107,13 @@ impl<W: Write> TimeSeries<W> {
     }
 }
 
-/// The angle nearest to `before` among those that differ from `angle` by whole turns.
-fn unwrapped(angle: f64, before: f64) -> f64 {
-    before + (angle - before + PI).rem_euclid(TAU) - PI
+/// A column's name as a CSV field.
+fn quoted(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", name.replace('"', "\"\""))
+    } else {
+        name.to_owned()
+    }
 }
 
 /// 0.3 for 0.30000000000000004: multiples of an interval read as what was meant.
@@ -98,13 +124,6 @@ fn tidy(t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn angles_go_on_past_half_a_turn() {
-        assert!((unwrapped(-3.0, 3.0) - (TAU - 3.0)).abs() < 1e-15);
-        assert!((unwrapped(3.0, -3.0) - (3.0 - TAU)).abs() < 1e-15);
-        assert!((unwrapped(0.1, 4.0 * PI) - (4.0 * PI + 0.1)).abs() < 1e-14);
-    }
 
     #[test]
     fn multiples_of_an_interval_read_as_meant() {

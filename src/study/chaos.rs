@@ -61,9 +61,8 @@ fn pair(mechanism: &Mechanism, duration: f64, direction: f64) -> Option<Distance
     let step = PAIR_STEP.min(0.5 * mechanism.longest_step(TYPICAL_IMPACT_SPEED)?);
     let control = StepControl::Fixed(step);
     let schedule = Schedule { duration, interval: INTERVAL };
-    let mut displaced = mechanism.clone();
     let (sin, cos) = (TAU * direction).sin_cos();
-    displaced.bodies[mechanism.output].start.position += Vector2::new(cos, sin) * DISPLACEMENT;
+    let displaced = mechanism.displaced(Vector2::new(cos, sin) * DISPLACEMENT);
     let [a, b] = [mechanism, &displaced].map(|m| track(m, control, schedule));
     Some(a?.iter().zip(b?).map(|((t, p), (_, q))| (*t, (p - q).norm())).collect())
 }

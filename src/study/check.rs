@@ -1,8 +1,12 @@
 //! Everything that can be said of a scenario without simulating it.
 
 use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
-use crate::scenario::{self, DriveMode, Law, Problem, Scenario};
-use crate::simulate::{Finding, Machine, Severity, findings, leg_use, radial_clearance};
+use crate::mechanism::{Actuator, BodyState, Drive, JointIndex, Loop, Mechanism};
+use crate::model::DrivenPath;
+use crate::scenario::{self, Law, Problem, Scenario};
+use crate::simulate::{
+    Finding, Machine, Severity, findings, kind_of_drives, leg_use, radial_clearance,
+};
 use serde::Serialize;
 
 /// Instants at which the ideal machine's forces are looked at.
@@ -84,9 +88,16 @@ pub struct CheckedMachine {
     pub step_s: Option<f64>,
     /// Velocity error allowed for one step in m/s, if the step follows it.
     pub tolerance_m_s: Option<f64>,
-    /// Kind of drive.
-    pub drive: DriveMode,
-    /// Servo gains in N/m and N s/m, if the drive has any.
+    /// Kind of the drives; "none" without any, "mixed" where they differ.
+    pub drive: &'static str,
+    /// The driven joints.
+    pub drives: Vec<CheckedDrive>,
+    /// How the machine without clearance can move.
+    pub freedoms: CheckedFreedoms,
+    /// Closed loops of joints, and the area that each runs around: its sign is the branch on which the
+    /// machine is put together.
+    pub loops: Vec<CheckedLoop>,
+    /// Gains of the first servo in N/m and N s/m (of a revolute joint N m/rad and N m s/rad), if there is one.
     #[serde(rename = "servo_stiffness_N_m")]
     pub servo_stiffness: Option<f64>,
     /// See there.
@@ -116,6 +127,46 @@ pub struct CheckedLeg {
     pub stroke_m: [f64; 2],
 }
 
+/// One driven joint.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckedDrive {
+    /// Name of the joint.
+    pub joint: String,
+    /// "m" or "rad".
+    pub unit: &'static str,
+    /// Smallest and largest coordinate that the motion asks for; none where nothing is asked.
+    pub used: Option<[f64; 2]>,
+    /// Largest rate, m/s or rad/s.
+    pub fastest: Option<f64>,
+    /// How fast the drive moves in shares of the machine's fastest point, at worst along the motion; zero in a
+    /// singular pose.
+    pub share_of_fastest_point: Option<f64>,
+}
+
+/// How the machine without clearance can move.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckedFreedoms {
+    /// By Grübler's count: three for each body less those that joints take.
+    pub counted: i64,
+    /// By the rank of the joints' Jacobian.
+    pub free: usize,
+    /// Those that drives with a command determine.
+    pub driven: usize,
+    /// Joints whose conditions depend on each other.
+    pub redundant: Vec<String>,
+    /// Bodies that can move although every drive holds.
+    pub loose: Vec<String>,
+}
+
+/// One closed loop.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckedLoop {
+    /// Its joints in order.
+    pub joints: Vec<String>,
+    /// Signed area of their polygon at the start in m², positive where they run counterclockwise.
+    pub area_m2: f64,
+}
+
 /// One revolute joint.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckedJoint {
@@ -133,7 +184,7 @@ pub struct CheckedJoint {
 /// What the machine without clearance needs for the motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct Ideal {
-    /// Smallest and largest force of each drive in N.
+    /// Smallest and largest effort of each drive in N or N·m.
     #[serde(rename = "actuator_forces_N")]
     pub actuator_forces: Vec<[f64; 2]>,
     /// Largest |(a_x, a_y)| of the platform in m/s².
@@ -166,10 +217,13 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
     let ok = findings.iter().all(|finding| finding.severity != Severity::Error);
     let kind = match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(kind) => Some(kind),
-        scenario::Mechanism::DriveStage(_) | scenario::Mechanism::Pendulum(_) => None,
+        _ => None,
     };
+    let path = if kind.is_none() { machine.driven_path() } else { None };
     let reach = kind.map(|kind| leg_use(scenario, kind, &*machine.motion));
-    let regular = reach.as_ref().is_none_or(|reach| reach.singularity_distance > NO_DISTANCE);
+    let regular = reach.as_ref().is_none_or(|reach| reach.singularity_distance > NO_DISTANCE)
+        && path.as_ref().is_none_or(|path| path.stuck.is_none())
+        && machine.ideal.is_kinematic();
     let ideal = regular.then(|| ideal(machine));
     let mechanism = &machine.mechanism;
     let bodies = mechanism.bodies.iter().map(|body| CheckedBody {
@@ -178,7 +232,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         inertia_kg_m2: body.inertia,
     });
     let joints = mechanism.revolutes.iter().enumerate().map(|(i, joint)| {
-        let contact = machine.contact(scenario, i, TYPICAL_IMPACT_SPEED);
+        let contact = machine.contact(i, TYPICAL_IMPACT_SPEED);
         CheckedJoint {
             joint: joint.name.clone(),
             clearance_m: radial_clearance(&joint.bearing),
@@ -187,7 +241,10 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         }
     });
     let stroke_m = scenario.legs.stroke;
-    let servo = scenario.drive.mode == DriveMode::Servo;
+    let gains = mechanism.actuators.iter().find_map(|actuator| match actuator.drive {
+        Drive::Servo { stiffness, damping } => Some([stiffness, damping]),
+        _ => None,
+    });
     let (step_s, tolerance_m_s) = match machine.control {
         StepControl::Fixed(step) => (Some(step), None),
         StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
@@ -214,12 +271,60 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         longest_step_s: mechanism.longest_step(TYPICAL_IMPACT_SPEED),
         step_s,
         tolerance_m_s,
-        drive: scenario.drive.mode,
-        servo_stiffness: servo.then_some(scenario.drive.stiffness),
-        servo_damping: servo.then_some(scenario.drive.damping),
+        drive: kind_of_drives(mechanism),
+        drives: drives(mechanism, path.as_ref()),
+        freedoms: freedoms(mechanism),
+        loops: loops(mechanism),
+        servo_stiffness: gains.map(|[stiffness, _]| stiffness),
+        servo_damping: gains.map(|[_, damping]| damping),
         ideal,
     };
     Check { ok, findings: findings.into_iter().map(found).collect(), machine: Some(machine) }
+}
+
+fn starts(mechanism: &Mechanism) -> Vec<BodyState> {
+    mechanism.bodies.iter().map(|body| body.start).collect()
+}
+
+fn drives(mechanism: &Mechanism, path: Option<&DrivenPath>) -> Vec<CheckedDrive> {
+    let drive = |(i, actuator): (usize, &Actuator)| {
+        let finite = |range: &[f64; 2]| range[0].is_finite().then_some(*range);
+        CheckedDrive {
+            joint: actuator.name.clone(),
+            unit: match actuator.joint {
+                JointIndex::Revolute(_) => "rad",
+                JointIndex::Prismatic(_) => "m",
+            },
+            used: path.and_then(|path| finite(&path.used[i])),
+            fastest: path.map(|path| path.fastest[i]),
+            share_of_fastest_point: path
+                .and_then(|path| path.singular)
+                .filter(|singular| singular.drive == i)
+                .map(|singular| singular.share),
+        }
+    };
+    mechanism.actuators.iter().enumerate().map(drive).collect()
+}
+
+fn freedoms(mechanism: &Mechanism) -> CheckedFreedoms {
+    let freedoms = mechanism.without_clearance().freedoms(&starts(mechanism));
+    let joint = |joint: &JointIndex| mechanism.joint_name(*joint).to_owned();
+    CheckedFreedoms {
+        counted: freedoms.counted,
+        free: freedoms.free,
+        driven: freedoms.driven,
+        redundant: freedoms.redundant.iter().map(joint).collect(),
+        loose: freedoms.loose.iter().map(|&body| mechanism.bodies[body].name.clone()).collect(),
+    }
+}
+
+fn loops(mechanism: &Mechanism) -> Vec<CheckedLoop> {
+    let states = starts(mechanism);
+    let checked = |of: Loop| CheckedLoop {
+        joints: of.joints.iter().map(|&joint| mechanism.joint_name(joint).to_owned()).collect(),
+        area_m2: mechanism.signed_area(&of, &states),
+    };
+    mechanism.loops().into_iter().map(checked).collect()
 }
 
 /// Extremes of the ideal machine over the motion.

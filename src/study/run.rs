@@ -106,9 +106,8 @@ fn run_into(
     let mut film = Film::new(&scenario.name, mechanism);
 
     let file = File::create(folder.file(TIME_SERIES_FILE)).map_err(refused(TIME_SERIES_FILE))?;
-    let phi = machine.motion.at(0.0).pose.z;
-    let mut series =
-        TimeSeries::new(BufWriter::new(file), mechanism, phi).map_err(refused(TIME_SERIES_FILE))?;
+    let mut series = TimeSeries::new(BufWriter::new(file), mechanism, &machine.layout)
+        .map_err(refused(TIME_SERIES_FILE))?;
     let mut written = Ok(());
     let mut positions = Vec::new();
     let ideal = &mut machine.ideal;

@@ -2,7 +2,7 @@
 
 use super::run::{PLAYER_FILE, SCENARIO_FILE};
 use crate::report::{self, Fact, Part, Picture, length, number};
-use crate::scenario::{DriveMode, Law};
+use crate::scenario::Law;
 use crate::simulate::Summary;
 
 /// The page as HTML.
@@ -176,9 +176,10 @@ fn provenance(s: &Summary) -> Vec<(String, String)> {
         (None, None) => String::new(),
     };
     let drive = match s.drive {
-        DriveMode::Prescribed => "prescribed: lengths follow the command exactly",
-        DriveMode::Servo => "servo",
-        DriveMode::Sampled => "sampled controller",
+        "prescribed" => "prescribed: joints follow the command exactly",
+        "sampled" => "sampled controller",
+        "force" => "a force or torque over time",
+        other => other,
     };
     let more = [
         ("Seed", s.seed.to_string()),

@@ -25,9 +25,9 @@ impl Machine {
     /// The machine of a scenario; none where it has more joints.
     pub fn of(scenario: &Scenario) -> Option<Self> {
         match scenario.mechanism {
-            scenario::Mechanism::ThreeRpr(_) => None,
             scenario::Mechanism::DriveStage(_) => Some(Self::Stage),
             scenario::Mechanism::Pendulum(_) => Some(Self::Pendulum),
+            _ => None,
         }
     }
 

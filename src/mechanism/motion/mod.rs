@@ -4,7 +4,7 @@ mod kinds;
 mod table;
 
 pub use kinds::{Circle, Line, MultiSine, Quintic, SineTerm};
-pub use table::{Table, TableError};
+pub use table::{Table, TableError, read_columns};
 
 use nalgebra::Vector3;
 use std::fmt::Debug;

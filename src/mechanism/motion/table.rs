@@ -2,14 +2,13 @@
 
 use super::{Motion, PathPoint};
 use crate::measure::spline::CubicSpline;
-use nalgebra::Vector3;
 use std::path::Path;
 
 /// A motion through the rows of a table, by a cubic spline with continuous acceleration.
 /// Before the first and after the last row it rests at that row's pose.
 #[derive(Clone, Debug)]
 pub struct Table {
-    splines: [CubicSpline; 3],
+    splines: Vec<CubicSpline>,
 }
 
 /// Why a table cannot be a motion.
@@ -19,15 +18,20 @@ pub enum TableError {
     #[error(transparent)]
     Csv(#[from] csv::Error),
     /// A column is missing.
-    #[error("no column `{0}`; a table needs the columns t,x,y,phi (s, m, m, rad)")]
-    Column(&'static str),
+    #[error("no column `{missing}`; this table needs the columns {needed}")]
+    Column {
+        /// Its name.
+        missing: String,
+        /// All that are needed.
+        needed: String,
+    },
     /// A field is not a finite number.
     #[error("line {line}: column `{column}` holds `{text}`, which is not a finite number")]
     Number {
         /// Line of the file, from 1.
         line: u64,
         /// The column's name.
-        column: &'static str,
+        column: String,
         /// What stands there.
         text: String,
     },
@@ -46,49 +50,62 @@ pub enum TableError {
     Short(usize),
 }
 
-const COLUMNS: [&str; 4] = ["t", "x", "y", "phi"];
+/// Reads the columns `names` of a CSV file, the first of them the time in s, and returns splines of the others
+/// over it; other columns are ignored.
+///
+/// # Errors
+/// A file that is no such table.
+pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<CubicSpline>, TableError> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path)?;
+    let headers = reader.headers()?.clone();
+    let missing =
+        |name: &&str| TableError::Column { missing: (*name).to_owned(), needed: names.join(",") };
+    let index = |name: &&str| headers.iter().position(|h| h == *name).ok_or_else(|| missing(name));
+    let indices = names.iter().map(index).collect::<Result<Vec<usize>, _>>()?;
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+    for record in reader.records() {
+        let record = record?;
+        let line = record.position().map_or(0, csv::Position::line);
+        for ((values, &index), column) in columns.iter_mut().zip(&indices).zip(names) {
+            let text = record.get(index).unwrap_or("");
+            let value = text.parse::<f64>().ok().filter(|v| v.is_finite());
+            values.push(value.ok_or_else(|| TableError::Number {
+                line,
+                column: (*column).to_owned(),
+                text: text.to_owned(),
+            })?);
+        }
+        if let [.., before, t] = columns[0][..]
+            && t <= before
+        {
+            return Err(TableError::Time { line, t, before });
+        }
+    }
+    if columns[0].len() < 4 {
+        return Err(TableError::Short(columns[0].len()));
+    }
+    Ok(columns[1..].iter().map(|values| CubicSpline::not_a_knot(&columns[0], values)).collect())
+}
 
 impl Table {
-    /// Reads the columns `t,x,y,phi` (s, m, m, rad) of a CSV file; other columns are ignored.
-    pub fn read(path: &Path) -> Result<Self, TableError> {
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path)?;
-        let headers = reader.headers()?.clone();
-        let mut indices = [0; 4];
-        for (index, name) in indices.iter_mut().zip(COLUMNS) {
-            *index = headers.iter().position(|h| h == name).ok_or(TableError::Column(name))?;
-        }
-        let mut columns: [Vec<f64>; 4] = Default::default();
-        for record in reader.records() {
-            let record = record?;
-            let line = record.position().map_or(0, csv::Position::line);
-            for ((values, &index), column) in columns.iter_mut().zip(&indices).zip(COLUMNS) {
-                let text = record.get(index).unwrap_or("");
-                let value = text.parse::<f64>().ok().filter(|v| v.is_finite());
-                values.push(value.ok_or_else(|| TableError::Number {
-                    line,
-                    column,
-                    text: text.to_owned(),
-                })?);
-            }
-            if let [.., before, t] = columns[0][..]
-                && t <= before
-            {
-                return Err(TableError::Time { line, t, before });
-            }
-        }
-        let [t, x, y, phi] = columns;
-        if t.len() < 4 {
-            return Err(TableError::Short(t.len()));
-        }
-        Ok(Self { splines: [x, y, phi].map(|values| CubicSpline::natural(&t, &values)) })
+    /// Reads the columns `t,x,y,phi` (s, m, m, rad) of a CSV file, or `t,x,y` where the motion is a point's;
+    /// other columns are ignored.
+    ///
+    /// # Errors
+    /// A file that is no such table.
+    pub fn read(path: &Path, of_point: bool) -> Result<Self, TableError> {
+        let names: &[&str] = if of_point { &["t", "x", "y"] } else { &["t", "x", "y", "phi"] };
+        Ok(Self { splines: read_columns(path, names)? })
     }
 }
 
 impl Motion for Table {
     fn at(&self, t: f64) -> PathPoint {
-        let columns = self.splines.each_ref().map(|spline| spline.at(t));
-        let pick = |k: usize| Vector3::from(columns.map(|c| c[k]));
-        PathPoint { pose: pick(0), rate: pick(1), acceleration: pick(2) }
+        let mut point = PathPoint::default();
+        for (i, spline) in self.splines.iter().enumerate() {
+            [point.pose[i], point.rate[i], point.acceleration[i]] = spline.at(t);
+        }
+        point
     }
 
     fn known_until(&self) -> f64 {

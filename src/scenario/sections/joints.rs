@@ -1,80 +1,98 @@
-//! `[joints]`: the six passive revolute joints.
+//! `[joints]`: the revolute joints of a machine, all alike or one by one.
 
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
-/// Names of the joints, in the order in which files and arrays list them.
-pub const JOINTS: [&str; 6] = ["A1", "A2", "A3", "C1", "C2", "C3"];
-
-/// Bearings and journals. A value per joint is written as one number for all or as a list of six.
+/// Bearings and journals. A value per joint is written as one number for all or as a list, in the order
+/// of the machine's revolute joints (3-RPR: A1 A2 A3 C1 C2 C3). A file that describes its joints itself
+/// takes these where a joint says nothing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Joints {
     /// Inner radius of every bearing, m. Default 0.010: the paper. A change of clearance keeps it
     /// and changes the journal.
     pub bearing_radius: f64,
-    /// Clearance c of each joint, m: bearing radius minus journal radius. Default 5e-4: the
-    /// paper's machine, whose journals have 9.5 mm.
-    #[serde(with = "one_or_six")]
-    pub clearance: [f64; 6],
+    /// Clearance c of each joint, m: bearing radius minus journal radius. Default 5e-4 in machines that
+    /// have a `[mechanism] kind`: the paper's, whose journals have 9.5 mm; none, ideal joints, in
+    /// described ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<PerJoint>,
     /// Coulomb friction coefficient μ of each joint, dimensionless. Default 0: the paper has none.
-    #[serde(with = "one_or_six")]
-    pub friction: [f64; 6],
+    pub friction: PerJoint,
 }
 
 impl Default for Joints {
     fn default() -> Self {
-        Joints { bearing_radius: 0.010, clearance: [5e-4; 6], friction: [0.0; 6] }
+        Joints { bearing_radius: 0.010, clearance: None, friction: PerJoint::all(0.0) }
     }
 }
 
-/// One number for all joints or a list of six. Written as one number when all are equal, so that
+/// One number for all joints, or one for each. Written as one number when all are equal, so that
 /// both ways of saying the same give the same text.
-mod one_or_six {
-    use std::fmt;
+#[derive(Debug, Clone, PartialEq)]
+pub struct PerJoint(Vec<f64>);
 
-    use serde::de::{Deserializer, Error, SeqAccess, Visitor};
-    use serde::ser::{Serialize, Serializer};
-
-    pub(super) fn serialize<S: Serializer>(
-        values: &[f64; 6],
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        if values.iter().all(|value| *value == values[0]) {
-            serializer.serialize_f64(values[0])
-        } else {
-            values.serialize(serializer)
-        }
+impl PerJoint {
+    /// The same number for all.
+    pub fn all(value: f64) -> Self {
+        Self(vec![value])
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<[f64; 6], D::Error> {
-        deserializer.deserialize_any(OneOrSix)
+    /// The number of joint `index`; the last one's where there are fewer.
+    pub fn at(&self, index: usize) -> f64 {
+        self.0.get(index).or(self.0.last()).copied().unwrap_or_default()
     }
 
-    struct OneOrSix;
+    /// All numbers: one, or as many as were listed.
+    pub fn values(&self) -> &[f64] {
+        &self.0
+    }
+}
 
-    impl<'de> Visitor<'de> for OneOrSix {
-        type Value = [f64; 6];
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str("one number for all joints or six (A1 A2 A3 C1 C2 C3)")
-        }
-
-        fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
-            Ok([value; 6])
-        }
-
-        fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
-            Ok([value as f64; 6])
-        }
-
-        fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
-            let mut values = Vec::new();
-            while let Some(value) = list.next_element()? {
-                values.push(value);
+impl Serialize for PerJoint {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|value| value == first) => {
+                serializer.serialize_f64(*first)
             }
-            values.try_into().map_err(|values: Vec<f64>| Error::invalid_length(values.len(), &self))
+            values => values.serialize(serializer),
         }
+    }
+}
+
+impl<'de> Deserialize<'de> for PerJoint {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(OneOrMany)
+    }
+}
+
+struct OneOrMany;
+
+impl<'de> Visitor<'de> for OneOrMany {
+    type Value = PerJoint;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("one number for all joints or a list of one each")
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
+        Ok(PerJoint::all(value))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
+        Ok(PerJoint::all(value as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
+        let mut values = Vec::new();
+        while let Some(value) = list.next_element()? {
+            values.push(value);
+        }
+        if values.is_empty() {
+            return Err(Error::invalid_length(0, &self));
+        }
+        Ok(PerJoint(values))
     }
 }

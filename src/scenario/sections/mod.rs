@@ -3,6 +3,7 @@
 
 mod columns;
 mod contact;
+mod described;
 mod drive;
 mod environment;
 mod joints;
@@ -17,12 +18,22 @@ pub use crate::contact::StiffnessForm;
 pub use crate::engine::StepControl;
 pub use columns::{Columns, Sources};
 pub use contact::{Contact, Law};
+pub use described::{
+    Body, Described, Fixed, Force, GROUND, Ground, Joint, JointDrive, On, Output, Prismatic,
+    Quantity, Revolute, SampledDrive, Sensor, Servo, Shape, Spring, Stop,
+};
 pub use drive::{Drive, DriveMode, Sampled};
 pub use environment::Environment;
-pub use joints::{JOINTS, Joints};
+pub use joints::{Joints, PerJoint};
 pub use legs::Legs;
-pub use mechanism::{DriveStage, Mechanism, Pendulum, ThreeRpr};
-pub use motion::{Circle, Line, Motion, Multisine, Quintic, Table, Term};
+pub use mechanism::{
+    DoublePendulum, DriveStage, FiveBar, FourBar, Mechanism, Pendulum, SliderCrank, ThreeRpr,
+    ThreeRrr,
+};
+pub use motion::{
+    Circle, JointLine, JointMotion, JointMultisine, JointPath, JointQuintic, JointTable, Line,
+    Motion, Multisine, Quintic, Table, Target, Term, Term1,
+};
 pub use native::Native;
 pub use sensors::Sensors;
 pub use simulation::Simulation;

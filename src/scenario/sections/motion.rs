@@ -1,4 +1,4 @@
-//! `[motion]`: the commanded path of the platform.
+//! `[motion]`: the commanded path of the platform, of another body, of a point, or of joints.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
@@ -22,13 +22,118 @@ pub enum Motion {
     Quintic(Quintic),
     /// `kind = "multisine"`: a sum of sines about a pose.
     Multisine(Multisine),
-    /// `kind = "table"`: a path from a CSV file.
+    /// `kind = "table"`: a path from a CSV file; in a described machine without `body` or `point` the
+    /// coordinates of its driven joints.
     Table(Table),
+    /// `[[motion]]`: joint by joint, in a described machine.
+    #[serde(skip)]
+    Joints(Vec<JointMotion>),
+    /// No motion: drives hold the coordinates of the start.
+    #[serde(skip)]
+    Rest,
 }
 
 impl Motion {
     pub(in crate::scenario) const KINDS: [&'static str; 5] =
         ["circle", "line", "quintic", "multisine", "table"];
+}
+
+/// What a described machine's `[motion]` moves, where it moves no joint.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Target {
+    /// `body = "…"`: a body's axes, x, y and φ.
+    Body(String),
+    /// `point = "body.point"`: x and y.
+    Point(String),
+}
+
+/// The motion of one joint.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointMotion {
+    /// Name of the joint.
+    pub joint: String,
+    /// Its coordinate over time.
+    #[serde(flatten)]
+    pub path: JointPath,
+}
+
+/// A coordinate over time, m or rad.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum JointPath {
+    /// q = start + velocity · t.
+    Line(JointLine),
+    /// From rest to rest, as [`Quintic`].
+    Quintic(JointQuintic),
+    /// q = center + Σ amplitude · sin(2π frequency t + phase).
+    Multisine(JointMultisine),
+    /// A column of a CSV file.
+    Table(JointTable),
+}
+
+impl JointPath {
+    pub(in crate::scenario) const KINDS: [&'static str; 4] =
+        ["line", "quintic", "multisine", "table"];
+}
+
+/// A coordinate at constant rate.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct JointLine {
+    /// Coordinate at t = 0, m or rad. Default none: that of the bodies' `start`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start: Option<f64>,
+    /// m/s or rad/s. Default 0: it holds.
+    pub velocity: f64,
+}
+
+/// A coordinate from rest to rest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointQuintic {
+    /// First coordinate, m or rad. Default none: that of the bodies' `start`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<f64>,
+    /// Last coordinate, m or rad.
+    pub to: f64,
+    /// Time from first to last, s.
+    pub time: f64,
+}
+
+/// Sines about a middle.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct JointMultisine {
+    /// Middle, m or rad. Default none: that of the bodies' `start`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub center: Option<f64>,
+    /// The sines.
+    pub terms: Vec<Term1>,
+}
+
+/// A column of a table over its column `t`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct JointTable {
+    /// The CSV file.
+    pub file: String,
+    /// The column. Default `q_JOINT`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub column: Option<String>,
+}
+
+/// One sine of a coordinate or of a force.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Term1 {
+    /// Amplitude, in the unit of what it is part of.
+    pub amplitude: f64,
+    /// Frequency, Hz.
+    pub frequency: f64,
+    /// Phase at t = 0, rad. Default 0.
+    #[serde(default)]
+    pub phase: f64,
 }
 
 impl Default for Motion {

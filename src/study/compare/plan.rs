@@ -3,7 +3,7 @@
 use super::SAMPLE_INTERVAL;
 use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
 use crate::scenario::{Law, Mechanism, Motion, Problem, Scenario};
-use crate::simulate::{Machine, assemble};
+use crate::simulate::{Machine, assemble, radial_clearance};
 use crate::study::chaos::DISPLACEMENT;
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
@@ -71,9 +71,9 @@ impl Plan {
 /// A motion table that cannot be read, a machine without joints to compare.
 pub fn plan(scenario: &Scenario, options: &Options) -> Result<Plan, Problem> {
     let law = machine(scenario, Law::HertzStep, tolerance(scenario), 0, 1)?;
-    if law.mechanism.revolutes.is_empty() {
-        let message = "has no revolute joint: there are no contacts to compare";
-        let help = "expected a mechanism with clearance in its joints, \"3rpr\" or \"pendulum\"";
+    if law.mechanism.revolutes.iter().all(|joint| radial_clearance(&joint.bearing).is_none()) {
+        let message = "has no joint with clearance: there are no contacts to compare";
+        let help = "expected a mechanism with clearance in a revolute joint";
         return Err(scenario.problem("mechanism.kind", message, help));
     }
     let longest = law.mechanism.longest_step(TYPICAL_IMPACT_SPEED).unwrap_or(f64::INFINITY);
@@ -131,8 +131,8 @@ pub fn machine(
     let mut machine = assemble(&scenario)?;
     machine.control = control;
     if start > 0 {
-        let output = &mut machine.mechanism.bodies[machine.mechanism.output];
-        output.start.position += Vector2::new(turn.cos(), turn.sin()) * DISPLACEMENT;
+        let shift = Vector2::new(turn.cos(), turn.sin()) * DISPLACEMENT;
+        machine.mechanism = machine.mechanism.displaced(shift);
     }
     Ok(machine)
 }

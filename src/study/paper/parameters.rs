@@ -62,7 +62,7 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
     let Mechanism::ThreeRpr(m) = &scenario.mechanism else { return Vec::new() };
     let (legs, contact, joints) = (&scenario.legs, &scenario.contact, &scenario.joints);
     let mm = |metres: f64| format!("{} mm", number(1e3 * metres));
-    let stiffness = machine.contact(scenario, 0, 0.1).map_or(f64::NAN, |(k, _)| k);
+    let stiffness = machine.contact(0, 0.1).map_or(f64::NAN, |(k, _)| k);
     let gravity = scenario.environment.gravity;
     vec![
         given("platform, side length", "mm", 100.0, 1e3 * m.platform_side, "table 1"),
@@ -125,7 +125,7 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
             match &scenario.motion {
                 Motion::Circle(circle) => format!("{} rad", number(circle.phi)),
                 Motion::Line(line) => format!("{} rad", number(line.phi)),
-                Motion::Quintic(_) | Motion::Multisine(_) | Motion::Table(_) => String::new(),
+                _ => String::new(),
             },
             "π/6; the machine is singular at 0 and π, wherever the platform is",
         ),
@@ -151,7 +151,7 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
         ),
         assumed(
             "friction in the joints",
-            number(joints.friction.iter().copied().fold(0.0, f64::max)),
+            number(joints.friction.values().iter().copied().fold(0.0, f64::max)),
             "the paper has none in its equations",
         ),
         assumed(
@@ -182,6 +182,6 @@ fn trajectory(motion: &Motion) -> String {
         Motion::Line(l) => {
             format!("straight line at {} m/s", number(l.velocity[0].hypot(l.velocity[1])))
         }
-        Motion::Quintic(_) | Motion::Multisine(_) | Motion::Table(_) => String::new(),
+        _ => String::new(),
     }
 }

@@ -1,7 +1,7 @@
 //! What the study varies: clearances, starts, and everything that the paper leaves open.
 
 use super::PaperError;
-use crate::scenario::{Law, Mechanism, Motion, Problem, Problems, Scenario, Source};
+use crate::scenario::{Law, Mechanism, Motion, PerJoint, Problem, Problems, Scenario, Source};
 use crate::simulate::{Machine, Severity, assemble, findings};
 use crate::study::compare::SAMPLE_INTERVAL;
 use nalgebra::{Rotation2, Vector2};
@@ -103,7 +103,7 @@ pub fn scenarios(
         return Err(base.problem("motion.kind", "does not suit the paper's study", help).into());
     }
     let help = format!("the study sets it to {}", CLEARANCES.map(|c| format!("{c:e}")).join(", "));
-    if base.joints.clearance != [LARGE; 6] {
+    if (0..base.mechanism.revolute_names().len()).any(|joint| base.clearance(joint) != LARGE) {
         return Err(base
             .problem("joints.clearance", "is not for the user to choose here", help)
             .into());
@@ -117,7 +117,7 @@ pub fn scenarios(
             scenario.contact.law = Law::HertzStep;
             for start in 0..starts {
                 let started = started(&scenario, LARGE, start, starts);
-                let found = findings(&started, &assemble(&started)?);
+                let found = findings(&started, &mut assemble(&started)?);
                 if let Some(error) = found.into_iter().find(|f| f.severity == Severity::Error) {
                     return Err(in_variant(&variant, error.problem).into());
                 }
@@ -152,7 +152,7 @@ fn in_variant(variant: &Variant, problem: Problem) -> Problems {
 /// same motion to a reader of the paper.
 fn started(scenario: &Scenario, clearance: f64, start: usize, starts: usize) -> Scenario {
     let mut scenario = scenario.clone();
-    scenario.joints.clearance = [clearance; 6];
+    scenario.joints.clearance = Some(PerJoint::all(clearance));
     scenario.simulation.output_interval = SAMPLE_INTERVAL;
     let turn = TAU * start as f64 / starts as f64;
     match &mut scenario.motion {
@@ -162,7 +162,7 @@ fn started(scenario: &Scenario, clearance: f64, start: usize, starts: usize) -> 
             (line.start, line.velocity) = (turned(line.start), turned(line.velocity));
         }
         // Refused in `scenarios`.
-        Motion::Quintic(_) | Motion::Multisine(_) | Motion::Table(_) => {}
+        _ => {}
     }
     scenario
 }

@@ -2,7 +2,7 @@
 
 use super::record::{hexadecimal, sha256};
 use super::{Design, Identity, Shard, SweepError, Vary, row};
-use crate::scenario::{Location, Motion, Problem, Scenario, Source};
+use crate::scenario::{Location, Problem, Scenario, Source};
 use crate::simulate::{Machine, Provenance, Severity, assemble, findings};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
@@ -87,8 +87,8 @@ impl Plan {
     /// The machine of run `run`, or in words why it cannot do what is asked.
     pub(super) fn machine(&self, run: usize) -> Result<(Scenario, Machine), String> {
         let scenario = self.scenario(run).map_err(|problem| self.in_words(&problem))?;
-        let machine = assemble(&scenario).map_err(|problem| self.in_words(&problem))?;
-        let found = findings(&scenario, &machine);
+        let mut machine = assemble(&scenario).map_err(|problem| self.in_words(&problem))?;
+        let found = findings(&scenario, &mut machine);
         match found.iter().find(|finding| finding.severity == Severity::Error) {
             Some(error) => Err(self.in_words(&error.problem)),
             None => Ok((scenario, machine)),
@@ -142,14 +142,14 @@ impl Plan {
     fn checked(&self, run: usize) -> Result<Checked, Problem> {
         let scenario = self.scenario(run)?;
         let mut text = scenario.to_toml();
-        let assembled = assemble(&scenario);
-        if let Motion::Table(table) = &scenario.motion {
+        let mut assembled = assemble(&scenario);
+        for file in scenario.files() {
             // A file that cannot be read is among the reasons that `assemble` finds.
-            let content = std::fs::read(scenario.resolve(&table.file)).unwrap_or_default();
+            let content = std::fs::read(scenario.resolve(&file)).unwrap_or_default();
             text += &sha256(&content);
         }
         let hash = sha256(text.as_bytes());
-        let found = match &assembled {
+        let found = match &mut assembled {
             Ok(machine) => findings(&scenario, machine),
             Err(problem) => {
                 let refused = Some(self.in_words(problem));

@@ -50,7 +50,7 @@ pub(super) fn found(
     let effects = reported.collect();
     let mass = match &rig.mechanism {
         scenario::Mechanism::DriveStage(stage) => stage.mass,
-        scenario::Mechanism::ThreeRpr(_) | scenario::Mechanism::Pendulum(_) => f64::NAN,
+        _ => f64::NAN,
     };
     let whole = model.factor(Term::Mass);
     let mut parameters =

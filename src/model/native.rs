@@ -1,7 +1,6 @@
 //! Settings with which the physics engine's own contacts come nearest to the contact law.
 
-use super::assemble::hertz_step;
-use crate::contact::impact;
+use crate::contact::{HertzStep, impact};
 use crate::mechanism::{Mechanism, NativeContacts};
 use crate::scenario::Scenario;
 use std::f64::consts::PI;
@@ -18,13 +17,20 @@ pub const FIT_SPEED: f64 = 0.1;
 /// `T = π/(ω √(1−ζ²))`, `v₁/v₀ = exp(−πζ/√(1−ζ²))`.
 ///
 /// Joints have one setting together: means over them.
-pub(super) fn contacts(scenario: &Scenario, mechanism: &Mechanism) -> NativeContacts {
-    let hits: Vec<_> = mechanism
-        .revolutes
-        .iter()
-        .enumerate()
-        .map(|(i, joint)| impact(&hertz_step(scenario, i), mechanism.joint_mass(joint), FIT_SPEED))
+pub(super) fn contacts(
+    scenario: &Scenario,
+    mechanism: &Mechanism,
+    laws: &[Option<HertzStep>],
+) -> NativeContacts {
+    let joints = mechanism.revolutes.iter().zip(laws);
+    let hits: Vec<_> = joints
+        .filter_map(|(joint, law)| {
+            Some(impact(law.as_ref()?, mechanism.joint_mass(joint), FIT_SPEED))
+        })
         .collect();
+    if hits.is_empty() {
+        return NativeContacts::default();
+    }
     let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
     // Nothing is returned where the damper stops the journal for good: 1e-3 keeps the logarithm.
     let rebound = mean(hits.iter().map(|hit| hit.rebound / FIT_SPEED).collect()).max(1e-3);

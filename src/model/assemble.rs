@@ -1,0 +1,397 @@
+//! The only way from a scenario to a machine.
+
+use super::build::{Built, build, joint_named, located};
+use super::commands::{Each, Source};
+use super::ideal::{Ideal, States};
+use super::layout::Layout;
+use super::path::DrivenPath;
+use super::templates::expand;
+use super::{motion, native};
+use crate::contact::HertzStep;
+use crate::effects::Wrong;
+use crate::engine::{Schedule, StepControl};
+use crate::mechanism::drive_stage::state as stage_state;
+use crate::mechanism::motion::{Line, Motion};
+use crate::mechanism::pendulum::Arm;
+use crate::mechanism::{
+    Attachment, Bearing, BodyState, Commands, Drive, Imposed, JointIndex, Mechanism,
+    TelescopicLegs, Tracker, angle_near,
+};
+use crate::scenario::{self, JointDrive, Problem, Scenario, Target};
+use nalgebra::{Vector2, Vector3};
+use std::sync::Arc;
+
+/// A machine, its motion, how it is to be stepped, and itself without clearance.
+#[derive(Debug)]
+pub struct Machine {
+    /// What is simulated.
+    pub mechanism: Mechanism,
+    /// What the target of the motion is asked to do; rest where joints are moved, or nothing.
+    pub motion: Arc<dyn Motion>,
+    /// Time in s up to which the motion was said.
+    pub known_until: f64,
+    /// The machine as declared, without effects, with ideal joints and prescribed drives: what results
+    /// are compared with.
+    pub ideal: Ideal,
+    /// Which columns its results have.
+    pub layout: Layout,
+    /// Which instants are wanted.
+    pub schedule: Schedule,
+    /// How to step.
+    pub control: StepControl,
+    /// Force law of each revolute joint with a declared clearance.
+    pub(super) laws: Vec<Option<HertzStep>>,
+    /// Shortest and longest length that each driven prismatic joint is declared to have, in m.
+    pub(super) ranges: Vec<Option<[f64; 2]>>,
+}
+
+/// A machine put together at its start, before its effects.
+struct Assembled {
+    built: Built,
+    motion: Arc<dyn Motion>,
+    known_until: f64,
+    legs: Option<TelescopicLegs>,
+    ranges: Vec<Option<[f64; 2]>>,
+}
+
+/// Makes the machine that a scenario describes.
+///
+/// # Errors
+/// A table that cannot be read, a machine that cannot be put together, an effect that it cannot take.
+pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
+    let scenario = &expand(scenario)?;
+    let motion = motion::path(scenario)?;
+    let Assembled { built, motion, known_until, legs, ranges } = put_together(scenario, motion)?;
+    let Built { mut mechanism, layout, laws, .. } = built;
+    let simulation = &scenario.simulation;
+    let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
+    let control = scenario.step_control();
+    let ideal = ideal(&mechanism, legs, schedule, control);
+    if mechanism.revolutes.iter().any(|joint| matches!(joint.bearing, Bearing::Native { .. })) {
+        mechanism.native = native::contacts(scenario, &mechanism, &laws);
+    }
+    add_effects(scenario, &mut mechanism)?;
+    if !scenario.effects.is_empty() {
+        close(scenario, &mut mechanism)?;
+    }
+    Ok(Machine { mechanism, motion, known_until, ideal, layout, schedule, control, laws, ranges })
+}
+
+/// The machine of a scenario with its effects, at rest at the pose (m, m, rad) of its output, under
+/// other commands than its motion's. Commands and loads take the start for the time `epoch` in s.
+/// What it is simulated from has to be closed first ([`close`]).
+///
+/// # Errors
+/// A pose that it cannot take, an effect that the machine cannot take.
+pub fn driven(
+    scenario: &Scenario,
+    pose: Vector3<f64>,
+    commands: Arc<dyn Commands>,
+    epoch: f64,
+) -> Result<Mechanism, Problem> {
+    let scenario = &expand(scenario)?;
+    let rest = Line { start: pose.xy(), velocity: Vector2::zeros(), phi: pose.z };
+    let mut mechanism = put_together(scenario, Arc::new(rest))?.built.mechanism;
+    mechanism.commands = commands;
+    mechanism.epoch = epoch;
+    add_effects(scenario, &mut mechanism)?;
+    Ok(mechanism)
+}
+
+/// A machine of one joint with its effects, somewhere on its way: a drive stage at a length (m) with a
+/// rate (m/s) under `commands`, a pendulum at an angle (rad) with a rate (rad/s).
+///
+/// # Errors
+/// A scenario that is none of these, an effect that the machine cannot take.
+pub fn started(
+    scenario: &Scenario,
+    start: [f64; 2],
+    commands: Arc<dyn Commands>,
+) -> Result<Mechanism, Problem> {
+    let (state, angle) = match &scenario.mechanism {
+        scenario::Mechanism::DriveStage(_) => (stage_state(start), 0.0),
+        scenario::Mechanism::Pendulum(kind) => {
+            let arm = Arm { mass: kind.mass, inertia: kind.inertia, length: kind.length };
+            (arm.state(start), start[0])
+        }
+        _ => {
+            let help = "this takes a drive-stage or a pendulum";
+            return Err(scenario.problem("mechanism.kind", "is another machine", help));
+        }
+    };
+    let expanded = expand(scenario)?;
+    let described = described(&expanded);
+    let mut mechanism = build(&expanded, described).mechanism;
+    let body = &mut mechanism.bodies[0];
+    (body.start, body.angle) = (state, angle);
+    mechanism.commands = commands;
+    add_effects(scenario, &mut mechanism)?;
+    Ok(mechanism)
+}
+
+/// The description of an expanded scenario.
+fn described(scenario: &Scenario) -> &scenario::Described {
+    static NONE: std::sync::LazyLock<scenario::Described> =
+        std::sync::LazyLock::new(scenario::Described::default);
+    scenario.mechanism.described().unwrap_or(&NONE)
+}
+
+/// Builds an expanded scenario, gives its drives their commands, and closes its joints.
+fn put_together(scenario: &Scenario, path: Arc<dyn Motion>) -> Result<Assembled, Problem> {
+    let described = described(scenario);
+    let mut built = build(scenario, described);
+    let mut legs = None;
+    let known_until = match &scenario.target {
+        Some(target) => {
+            legs = follow(scenario, &mut built, target, &path)?;
+            path.known_until()
+        }
+        None => command(scenario, &mut built, described)?,
+    };
+    match &legs {
+        Some(legs) => {
+            for (body, state) in built.mechanism.bodies.iter_mut().zip(legs.states(0.0)) {
+                body.angle = angle_near(state.rotation, body.angle);
+                body.start = state;
+            }
+            if let Some(target) = built.mechanism.bodies.get_mut(built.mechanism.output) {
+                target.angle = path.at(0.0).pose.z;
+            }
+        }
+        None => {
+            built
+                .mechanism
+                .assemble(0.0)
+                .map_err(|open| super::path::open(scenario, &built.mechanism, open))?;
+        }
+    }
+    let ranges = ranges(&built.mechanism, described);
+    Ok(Assembled { built, motion: path, known_until, legs, ranges })
+}
+
+/// The declared range of each drive's joint.
+fn ranges(mechanism: &Mechanism, described: &scenario::Described) -> Vec<Option<[f64; 2]>> {
+    let range = |name: &str| {
+        described.joints.iter().find_map(|joint| match joint {
+            scenario::Joint::Prismatic(joint) if joint.name == name => joint.range,
+            _ => None,
+        })
+    };
+    mechanism.actuators.iter().map(|actuator| range(&actuator.name)).collect()
+}
+
+/// Commands that carry a body or a point along a path: by the closed form of telescopic legs, else by a
+/// table of the inverse kinematics, which Newton's method solves along the way.
+fn follow(
+    scenario: &Scenario,
+    built: &mut Built,
+    target: &Target,
+    path: &Arc<dyn Motion>,
+) -> Result<Option<TelescopicLegs>, Problem> {
+    let (Target::Body(name) | Target::Point(name)) = target;
+    let whole = matches!(target, Target::Body(_));
+    let (point, angle) = located(&built.parts, name);
+    let mechanism = &mut built.mechanism;
+    let forces = mechanism.actuators.iter().filter(|a| a.drive == Drive::Effort).count();
+    let followers = mechanism.actuators.len() - forces;
+    let Attachment { body: Some(body), .. } = point else {
+        let help = "a body that moves, or one of its points";
+        return Err(scenario.problem("motion", format!("\"{name}\" is on the ground"), help));
+    };
+    let needed = if whole { 3 } else { 2 };
+    if followers != needed || forces > 0 {
+        let message = format!(
+            "moves {} of \"{name}\", which takes {needed} drives that follow it; {followers} do",
+            if whole { "x, y and phi" } else { "x and y" }
+        );
+        let help = "give it as many [[drive]]s, or move joints by [[motion]] joint = \"…\"";
+        return Err(scenario.problem("motion", message, help));
+    }
+    if whole && angle == 0.0 {
+        let legs = TelescopicLegs::of(mechanism, body, point.point, Arc::clone(path));
+        if let Some(legs) = legs {
+            mechanism.commands = Arc::new(legs.clone());
+            return Ok(Some(legs));
+        }
+    }
+    let imposed =
+        Imposed::Target { point, angle: whole.then_some(angle), motion: Arc::clone(path) };
+    let simulated = scenario.simulation.duration;
+    let (table, starts) =
+        super::path::inverse_kinematics(mechanism, imposed, simulated).map_err(|stuck| {
+            let message = format!(
+                "carries \"{name}\" out of reach at t = {:.4} s: no pose of the machine without clearance \
+                 has it there",
+                stuck.t
+            );
+            scenario.problem("motion", message, "a smaller motion, or one elsewhere")
+        })?;
+    mechanism.commands = Arc::new(table);
+    for (body, state) in mechanism.bodies.iter_mut().zip(starts) {
+        body.angle = angle_near(state.rotation, body.angle);
+        body.start = state;
+    }
+    Ok(None)
+}
+
+/// Commands joint by joint: motions, tables, forces, and the coordinate of the start for drives of which
+/// nothing is said. Returns the time up to which all is said.
+fn command(
+    scenario: &Scenario,
+    built: &mut Built,
+    described: &scenario::Described,
+) -> Result<f64, Problem> {
+    let mechanism = &mut built.mechanism;
+    let said: Vec<Option<Source>> = mechanism
+        .actuators
+        .iter()
+        .map(|actuator| source(scenario, mechanism, described, &actuator.name))
+        .collect::<Result<_, _>>()?;
+    // Drives that hold take the coordinate that the joints and the other drives leave them.
+    let followers: Vec<usize> = (0..said.len()).filter(|&i| said[i].is_some()).collect();
+    if followers.len() < said.len() {
+        let mut moved = mechanism.clone();
+        moved.actuators = followers.iter().map(|&i| mechanism.actuators[i].clone()).collect();
+        let sources = followers.iter().filter_map(|&i| said[i].clone()).collect();
+        moved.commands = Arc::new(Each(sources));
+        moved.assemble(0.0).map_err(|open| super::path::open(scenario, &moved, open))?;
+        for (body, closed) in mechanism.bodies.iter_mut().zip(&moved.bodies) {
+            (body.start, body.angle) = (closed.start, closed.angle);
+        }
+    }
+    let start = |i: usize| start_coordinate(mechanism, mechanism.actuators[i].joint);
+    let sources: Vec<Source> = said
+        .into_iter()
+        .enumerate()
+        .map(|(i, source)| source.unwrap_or_else(|| Source::Hold(start(i))))
+        .collect();
+    let known = sources.iter().map(Source::known_until).fold(f64::INFINITY, f64::min);
+    mechanism.commands = Arc::new(Each(sources));
+    Ok(known)
+}
+
+/// Coordinate of a joint (m, rad) at the bodies' starts.
+fn start_coordinate(mechanism: &Mechanism, joint: JointIndex) -> f64 {
+    match joint {
+        JointIndex::Revolute(i) => mechanism.start_angle(i),
+        JointIndex::Prismatic(i) => {
+            let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
+            mechanism.prismatics[i].length(&states)
+        }
+    }
+}
+
+/// What the drive of the joint `name` is told; none where nothing is said.
+fn source(
+    scenario: &Scenario,
+    mechanism: &Mechanism,
+    described: &scenario::Described,
+    name: &str,
+) -> Result<Option<Source>, Problem> {
+    let drives = described.drives.iter().enumerate();
+    for (i, drive) in drives {
+        if let JointDrive::Force(force) = drive
+            && force.joint == name
+        {
+            return motion::force(scenario, &format!("drive.{i}"), force).map(Some);
+        }
+    }
+    match &scenario.motion {
+        scenario::Motion::Joints(motions) => {
+            let Some(i) = motions.iter().position(|motion| motion.joint == name) else {
+                return Ok(None);
+            };
+            let key = if scenario.is_list("motion") {
+                format!("motion.{i}")
+            } else {
+                "motion".to_owned()
+            };
+            let start = joint_named(mechanism, name)
+                .map_or(0.0, |joint| start_coordinate(mechanism, joint));
+            motion::joint(scenario, &key, name, &motions[i].path, start).map(Some)
+        }
+        scenario::Motion::Table(table) => {
+            let column = format!("q_{name}");
+            let spline = motion::column_of(scenario, "motion.file", &table.file, &column)?;
+            Ok(Some(Source::Spline(spline)))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// The machine without clearance, by whatever says where it is.
+fn ideal(
+    mechanism: &Mechanism,
+    legs: Option<TelescopicLegs>,
+    schedule: Schedule,
+    control: StepControl,
+) -> Ideal {
+    let ideal = mechanism.without_clearance();
+    if let Some(legs) = legs {
+        return Ideal::new(ideal, States::Legs(legs));
+    }
+    let starts: Vec<BodyState> = ideal.bodies.iter().map(|body| body.start).collect();
+    let freedoms = ideal.freedoms(&starts);
+    let determined = freedoms.loose.is_empty() && !ideal.actuators.is_empty();
+    let tracker = determined
+        .then(|| Tracker::new(ideal.clone(), Imposed::Drives, starts, 0.0).ok())
+        .flatten();
+    let states = match tracker {
+        Some(tracker) => States::Tracked(Box::new(tracker)),
+        None => States::Simulated { schedule, control, rows: Vec::new() },
+    };
+    Ideal::new(ideal, states)
+}
+
+/// Gives the mechanism the scenario's effects.
+fn add_effects(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Problem> {
+    for (i, effect) in scenario.effects.iter().enumerate() {
+        effect.apply(mechanism).map_err(|Wrong { key, message, help }| {
+            scenario.problem(&format!("effect.{i}.{key}"), message, help)
+        })?;
+    }
+    Ok(())
+}
+
+/// Centres the journals and gives the drives their commanded coordinates.
+///
+/// # Errors
+/// Joints that cannot be closed.
+pub fn close(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Problem> {
+    mechanism.close(0.0).map_err(|gap| {
+        let message = format!("leave the joints open by {gap:.1e} m at the start");
+        let help = "smaller offsets and scale errors, or another motion";
+        scenario.problem("effect", message, help)
+    })
+}
+
+impl Machine {
+    /// Stiffness K in N/mⁿ of joint `index` and how long it touches (s) in a lossless hit at `speed`
+    /// m/s, under the laws that have a stiffness.
+    pub fn contact(&self, index: usize, speed: f64) -> Option<(f64, f64)> {
+        let joint = &self.mechanism.revolutes[index];
+        let Bearing::Clearance(_) = joint.bearing else { return None };
+        let law = self.laws[index]?;
+        Some((law.stiffness, law.contact_time(self.mechanism.joint_mass(joint), speed)))
+    }
+
+    /// The driven path of the machine without clearance, looked at from end to end; none where the motion
+    /// leaves the machine a freedom.
+    pub fn driven_path(&mut self) -> Option<DrivenPath> {
+        let ranges = self.ranges.clone();
+        self.ideal
+            .is_kinematic()
+            .then(|| DrivenPath::of(&mut self.ideal, self.schedule.duration, &ranges))
+    }
+}
+
+/// Radial clearance in m of a joint; an ideal one has none. To 1e-15 m, so that the difference of two
+/// radii reads as the clearance that was asked for.
+pub fn radial_clearance(bearing: &Bearing) -> Option<f64> {
+    let radial = match bearing {
+        Bearing::Ideal => return None,
+        Bearing::Clearance(clearance) => clearance.radial(),
+        Bearing::Native { bearing_radius, journal_radius, .. } => bearing_radius - journal_radius,
+    };
+    Some((radial * 1e15).round() / 1e15)
+}

@@ -1,0 +1,261 @@
+//! A description as a [`Mechanism`]: bodies, joints, drives, springs and stops, not yet put together.
+
+use super::layout::{Layout, Written};
+use super::parts::Parts;
+use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
+use crate::mechanism::{
+    Actuator, Attachment, Bearing, Cascade, Drive, JointIndex, JointSpring, Mark, Mechanism,
+    PointSpring, Prismatic, Revolute, Stop,
+};
+use crate::scenario::{
+    self, Described, DriveMode, Joint, JointDrive, Law, Motion, Sampled, Scenario, Spring, Target,
+};
+use nalgebra::{UnitComplex, Vector2};
+use std::sync::Arc;
+
+/// A described machine before it is put together.
+pub(super) struct Built {
+    pub mechanism: Mechanism,
+    pub parts: Parts,
+    pub layout: Layout,
+    /// The force law of each revolute joint with a declared clearance, whatever law it is under: native
+    /// contacts are fitted to it.
+    pub laws: Vec<Option<HertzStep>>,
+}
+
+/// Builds what a scenario describes.
+pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
+    let parts = Parts::of(described);
+    let mut mechanism = Mechanism::free(parts.bodies.clone());
+    mechanism.gravity = scenario.environment.gravity.into();
+    let (mut laws, mut declared) = (Vec::new(), Vec::new());
+    for joint in &described.joints {
+        let [first, second] = joint.points().map(|(_, point)| parts.point(point));
+        match joint {
+            Joint::Revolute(joint) => {
+                let index = mechanism.revolutes.len();
+                let clearance = clearance(scenario, joint, index);
+                let law = clearance.map(|clearance| law(scenario, joint, clearance));
+                if clearance.is_some() {
+                    declared.push(index);
+                }
+                mechanism.revolutes.push(Revolute {
+                    name: joint.name.clone(),
+                    ring: first.0,
+                    journal: second.0,
+                    bearing: bearing(scenario, joint, index, clearance, law),
+                    out_of_round: None,
+                });
+                laws.push(law);
+            }
+            Joint::Prismatic(joint) => {
+                let ((base, base_angle), (slider, slider_angle)) = (first, second);
+                mechanism.prismatics.push(Prismatic {
+                    name: joint.name.clone(),
+                    base,
+                    slider,
+                    // The slider's described axes keep the angle `axis` against the base's.
+                    axes: [direction(base_angle + joint.axis), direction(slider_angle)],
+                });
+            }
+            Joint::Fixed(_) => {}
+        }
+    }
+    let mut layout = Layout { outputs: Vec::new(), drives: Vec::new(), joints: declared };
+    for drive in &described.drives {
+        add_drive(&mut mechanism, drive.joint(), joint_drive(drive));
+        layout.drives.push(drive.label());
+    }
+    // Joints that are moved and have no drive of their own follow as `[drive]` says.
+    if let Motion::Joints(motions) = &scenario.motion {
+        for motion in motions {
+            if !mechanism.actuators.iter().any(|actuator| actuator.name == motion.joint) {
+                add_drive(&mut mechanism, &motion.joint, drive(scenario));
+                layout.drives.push(format!("_{}", motion.joint));
+            }
+        }
+    }
+    outputs(scenario, described, &parts, &mut mechanism, &mut layout);
+    for spring in &described.springs {
+        add_spring(&mut mechanism, &parts, spring);
+    }
+    for stop in &described.stops {
+        let Some(joint) = joint_named(&mechanism, &stop.joint) else { continue };
+        let law = HertzStep {
+            stiffness: stop.stiffness,
+            exponent: 1.0,
+            c_max: stop.damping,
+            d_max: stop.depth,
+            clip: true,
+        };
+        mechanism.loads.push(Arc::new(Stop { joint, range: stop.range, law }));
+    }
+    Built { mechanism, parts, layout, laws }
+}
+
+/// A direction at `angle` rad; exactly along x where that is zero.
+fn direction(angle: f64) -> UnitComplex<f64> {
+    if angle == 0.0 { UnitComplex::identity() } else { UnitComplex::new(angle) }
+}
+
+/// The joint of that name.
+pub(super) fn joint_named(mechanism: &Mechanism, name: &str) -> Option<JointIndex> {
+    mechanism.joints().find(|(joint, _)| *joint == name).map(|(_, index)| index)
+}
+
+/// Declared radial clearance of a joint in m; none of an ideal one.
+fn clearance(scenario: &Scenario, joint: &scenario::Revolute, index: usize) -> Option<f64> {
+    let default = || scenario.joints.clearance.as_ref().map(|values| values.at(index));
+    joint.clearance.or_else(default).filter(|clearance| *clearance > 0.0)
+}
+
+/// The Hertz–STEP law of a joint.
+fn law(scenario: &Scenario, joint: &scenario::Revolute, clearance: f64) -> HertzStep {
+    let contact = &scenario.contact;
+    let material =
+        Material { youngs_modulus: contact.youngs_modulus, poisson_ratio: contact.poisson_ratio };
+    let bearing_radius = joint.bearing_radius.unwrap_or(scenario.joints.bearing_radius);
+    let stiffness = joint.stiffness.or(contact.stiffness).unwrap_or_else(|| {
+        let journal_radius = bearing_radius - clearance;
+        hertz_stiffness(contact.stiffness_form, material, bearing_radius, journal_radius)
+    });
+    HertzStep {
+        stiffness,
+        exponent: contact.exponent,
+        c_max: joint.c_max.unwrap_or(contact.c_max),
+        d_max: joint.d_max.unwrap_or(contact.d_max),
+        clip: contact.clip,
+    }
+}
+
+fn bearing(
+    scenario: &Scenario,
+    joint: &scenario::Revolute,
+    index: usize,
+    clearance: Option<f64>,
+    law: Option<HertzStep>,
+) -> Bearing {
+    let (Some(clearance), Some(law)) = (clearance, law) else { return Bearing::Ideal };
+    let bearing_radius = joint.bearing_radius.unwrap_or(scenario.joints.bearing_radius);
+    let journal_radius = bearing_radius - clearance;
+    let friction = joint.friction.unwrap_or_else(|| scenario.joints.friction.at(index));
+    match joint.law.unwrap_or(scenario.contact.law) {
+        Law::Ideal => Bearing::Ideal,
+        Law::Native => Bearing::Native { bearing_radius, journal_radius, friction },
+        Law::HertzStep => Bearing::Clearance(Clearance {
+            bearing_radius,
+            journal_radius,
+            law: Arc::new(law),
+            friction: (friction > 0.0).then_some(CoulombFriction {
+                coefficient: friction,
+                velocity: scenario.contact.friction_velocity,
+            }),
+        }),
+    }
+}
+
+fn add_drive(mechanism: &mut Mechanism, name: &str, drive: Drive) {
+    if let Some(joint) = joint_named(mechanism, name) {
+        mechanism.actuators.push(Actuator::new(name, joint, drive));
+    }
+}
+
+/// The drive that `[drive]` asks for.
+pub fn drive(scenario: &Scenario) -> Drive {
+    let drive = &scenario.drive;
+    match drive.mode {
+        DriveMode::Prescribed => Drive::Prescribed,
+        DriveMode::Servo => Drive::Servo { stiffness: drive.stiffness, damping: drive.damping },
+        DriveMode::Sampled => Drive::Sampled(cascade(&drive.sampled())),
+    }
+}
+
+fn joint_drive(drive: &JointDrive) -> Drive {
+    match drive {
+        JointDrive::Prescribed(_) => Drive::Prescribed,
+        JointDrive::Servo(servo) => {
+            Drive::Servo { stiffness: servo.stiffness, damping: servo.damping }
+        }
+        JointDrive::Sampled(sampled) => Drive::Sampled(cascade(&sampled.controller)),
+        JointDrive::Force(_) => Drive::Effort,
+    }
+}
+
+fn cascade(sampled: &Sampled) -> Cascade {
+    Cascade {
+        position_gain: sampled.position_gain,
+        velocity_gain: sampled.velocity_gain,
+        interval: sampled.interval,
+        limit: sampled.limit,
+        force_gain: sampled.force_gain,
+        lag: sampled.lag,
+    }
+}
+
+/// What is written, and which of it is the machine's output: what the motion moves, else the first output,
+/// else the last body.
+fn outputs(
+    scenario: &Scenario,
+    described: &Described,
+    parts: &Parts,
+    mechanism: &mut Mechanism,
+    layout: &mut Layout,
+) {
+    let asked = described.outputs.iter().map(|output| (output.of().to_owned(), output.label()));
+    let mut asked: Vec<(String, String)> = asked.collect();
+    if asked.is_empty() {
+        let each = |body: &scenario::Body| (body.name.clone(), format!("_{}", body.name));
+        asked = described.bodies.iter().map(each).collect();
+    }
+    let main = match &scenario.target {
+        Some(Target::Body(name) | Target::Point(name)) => Some(name.as_str()),
+        None if described.outputs.is_empty() => described.bodies.last().map(|b| b.name.as_str()),
+        None => described.outputs.first().map(scenario::Output::of),
+    };
+    // The main one first: the body's reference point is that of the output.
+    if let Some((Attachment { body: Some(body), point }, _)) = main.map(|name| located(parts, name))
+    {
+        mechanism.output = body;
+        mechanism.bodies[body].reference = point;
+    }
+    for (name, label) in asked {
+        let (attachment, angle) = located(parts, &name);
+        let Some(body) = attachment.body else { continue };
+        let point = attachment.point - mechanism.bodies[body].reference;
+        layout.outputs.push(Written { label, name, body, point, angle });
+    }
+}
+
+/// The origin of a body's axes, or a point, and the angle of those axes.
+pub(super) fn located(parts: &Parts, name: &str) -> (Attachment, f64) {
+    if name.contains('.') {
+        return parts.point(name);
+    }
+    let part = parts.part(name);
+    (Attachment { body: part.body, point: part.origin }, part.angle)
+}
+
+fn add_spring(mechanism: &mut Mechanism, parts: &Parts, spring: &Spring) {
+    let (stiffness, damping) = (spring.stiffness, spring.damping);
+    if let Some(points) = &spring.between {
+        let mark = |name: &String| {
+            let Attachment { body, point } = parts.point(name).0;
+            let reference =
+                body.map_or_else(Vector2::zeros, |i: usize| mechanism.bodies[i].reference);
+            Mark { body, point: point - reference }
+        };
+        let spring = PointSpring {
+            ends: [mark(&points[0]), mark(&points[1])],
+            stiffness,
+            damping,
+            free_length: spring.free_length.unwrap_or_default(),
+            pull_only: spring.pull_only,
+        };
+        mechanism.loads.push(Arc::new(spring));
+    } else if let Some(joint) =
+        spring.joint.as_deref().and_then(|name| joint_named(mechanism, name))
+    {
+        let free = spring.free_length.or(spring.free_angle).unwrap_or_default();
+        mechanism.loads.push(Arc::new(JointSpring { joint, stiffness, damping, free }));
+    }
+}

@@ -1,0 +1,102 @@
+//! The machine without clearance: where it would be, and the forces it would take.
+
+use crate::engine::{self, Schedule, StepControl};
+use crate::mechanism::{BodyState, Dynamics, Evaluation, Mechanism, TelescopicLegs, Tracker};
+use nalgebra::{Vector2, Vector3};
+
+/// A machine with ideal joints and prescribed drives. Where its motion leaves it no freedom its states follow
+/// from that alone, its forces from the equations of motion at those states; otherwise it is simulated.
+#[derive(Debug)]
+pub struct Ideal {
+    mechanism: Mechanism,
+    states: States,
+    dynamics: Dynamics,
+    now: Evaluation,
+}
+
+/// Where the states of the ideal machine come from.
+#[derive(Debug)]
+pub(super) enum States {
+    /// Legs in closed form.
+    Legs(TelescopicLegs),
+    /// Newton's method from the pose before, so that loops stay on their branch.
+    Tracked(Box<Tracker>),
+    /// A simulation at the rows of the schedule, once somebody asks.
+    Simulated { schedule: Schedule, control: StepControl, rows: Vec<Vec<BodyState>> },
+}
+
+/// The ideal machine at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct IdealInstant<'a> {
+    /// Position of the output in m.
+    pub position: Vector2<f64>,
+    /// Its velocity in m/s.
+    pub velocity: Vector2<f64>,
+    /// Acceleration of the output (m/s², m/s², rad/s²).
+    pub acceleration: Vector3<f64>,
+    /// Effort of each drive in N or N·m.
+    pub drive_forces: &'a [f64],
+}
+
+impl Ideal {
+    /// `mechanism` has ideal joints and prescribed drives only.
+    pub(super) fn new(mechanism: Mechanism, states: States) -> Self {
+        let (dynamics, now) = (Dynamics::new(&mechanism), Evaluation::new(&mechanism));
+        Self { mechanism, states, dynamics, now }
+    }
+
+    /// Whether the motion alone says where the machine is.
+    pub fn is_kinematic(&self) -> bool {
+        !matches!(self.states, States::Simulated { .. })
+    }
+
+    /// The mechanism without clearance.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// States of all bodies at time `t` in s; of a simulated machine at the row next to it. None where it
+    /// cannot be.
+    pub fn states(&mut self, t: f64) -> Option<Vec<BodyState>> {
+        match &mut self.states {
+            States::Legs(legs) => Some(legs.states(t)),
+            States::Tracked(tracker) => {
+                tracker.advance(t).ok()?;
+                Some(tracker.states().to_vec())
+            }
+            States::Simulated { schedule, control, rows } => {
+                if rows.is_empty() {
+                    // A run that breaks down has fewer rows: what lies beyond is not known.
+                    let _broken_down =
+                        engine::run(&self.mechanism, *control, *schedule, &mut |instant| {
+                            rows.push(instant.states.to_vec());
+                        });
+                }
+                rows.get((t / schedule.interval).round() as usize).or(rows.last()).cloned()
+            }
+        }
+    }
+
+    /// The ideal machine at time `t` in s; not a number where it cannot be.
+    pub fn at(&mut self, t: f64) -> IdealInstant<'_> {
+        let Some(states) = self.states(t) else {
+            self.now.drive_forces.fill(f64::NAN);
+            return IdealInstant {
+                position: Vector2::repeat(f64::NAN),
+                velocity: Vector2::repeat(f64::NAN),
+                acceleration: Vector3::repeat(f64::NAN),
+                drive_forces: &self.now.drive_forces,
+            };
+        };
+        self.dynamics.forces(&self.mechanism, t, &states, &mut self.now);
+        self.dynamics.accelerations(&self.mechanism, &states, &mut self.now);
+        self.dynamics.remember(&self.mechanism, t, &states);
+        let output = self.mechanism.output_state(&states);
+        IdealInstant {
+            position: output.position,
+            velocity: output.twist.xy(),
+            acceleration: self.mechanism.output_acceleration(&states, &self.now.accelerations),
+            drive_forces: &self.now.drive_forces,
+        }
+    }
+}

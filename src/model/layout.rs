@@ -1,0 +1,58 @@
+//! Which columns a machine's results have.
+
+use crate::mechanism::{Attachment, BodyState};
+use nalgebra::{Vector2, Vector3};
+
+/// The columns of a machine's time series.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// Bodies and points whose motion is written.
+    pub outputs: Vec<Written>,
+    /// What stands after `q` and `F` in the columns of each drive.
+    pub drives: Vec<String>,
+    /// Indices of the revolute joints that have columns: those with a declared clearance.
+    pub joints: Vec<usize>,
+}
+
+/// A body or point whose motion is written.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// What stands after `x`, `y`, `phi`, `vx`, … in its columns.
+    pub label: String,
+    /// Its name in texts.
+    pub name: String,
+    /// The moving body, and the point of it from its *reference point*, in its own axes, in m.
+    pub body: usize,
+    /// See there.
+    pub point: Vector2<f64>,
+    /// Angle (rad) of the written axes in the body's own.
+    pub angle: f64,
+}
+
+impl Written {
+    /// Position and velocity of the written point; `reference` is the body's reference point from its centre
+    /// of mass (m).
+    pub fn state(&self, states: &[BodyState], reference: Vector2<f64>) -> BodyState {
+        let state = states[self.body];
+        let frame = state.frame(reference + self.point);
+        let twist = Vector3::new(frame.velocity.x, frame.velocity.y, frame.spin);
+        BodyState { position: frame.centre, twist, ..state }
+    }
+
+    /// Its acceleration, `a + α × r − ω² r` and α (m/s², m/s², rad/s²), from that of the body.
+    pub fn acceleration(
+        &self,
+        state: &BodyState,
+        a: Vector3<f64>,
+        reference: Vector2<f64>,
+    ) -> Vector3<f64> {
+        let r = state.rotation * (reference + self.point);
+        let omega2 = state.twist.z * state.twist.z;
+        Vector3::new(a.x - a.z * r.y - omega2 * r.x, a.y + a.z * r.x - omega2 * r.y, a.z)
+    }
+
+    /// The written point as an attachment; `reference` as above.
+    pub fn attachment(&self, reference: Vector2<f64>) -> Attachment {
+        Attachment { body: Some(self.body), point: reference + self.point }
+    }
+}

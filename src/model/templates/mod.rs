@@ -1,0 +1,33 @@
+//! Machines by name: each kind of `[mechanism]` expands to the description that a file may give itself.
+
+mod double_pendulum;
+mod drive_stage;
+mod five_bar;
+mod four_bar;
+mod parts;
+mod pendulum;
+mod slider_crank;
+mod three_rpr;
+mod three_rrr;
+
+pub use three_rpr::{LegUse, leg_use};
+
+use crate::scenario::{Mechanism, Problem, Scenario};
+
+/// The same scenario about a machine that describes itself; one that does so already, as it is.
+///
+/// # Errors
+/// A template whose machine cannot be put together, a table that cannot be read.
+pub fn expand(scenario: &Scenario) -> Result<Scenario, Problem> {
+    match &scenario.mechanism {
+        Mechanism::Described(_) => Ok(scenario.clone()),
+        Mechanism::ThreeRpr(machine) => three_rpr::expand(scenario, machine),
+        Mechanism::DriveStage(machine) => drive_stage::expand(scenario, machine),
+        Mechanism::Pendulum(machine) => Ok(pendulum::expand(scenario, machine)),
+        Mechanism::SliderCrank(machine) => slider_crank::expand(scenario, machine),
+        Mechanism::FourBar(machine) => four_bar::expand(scenario, machine),
+        Mechanism::FiveBar(machine) => five_bar::expand(scenario, machine),
+        Mechanism::ThreeRrr(machine) => three_rrr::expand(scenario, machine),
+        Mechanism::DoublePendulum(machine) => Ok(double_pendulum::expand(scenario, machine)),
+    }
+}

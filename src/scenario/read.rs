@@ -1,0 +1,387 @@
+//! From the text of a scenario to its sections: keys and types, not yet the sense of the values.
+
+use super::document::Document;
+use super::reader::Reader;
+use super::{
+    Body, Described, Drive, Fixed, Force, Ground, Joint, JointDrive, JointLine, JointMotion,
+    JointMultisine, JointPath, JointQuintic, JointTable, Mechanism, Motion, On, Prismatic,
+    Problems, Revolute, SampledDrive, Scenario, Sensor, Servo, Stop, Target,
+};
+use crate::effects::{Setting, Wrong};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use std::path::PathBuf;
+use toml::{Table, Value};
+
+/// The sections of a file before each is read by itself.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct TopLevel {
+    name: String,
+    seed: u64,
+    mechanism: Option<Table>,
+    ground: Option<Table>,
+    body: Vec<Table>,
+    joint: Vec<Table>,
+    spring: Vec<Table>,
+    stop: Vec<Table>,
+    output: Vec<Table>,
+    sensor: Vec<Table>,
+    legs: Option<Table>,
+    joints: Option<Table>,
+    contact: Table,
+    native: Table,
+    drive: Option<OneOrMany>,
+    environment: Table,
+    sensors: Option<Table>,
+    columns: Option<Table>,
+    motion: Option<OneOrMany>,
+    simulation: Table,
+    effect: Vec<Table>,
+}
+
+/// `[section]` or `[[section]]`.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "a section with keys, or a list of them")]
+enum OneOrMany {
+    One(Table),
+    Many(Vec<Table>),
+}
+
+impl Default for TopLevel {
+    fn default() -> Self {
+        TopLevel {
+            name: "default".to_owned(),
+            seed: 1,
+            mechanism: None,
+            ground: None,
+            body: Vec::new(),
+            joint: Vec::new(),
+            spring: Vec::new(),
+            stop: Vec::new(),
+            output: Vec::new(),
+            sensor: Vec::new(),
+            legs: None,
+            joints: None,
+            contact: Table::new(),
+            native: Table::new(),
+            drive: None,
+            environment: Table::new(),
+            sensors: None,
+            columns: None,
+            motion: None,
+            simulation: Table::new(),
+            effect: Vec::new(),
+        }
+    }
+}
+
+/// Gives the document its meaning.
+pub(super) fn scenario(document: Document) -> Result<Scenario, Problems> {
+    let mut reader = Reader::new(&document.origins);
+    for (path, number) in document.not_finite() {
+        reader.complain(&path, format!("is {number}"), "expected a finite number".to_owned());
+    }
+    let mut top: TopLevel = reader.read("", document.table);
+    let mechanism = mechanism(&mut reader, &mut top);
+    let described = mechanism.described().is_some();
+    let drive = match top.drive {
+        None => Drive::default(),
+        Some(OneOrMany::One(ref table)) => reader.read("drive", table.clone()),
+        Some(OneOrMany::Many(_)) if described => Drive::default(),
+        Some(OneOrMany::Many(_)) => {
+            let help = "write [drive]: it is for all drives of this machine";
+            reader.complain("drive", "is a list".to_owned(), help.to_owned());
+            Drive::default()
+        }
+    };
+    let present = [
+        ("legs", top.legs.is_some()),
+        ("sensors", top.sensors.is_some()),
+        ("columns", top.columns.is_some()),
+        ("motion", top.motion.is_some()),
+        ("drive", top.drive.is_some()),
+    ];
+    let (motion, target) = match described {
+        true => described_motion(&mut reader, top.motion),
+        false => (motion(&mut reader, &mechanism, top.motion), None),
+    };
+    let scenario = Scenario {
+        name: top.name,
+        seed: top.seed,
+        unused: present
+            .into_iter()
+            .filter(|(section, there)| *there && !mechanism.uses(section))
+            .map(|(section, _)| section)
+            .collect(),
+        mechanism,
+        legs: reader.read("legs", top.legs.unwrap_or_default()),
+        joints: reader.read("joints", top.joints.unwrap_or_default()),
+        contact: reader.read("contact", top.contact),
+        native: reader.read("native", top.native),
+        drive,
+        environment: reader.read("environment", top.environment),
+        sensors: top.sensors.map(|table| reader.read("sensors", table)),
+        columns: top.columns.map(|table| reader.read("columns", table)),
+        motion,
+        target,
+        simulation: reader.read("simulation", top.simulation),
+        effects: effects(&mut reader, top.effect),
+        folder: PathBuf::new(),
+        origins: document.origins.clone(),
+    };
+    if reader.problems.is_empty() { Ok(scenario) } else { Err(Problems(reader.problems)) }
+}
+
+// serde's own tagged enums would lose the path of a wrong key, hence the dispatch by hand.
+fn mechanism(reader: &mut Reader<'_>, top: &mut TopLevel) -> Mechanism {
+    let described = !top.body.is_empty() || !top.joint.is_empty() || top.ground.is_some();
+    let Some(mut table) = top.mechanism.take() else {
+        if described {
+            return Mechanism::Described(Box::new(describe(reader, top)));
+        }
+        no_kind(reader);
+        return Mechanism::ThreeRpr(Default::default());
+    };
+    if described {
+        let help = "keep [mechanism] with a kind, or [ground], [[body]] and [[joint]]";
+        let message = "stands beside a description by [[body]] and [[joint]]".to_owned();
+        reader.complain("mechanism", message, help.to_owned());
+    }
+    let beside = [
+        ("spring", !top.spring.is_empty()),
+        ("stop", !top.stop.is_empty()),
+        ("output", !top.output.is_empty()),
+        ("sensor", !top.sensor.is_empty()),
+    ];
+    for (section, _) in beside.into_iter().filter(|(_, there)| *there && !described) {
+        let message = "belongs to a machine that describes itself".to_owned();
+        let help = "`freeplay expand` writes this machine so, to be added to";
+        reader.complain(section, message, help.to_owned());
+    }
+    if !table.contains_key("kind") {
+        no_kind(reader);
+    }
+    match reader.take_kind("mechanism", &mut table, &Mechanism::KINDS) {
+        Some("drive-stage") => Mechanism::DriveStage(reader.read("mechanism", table)),
+        Some("pendulum") => Mechanism::Pendulum(reader.read("mechanism", table)),
+        Some("slider-crank") => Mechanism::SliderCrank(reader.read("mechanism", table)),
+        Some("four-bar") => Mechanism::FourBar(reader.read("mechanism", table)),
+        Some("five-bar") => Mechanism::FiveBar(reader.read("mechanism", table)),
+        Some("3rrr") => Mechanism::ThreeRrr(reader.read("mechanism", table)),
+        Some("double-pendulum") => Mechanism::DoublePendulum(reader.read("mechanism", table)),
+        _ => Mechanism::ThreeRpr(reader.read("mechanism", table)),
+    }
+}
+
+fn no_kind(reader: &mut Reader<'_>) {
+    let help =
+        "write kind = \"3rpr\" under [mechanism], or describe a machine by [[body]] and [[joint]]";
+    reader.complain("mechanism.kind", "is missing".to_owned(), help.to_owned());
+}
+
+fn describe(reader: &mut Reader<'_>, top: &mut TopLevel) -> Described {
+    let drives = match &top.drive {
+        Some(OneOrMany::Many(tables)) => {
+            let tables = tables.clone();
+            each(reader, "drive", tables, |reader, path, mut table| {
+                match kind(reader, path, &mut table, &JointDrive::KINDS, "drive")? {
+                    "servo" => reader.required::<Servo>(path, table).map(JointDrive::Servo),
+                    "sampled" => {
+                        reader.required::<SampledDrive>(path, table).map(JointDrive::Sampled)
+                    }
+                    "force" => Some(JointDrive::Force(reader.read::<Force>(path, table))),
+                    _ => Some(JointDrive::Prescribed(reader.read::<On>(path, table))),
+                }
+            })
+        }
+        _ => Vec::new(),
+    };
+    let joints = std::mem::take(&mut top.joint);
+    let joints = each(reader, "joint", joints, |reader, path, mut table| {
+        Some(match kind(reader, path, &mut table, &Joint::KINDS, "joint")? {
+            "prismatic" => Joint::Prismatic(reader.read::<Prismatic>(path, table)),
+            "fixed" => Joint::Fixed(reader.read::<Fixed>(path, table)),
+            _ => Joint::Revolute(reader.read::<Revolute>(path, table)),
+        })
+    });
+    let list =
+        |section: &str, tables: &mut Vec<Table>| (section.to_owned(), std::mem::take(tables));
+    let [bodies, springs, stops, outputs, sensors] = [
+        list("body", &mut top.body),
+        list("spring", &mut top.spring),
+        list("stop", &mut top.stop),
+        list("output", &mut top.output),
+        list("sensor", &mut top.sensor),
+    ];
+    Described {
+        ground: reader.read::<Ground>("ground", top.ground.take().unwrap_or_default()),
+        bodies: all::<Body>(reader, bodies),
+        joints,
+        drives,
+        springs: all(reader, springs),
+        stops: each(reader, "stop", stops.1, |reader, path, table| {
+            reader.required::<Stop>(path, table)
+        }),
+        outputs: all(reader, outputs),
+        sensors: each(reader, "sensor", sensors.1, |reader, path, table| {
+            reader.required::<Sensor>(path, table)
+        }),
+    }
+}
+
+/// Reads every table of a list.
+fn each<T>(
+    reader: &mut Reader<'_>,
+    section: &str,
+    tables: Vec<Table>,
+    mut one: impl FnMut(&mut Reader<'_>, &str, Table) -> Option<T>,
+) -> Vec<T> {
+    let tables = tables.into_iter().enumerate();
+    tables.filter_map(|(i, table)| one(reader, &format!("{section}.{i}"), table)).collect()
+}
+
+fn all<T: DeserializeOwned + Default>(
+    reader: &mut Reader<'_>,
+    (section, tables): (String, Vec<Table>),
+) -> Vec<T> {
+    each(reader, &section, tables, |reader, path, table| Some(reader.read(path, table)))
+}
+
+/// Takes the kind of a list's table; complains where it is missing or unknown.
+fn kind(
+    reader: &mut Reader<'_>,
+    path: &str,
+    table: &mut Table,
+    known: &[&'static str],
+    what: &str,
+) -> Option<&'static str> {
+    if !table.contains_key("kind") {
+        let help = format!("write kind = \"{}\", or {}", known[0], known[1..].join(", "));
+        reader.complain(&format!("{path}.kind"), "is missing".to_owned(), help);
+        return None;
+    }
+    reader.take_kind_of(path, what, table, known)
+}
+
+fn effects(reader: &mut Reader<'_>, tables: Vec<Table>) -> Vec<Setting> {
+    let mut effects = Vec::new();
+    for (i, mut table) in tables.into_iter().enumerate() {
+        let section = format!("effect.{i}");
+        let Some(kind) = table.remove("kind") else {
+            let help = "write kind = \"…\"; `freeplay effects` lists them".to_owned();
+            reader.complain(&format!("{section}.kind"), "is missing".to_owned(), help);
+            continue;
+        };
+        let name = kind.as_str().map_or_else(|| kind.to_string(), str::to_owned);
+        match Setting::from_table(&name, &table) {
+            Ok(setting) => effects.push(setting),
+            Err(Wrong { key, message, help }) => {
+                reader.complain(&format!("{section}.{key}"), message, help);
+            }
+        }
+    }
+    effects
+}
+
+/// The motion of a machine with a kind.
+fn motion(reader: &mut Reader<'_>, mechanism: &Mechanism, section: Option<OneOrMany>) -> Motion {
+    match section {
+        None => mechanism.default_motion(),
+        Some(OneOrMany::One(mut table)) if mechanism.has_crank() => {
+            table.entry("joint").or_insert_with(|| Value::String("O".to_owned()));
+            let motion = joint_motion(reader, "motion", table);
+            Motion::Joints(motion.into_iter().collect())
+        }
+        Some(OneOrMany::One(table)) => path(reader, table, Motion::default()),
+        Some(OneOrMany::Many(_)) => {
+            let help = "write [motion]: this machine has one";
+            reader.complain("motion", "is a list".to_owned(), help.to_owned());
+            Motion::default()
+        }
+    }
+}
+
+fn path(reader: &mut Reader<'_>, mut table: Table, default: Motion) -> Motion {
+    let given = table.contains_key("kind");
+    match reader.take_kind("motion", &mut table, &Motion::KINDS) {
+        Some("line") => Motion::Line(reader.read("motion", table)),
+        Some("quintic") => Motion::Quintic(reader.read("motion", table)),
+        Some("multisine") => Motion::Multisine(reader.read("motion", table)),
+        Some("table") => Motion::Table(reader.read("motion", table)),
+        // An unknown kind is reported; its keys belong to nothing that could be checked.
+        None if given => default,
+        _ => Motion::Circle(reader.read("motion", table)),
+    }
+}
+
+/// The motion of a machine that describes itself: of a body or a point, joint by joint, or from a table
+/// of coordinates.
+fn described_motion(
+    reader: &mut Reader<'_>,
+    section: Option<OneOrMany>,
+) -> (Motion, Option<Target>) {
+    let mut table = match section {
+        None => return (Motion::Rest, None),
+        Some(OneOrMany::Many(tables)) => {
+            let joints = each(reader, "motion", tables, joint_motion);
+            return (Motion::Joints(joints), None);
+        }
+        Some(OneOrMany::One(table)) if table.contains_key("joint") => {
+            let joint = joint_motion(reader, "motion", table);
+            return (Motion::Joints(joint.into_iter().collect()), None);
+        }
+        Some(OneOrMany::One(table)) => table,
+    };
+    let mut target = None;
+    for (key, of) in [("body", Target::Body as fn(String) -> Target), ("point", Target::Point)] {
+        match table.remove(key) {
+            Some(Value::String(name)) if target.is_none() => target = Some(of(name)),
+            Some(Value::String(_)) => {
+                let help = "keep one: body moves x, y and phi, point moves x and y".to_owned();
+                reader.complain(&format!("motion.{key}"), "stands beside `body`".to_owned(), help);
+            }
+            Some(other) => reader.complain(
+                &format!("motion.{key}"),
+                format!("found {other}"),
+                "expected a name, in quotes".to_owned(),
+            ),
+            None => {}
+        }
+    }
+    let of_joints = table.get("kind").and_then(Value::as_str) == Some("table");
+    if target.is_none() && !of_joints {
+        let help = "write joint = \"…\", body = \"…\" or point = \"body.point\"; or a table of joint coordinates";
+        reader.complain("motion", "does not say what it moves".to_owned(), help.to_owned());
+    }
+    if let Some(Target::Point(_)) = target
+        && table.contains_key("phi")
+    {
+        let help = "a point has no angle: take it out, or move a body";
+        reader.complain("motion.phi", "is not used".to_owned(), help.to_owned());
+    }
+    (path(reader, table, Motion::Rest), target)
+}
+
+fn joint_motion(reader: &mut Reader<'_>, path: &str, mut table: Table) -> Option<JointMotion> {
+    let joint = match table.remove("joint") {
+        Some(Value::String(joint)) => joint,
+        Some(other) => {
+            let help = "expected the name of a joint, in quotes".to_owned();
+            reader.complain(&format!("{path}.joint"), format!("found {other}"), help);
+            return None;
+        }
+        None => {
+            let help = "write joint = \"…\": a list of motions moves joints".to_owned();
+            reader.complain(&format!("{path}.joint"), "is missing".to_owned(), help);
+            return None;
+        }
+    };
+    let coordinate = match kind(reader, path, &mut table, &JointPath::KINDS, "motion")? {
+        "quintic" => JointPath::Quintic(reader.required::<JointQuintic>(path, table)?),
+        "multisine" => JointPath::Multisine(reader.read::<JointMultisine>(path, table)),
+        "table" => JointPath::Table(reader.read::<JointTable>(path, table)),
+        _ => JointPath::Line(reader.read::<JointLine>(path, table)),
+    };
+    Some(JointMotion { joint, path: coordinate })
+}

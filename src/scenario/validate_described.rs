@@ -1,0 +1,474 @@
+//! What is surely wrong with a described machine by itself: names that nothing has, numbers that no body,
+//! joint or drive can have.
+
+use super::{
+    Body, Described, GROUND, Joint, JointDrive, JointPath, Motion, Problem, Quantity, Scenario,
+    Shape, Target,
+};
+use crate::measure::spelling::nearest;
+use std::collections::BTreeSet;
+
+/// Everything wrong with a described machine.
+pub(super) fn problems(scenario: &Scenario, described: &Described) -> Vec<Problem> {
+    let mut checks = Checks { scenario, described, problems: Vec::new() };
+    checks.bodies();
+    checks.joints();
+    checks.drives();
+    checks.springs();
+    checks.stops();
+    checks.outputs();
+    checks.sensors();
+    checks.motion();
+    checks.held();
+    checks.problems
+}
+
+struct Checks<'a> {
+    scenario: &'a Scenario,
+    described: &'a Described,
+    problems: Vec<Problem>,
+}
+
+impl Checks<'_> {
+    fn bodies(&mut self) {
+        if self.described.bodies.is_empty() {
+            self.complain("body", "are none".to_owned(), "describe bodies by [[body]]");
+        }
+        let mut seen = BTreeSet::from([GROUND]);
+        for (i, body) in self.described.bodies.iter().enumerate() {
+            let path = format!("body.{i}");
+            self.name(&format!("{path}.name"), &body.name, "body", &mut seen);
+            self.mass(&path, body);
+        }
+    }
+
+    fn mass(&mut self, path: &str, body: &Body) {
+        let given = [("mass", body.mass, "kg"), ("inertia", body.inertia, "kg m²")];
+        for (key, value, unit) in given {
+            let path = format!("{path}.{key}");
+            match (value, &body.shape) {
+                (Some(_), Some(_)) => {
+                    let message = "stands beside `shape`".to_owned();
+                    self.complain(&path, message, "keep one: a shape has a mass and an inertia");
+                }
+                (None, None) => {
+                    let message = format!("is missing for the body \"{}\"", body.name);
+                    self.complain(&path, message, &format!("write {key} = … ({unit}), or a shape"));
+                }
+                (Some(value), None) if value <= 0.0 => {
+                    let message = format!("is {value} for the body \"{}\"", body.name);
+                    let help = format!(
+                        "expected above 0 {unit}: a body that moves has both, however small"
+                    );
+                    self.complain(&path, message, &help);
+                }
+                _ => {}
+            }
+        }
+        let Some(shape) = &body.shape else { return };
+        let (points, sizes): (Vec<&String>, &[(&str, f64, &str)]) = match shape {
+            Shape::Bar { from, to, diameter, density } => {
+                (vec![from, to], &[("diameter", *diameter, "m"), ("density", *density, "kg/m³")])
+            }
+            Shape::Disc { center, radius, thickness, density } => (
+                vec![center],
+                &[
+                    ("radius", *radius, "m"),
+                    ("thickness", *thickness, "m"),
+                    ("density", *density, "kg/m³"),
+                ],
+            ),
+            Shape::Polygon { corners, thickness, density } => (
+                corners.iter().collect(),
+                &[("thickness", *thickness, "m"), ("density", *density, "kg/m³")],
+            ),
+        };
+        for (key, value, unit) in sizes {
+            if *value <= 0.0 {
+                let help = format!("expected above 0 {unit}");
+                self.complain(&format!("{path}.shape.{key}"), format!("is {value}"), &help);
+            }
+        }
+        for point in points {
+            if !body.points.contains_key(point) {
+                let message = format!("the body \"{}\" has no point \"{point}\"", body.name);
+                let known: Vec<&str> = body.points.keys().map(String::as_str).collect();
+                self.complain(&format!("{path}.shape"), message, &suggest(point, &known));
+            }
+        }
+        if let Shape::Polygon { corners, .. } = shape
+            && corners.len() < 3
+        {
+            let message = format!("has {} corners", corners.len());
+            self.complain(&format!("{path}.shape.corners"), message, "expected 3 or more");
+        }
+    }
+
+    fn joints(&mut self) {
+        let mut seen = BTreeSet::new();
+        for (i, joint) in self.described.joints.iter().enumerate() {
+            let path = format!("joint.{i}");
+            self.name(&format!("{path}.name"), joint.name(), "joint", &mut seen);
+            for (key, point) in joint.points() {
+                self.point(&format!("{path}.{key}"), point);
+            }
+            let [(_, first), (key, second)] = joint.points();
+            if let (Some((a, _)), Some((b, _))) = (first.split_once('.'), second.split_once('.'))
+                && a == b
+            {
+                let message = format!("is on \"{b}\", as the other point of the joint");
+                self.complain(&format!("{path}.{key}"), message, "a joint connects two bodies");
+            }
+            self.joint_numbers(&path, joint);
+        }
+    }
+
+    fn joint_numbers(&mut self, path: &str, joint: &Joint) {
+        match joint {
+            Joint::Revolute(joint) => {
+                let default = self.scenario.joints.bearing_radius;
+                let radius = joint.bearing_radius.unwrap_or(default);
+                if radius <= 0.0 {
+                    let path = format!("{path}.bearing_radius");
+                    self.complain(&path, format!("is {radius}"), "expected above 0 m");
+                }
+                if let Some(clearance) = joint.clearance
+                    && !(0.0..radius).contains(&clearance)
+                {
+                    let message = format!("is {clearance} m in the joint \"{}\"", joint.name);
+                    let help = format!(
+                        "expected below the bearing radius, {radius} m; 0 or no clearance is an ideal \
+                         joint"
+                    );
+                    self.complain(&format!("{path}.clearance"), message, &help);
+                }
+                let numbers = [
+                    ("friction", joint.friction, 0.0),
+                    ("c_max", joint.c_max, 0.0),
+                    ("stiffness", joint.stiffness, f64::MIN_POSITIVE),
+                    ("d_max", joint.d_max, f64::MIN_POSITIVE),
+                ];
+                let ideal = joint.law == Some(super::Law::Ideal);
+                for (key, value, least) in numbers {
+                    let Some(value) = value else { continue };
+                    if ideal {
+                        let message =
+                            "belongs to a contact law, and this joint is ideal".to_owned();
+                        self.complain(&format!("{path}.{key}"), message, "take one of both out");
+                    } else if value < least {
+                        let help =
+                            if least > 0.0 { "expected above 0" } else { "expected 0 or more" };
+                        self.complain(&format!("{path}.{key}"), format!("is {value}"), help);
+                    }
+                }
+            }
+            Joint::Prismatic(joint) => {
+                if let Some([low, high]) = joint.range {
+                    self.increasing(&format!("{path}.range"), low, high);
+                }
+            }
+            Joint::Fixed(_) => {}
+        }
+    }
+
+    fn drives(&mut self) {
+        let mut seen = BTreeSet::new();
+        for (i, drive) in self.described.drives.iter().enumerate() {
+            let path = format!("drive.{i}");
+            self.movable(&format!("{path}.joint"), drive.joint());
+            if !seen.insert(drive.joint()) {
+                let message = format!("\"{}\" is driven twice", drive.joint());
+                self.complain(&format!("{path}.joint"), message, "keep one drive of each joint");
+            }
+            match drive {
+                JointDrive::Servo(servo) => {
+                    self.above_zero(&format!("{path}.stiffness"), servo.stiffness);
+                    self.above_zero(&format!("{path}.damping"), servo.damping);
+                }
+                JointDrive::Sampled(sampled) => {
+                    let c = &sampled.controller;
+                    for (key, value) in [
+                        ("position_gain", c.position_gain),
+                        ("velocity_gain", c.velocity_gain),
+                        ("interval", c.interval),
+                        ("limit", c.limit),
+                        ("force_gain", c.force_gain),
+                    ] {
+                        self.above_zero(&format!("{path}.controller.{key}"), value);
+                    }
+                    self.not_negative(&format!("{path}.controller.lag"), c.lag);
+                }
+                JointDrive::Force(force) => {
+                    if force.column.is_some() && force.file.is_none() {
+                        let message = "names a column of no file".to_owned();
+                        self.complain(&format!("{path}.column"), message, "write file = \"….csv\"");
+                    }
+                }
+                JointDrive::Prescribed(_) => {}
+            }
+        }
+    }
+
+    fn springs(&mut self) {
+        for (i, spring) in self.described.springs.iter().enumerate() {
+            let path = format!("spring.{i}");
+            match (&spring.between, &spring.joint) {
+                (Some(points), None) => {
+                    for (k, point) in points.iter().enumerate() {
+                        self.point(&format!("{path}.between.{k}"), point);
+                    }
+                    if spring.free_angle.is_some() {
+                        let message = "belongs to a revolute joint".to_owned();
+                        self.complain(&format!("{path}.free_angle"), message, "write free_length");
+                    }
+                }
+                (None, Some(joint)) => self.joint_spring(&path, spring, joint),
+                _ => self.complain(
+                    &path,
+                    "does not say where it is".to_owned(),
+                    "write between = [\"body.point\", \"body.point\"], or joint = \"…\"",
+                ),
+            }
+            self.not_negative(&format!("{path}.stiffness"), spring.stiffness);
+            self.not_negative(&format!("{path}.damping"), spring.damping);
+        }
+    }
+
+    fn joint_spring(&mut self, path: &str, spring: &super::Spring, name: &str) {
+        self.movable(&format!("{path}.joint"), name);
+        let revolute = self
+            .described
+            .joints
+            .iter()
+            .any(|joint| joint.name() == name && matches!(joint, Joint::Revolute(_)));
+        let (wrong, right) =
+            if revolute { ("free_length", "free_angle") } else { ("free_angle", "free_length") };
+        let given = if revolute { spring.free_length } else { spring.free_angle };
+        if given.is_some() {
+            let message = format!("is not a key of a spring in \"{name}\"");
+            self.complain(&format!("{path}.{wrong}"), message, &format!("write {right}"));
+        }
+    }
+
+    fn stops(&mut self) {
+        for (i, stop) in self.described.stops.iter().enumerate() {
+            let path = format!("stop.{i}");
+            self.movable(&format!("{path}.joint"), &stop.joint);
+            self.increasing(&format!("{path}.range"), stop.range[0], stop.range[1]);
+            self.above_zero(&format!("{path}.stiffness"), stop.stiffness);
+            self.not_negative(&format!("{path}.damping"), stop.damping);
+            self.above_zero(&format!("{path}.depth"), stop.depth);
+        }
+    }
+
+    fn outputs(&mut self) {
+        let mut seen = BTreeSet::new();
+        for (i, output) in self.described.outputs.iter().enumerate() {
+            let path = format!("output.{i}");
+            match (&output.body, &output.point) {
+                (Some(body), None) => self.body(&format!("{path}.body"), body),
+                (None, Some(point)) => self.point(&format!("{path}.point"), point),
+                _ => {
+                    let help = "write body = \"…\" or point = \"body.point\"";
+                    self.complain(&path, "does not say of what".to_owned(), help);
+                }
+            }
+            if !seen.insert(output.label()) {
+                let message = format!("names the columns x{} twice", output.label());
+                self.complain(&path, message, "give one of them another label");
+            }
+        }
+    }
+
+    fn sensors(&mut self) {
+        let mut seen = BTreeSet::new();
+        for (i, sensor) in self.described.sensors.iter().enumerate() {
+            let path = format!("sensor.{i}");
+            let column = sensor.column.as_str();
+            if column.is_empty() || !seen.insert(column) {
+                let message = format!("two sensors read the column \"{column}\"");
+                self.complain(&format!("{path}.column"), message, "one sensor for each column");
+            }
+            let of = format!("{path}.of");
+            match sensor.quantity {
+                Quantity::Position => self.movable(&of, &sensor.of),
+                Quantity::Command | Quantity::Force => {
+                    self.movable(&of, &sensor.of);
+                    let driven = |drive: &JointDrive| drive.joint() == sensor.of;
+                    if !self.described.drives.iter().any(driven) {
+                        let message = format!("\"{}\" has no drive to read", sensor.of);
+                        self.complain(&of, message, "write a [[drive]] of this joint");
+                    }
+                }
+                Quantity::X | Quantity::Y | Quantity::Angle | Quantity::Acceleration => {
+                    self.point(&of, &sensor.of);
+                }
+            }
+            if sensor.axis.is_some() && sensor.quantity != Quantity::Acceleration {
+                let message = "belongs to an acceleration".to_owned();
+                self.complain(&format!("{path}.axis"), message, "take it out");
+            }
+            self.not_negative(&format!("{path}.std"), sensor.std);
+            self.not_negative(&format!("{path}.resolution"), sensor.resolution);
+            self.not_negative(&format!("{path}.lowpass"), sensor.lowpass);
+        }
+    }
+
+    fn motion(&mut self) {
+        match &self.scenario.target {
+            Some(Target::Body(body)) => self.body("motion.body", body),
+            Some(Target::Point(point)) => self.point("motion.point", point),
+            None => {}
+        }
+        let Motion::Joints(motions) = &self.scenario.motion else { return };
+        let mut seen = BTreeSet::new();
+        for (i, motion) in motions.iter().enumerate() {
+            // One [motion] or a list of them.
+            let path = if self.scenario.is_list("motion") {
+                format!("motion.{i}")
+            } else {
+                "motion".into()
+            };
+            let joint = motion.joint.as_str();
+            self.movable(&format!("{path}.joint"), joint);
+            if !seen.insert(joint) {
+                let message = format!("\"{joint}\" is moved twice");
+                self.complain(&format!("{path}.joint"), message, "keep one motion of each joint");
+            }
+            let forced = self.described.drives.iter().any(
+                |drive| matches!(drive, JointDrive::Force(force) if force.joint == motion.joint),
+            );
+            if forced {
+                let message = format!("\"{joint}\" is driven by a force: it follows no motion");
+                let help = "give the drive another kind, or take the motion out";
+                self.complain(&format!("{path}.joint"), message, help);
+            }
+            match &motion.path {
+                JointPath::Quintic(quintic) => {
+                    self.above_zero(&format!("{path}.time"), quintic.time);
+                }
+                JointPath::Table(table) if table.file.is_empty() => {
+                    let help = "expected a CSV file with a column t";
+                    self.complain(&format!("{path}.file"), "names no file".to_owned(), help);
+                }
+                JointPath::Table(_) | JointPath::Line(_) => {}
+                JointPath::Multisine(multisine) => {
+                    for (k, term) in multisine.terms.iter().enumerate() {
+                        self.not_negative(&format!("{path}.terms.{k}.frequency"), term.frequency);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Bodies that no joint holds.
+    fn held(&mut self) {
+        for (i, body) in self.described.bodies.iter().enumerate() {
+            let on = |point: &str| point.split_once('.').is_some_and(|(of, _)| of == body.name);
+            let held =
+                self.described.joints.iter().any(|joint| joint.points().iter().any(|(_, p)| on(p)));
+            if !held {
+                let message = format!("\"{}\" is free: no joint holds it", body.name);
+                self.complain(&format!("body.{i}"), message, "give it a joint, or take it out");
+            }
+        }
+    }
+
+    fn name<'a>(&mut self, path: &str, name: &'a str, what: &str, seen: &mut BTreeSet<&'a str>) {
+        if name.is_empty() {
+            self.complain(path, "is missing".to_owned(), &format!("give the {what} a name"));
+        } else if name.contains('.') || name.chars().any(char::is_control) {
+            let help = "letters, digits, spaces and dashes: a point separates body and point";
+            self.complain(path, format!("is {name:?}"), help);
+        } else if !seen.insert(name) {
+            let message = format!("\"{name}\" is taken already");
+            self.complain(path, message, &format!("give the {what} a name of its own"));
+        }
+    }
+
+    fn body(&mut self, path: &str, name: &str) {
+        let known: Vec<&str> =
+            self.described.bodies.iter().map(|body| body.name.as_str()).collect();
+        if !known.contains(&name) {
+            let message = format!("there is no body \"{name}\"");
+            self.complain(path, message, &suggest(name, &known));
+        }
+    }
+
+    /// A `body.point` that must be there.
+    fn point(&mut self, path: &str, name: &str) {
+        let Some((body, point)) = name.split_once('.') else {
+            let message =
+                if name.is_empty() { "is missing".to_owned() } else { format!("is \"{name}\"") };
+            self.complain(path, message, "expected \"body.point\", such as \"ground.O\"");
+            return;
+        };
+        let points = if body == GROUND {
+            Some(&self.described.ground.points)
+        } else {
+            let found = self.described.bodies.iter().find(|b| b.name == body);
+            found.map(|body| &body.points)
+        };
+        match points {
+            None => {
+                let names = self.described.bodies.iter().map(|b| b.name.as_str());
+                let known: Vec<&str> = [GROUND].into_iter().chain(names).collect();
+                self.complain(path, format!("there is no body \"{body}\""), &suggest(body, &known));
+            }
+            Some(points) if !points.contains_key(point) => {
+                let known: Vec<&str> = points.keys().map(String::as_str).collect();
+                let message = format!("\"{body}\" has no point \"{point}\"");
+                self.complain(path, message, &suggest(point, &known));
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// A joint that moves.
+    fn movable(&mut self, path: &str, name: &str) {
+        let movable = |joint: &&Joint| !matches!(joint, Joint::Fixed(_));
+        let known: Vec<&str> =
+            self.described.joints.iter().filter(movable).map(Joint::name).collect();
+        if known.contains(&name) {
+            return;
+        }
+        let message = if self.described.joints.iter().any(|joint| joint.name() == name) {
+            format!("the joint \"{name}\" is fixed")
+        } else {
+            format!("there is no joint \"{name}\"")
+        };
+        self.complain(path, message, &suggest(name, &known));
+    }
+
+    fn above_zero(&mut self, path: &str, value: f64) {
+        if value <= 0.0 {
+            self.complain(path, format!("is {value}"), "expected above 0");
+        }
+    }
+
+    fn not_negative(&mut self, path: &str, value: f64) {
+        if value < 0.0 {
+            self.complain(path, format!("is {value}"), "expected 0 or more");
+        }
+    }
+
+    fn increasing(&mut self, path: &str, low: f64, high: f64) {
+        if low >= high {
+            let message = format!("is [{low}, {high}]");
+            self.complain(path, message, "expected two increasing numbers");
+        }
+    }
+
+    fn complain(&mut self, path: &str, message: String, help: &str) {
+        self.problems.push(self.scenario.problem(path, message, help));
+    }
+}
+
+/// The nearest of the known names, or all of them.
+fn suggest(name: &str, known: &[&str]) -> String {
+    match nearest(name, known) {
+        Some(near) => format!("did you mean \"{near}\"?"),
+        None if known.is_empty() => "there are none".to_owned(),
+        None => format!("known here: {}", known.join(", ")),
+    }
+}
