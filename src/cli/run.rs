@@ -4,7 +4,6 @@ use super::failure::{Failure, refuse_errors};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::progress::Progress;
 use crate::report::{length, number};
-use crate::scenario::Law;
 use crate::simulate::{Summary, assemble, findings};
 use crate::study::{self, Outcome, SUMMARY_FILE};
 use clap::Args;
@@ -99,18 +98,17 @@ fn figures(s: &Summary) -> Vec<(&'static str, String, String)> {
             acceleration(s.peak_platform_acceleration_m_s2),
             format!("ideal: {}", acceleration(s.ideal_peak_platform_acceleration_m_s2)),
         ),
-        (
-            "peak actuator force",
-            newton(s.peak_actuator_force),
-            format!("ideal: {}", newton(s.ideal_peak_actuator_force)),
-        ),
-        (
-            "largest path error",
-            length(s.max_path_error_m),
-            format!("rms: {}", length(s.rms_path_error_m)),
-        ),
     ];
-    if s.law != Law::Ideal {
+    figures.extend(s.drive_peaks().into_iter().map(|(peak, ideal, unit)| {
+        let label = if unit == "N" { "peak actuator force" } else { "peak actuator torque" };
+        (label, format!("{} {unit}", number(peak)), format!("ideal: {} {unit}", number(ideal)))
+    }));
+    figures.push((
+        "largest path error",
+        length(s.max_path_error_m),
+        format!("rms: {}", length(s.rms_path_error_m)),
+    ));
+    if !s.without_play() {
         let fraction = format!("{} %", number(100.0 * s.contact_fraction));
         figures.extend([
             ("time in contact", fraction, "mean of all joints".to_owned()),

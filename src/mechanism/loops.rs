@@ -28,6 +28,14 @@ impl Mechanism {
         }
     }
 
+    /// The body that most joints separate from the ground; the last of several.
+    pub fn farthest_body(&self) -> usize {
+        let joints: Vec<(JointIndex, [Option<usize>; 2])> =
+            self.joints().map(|(_, joint)| (joint, self.joint_bodies(joint))).collect();
+        let distance = |body: usize| way(&joints, Some(body), None).map_or(0, |way| way.len());
+        (0..self.bodies.len()).max_by_key(|&body| distance(body)).unwrap_or_default()
+    }
+
     /// Independent loops: each joint that is not needed to connect a body with the ground closes one, the
     /// shortest through it.
     pub fn loops(&self) -> Vec<Loop> {

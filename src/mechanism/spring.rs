@@ -15,7 +15,8 @@ pub struct Mark {
 }
 
 impl Mark {
-    fn attachment(&self, mechanism: &Mechanism) -> Attachment {
+    /// The point as an attachment of this mechanism.
+    pub fn attachment(&self, mechanism: &Mechanism) -> Attachment {
         let reference = self.body.map_or_else(Vector2::zeros, |i| mechanism.bodies[i].reference);
         Attachment { body: self.body, point: reference + self.point }
     }

@@ -1,6 +1,6 @@
 //! The only way from a scenario to a machine.
 
-use super::build::{Built, build, joint_named, located};
+use super::build::{Built, build, joint_named, kind_of_drives, located};
 use super::commands::{Each, Source};
 use super::ideal::{Ideal, States};
 use super::layout::Layout;
@@ -33,6 +33,8 @@ pub struct Machine {
     /// The machine as declared, without effects, with ideal joints and prescribed drives: what results
     /// are compared with.
     pub ideal: Ideal,
+    /// Kind of its drives as declared; "none" without any, "mixed" where they differ.
+    pub drives: &'static str,
     /// Which columns its results have.
     pub layout: Layout,
     /// Which instants are wanted.
@@ -67,6 +69,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
     let control = scenario.step_control();
     let ideal = ideal(&mechanism, legs, schedule, control);
+    let drives = kind_of_drives(&mechanism);
     if mechanism.revolutes.iter().any(|joint| matches!(joint.bearing, Bearing::Native { .. })) {
         mechanism.native = native::contacts(scenario, &mechanism, &laws);
     }
@@ -74,7 +77,18 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     if !scenario.effects.is_empty() {
         close(scenario, &mut mechanism)?;
     }
-    Ok(Machine { mechanism, motion, known_until, ideal, layout, schedule, control, laws, ranges })
+    Ok(Machine {
+        mechanism,
+        motion,
+        known_until,
+        ideal,
+        drives,
+        layout,
+        schedule,
+        control,
+        laws,
+        ranges,
+    })
 }
 
 /// The machine of a scenario with its effects, at rest at the pose (m, m, rad) of its output, under

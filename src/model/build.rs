@@ -61,7 +61,8 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
             Joint::Fixed(_) => {}
         }
     }
-    let mut layout = Layout { outputs: Vec::new(), drives: Vec::new(), joints: declared };
+    let mut layout =
+        Layout { outputs: Vec::new(), drives: Vec::new(), marks: Vec::new(), joints: declared };
     for drive in &described.drives {
         add_drive(&mut mechanism, drive.joint(), joint_drive(drive));
         layout.drives.push(drive.label());
@@ -76,6 +77,10 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
         }
     }
     outputs(scenario, described, &parts, &mut mechanism, &mut layout);
+    for body in &described.bodies {
+        let points = body.points.keys().map(|point| format!("{}.{point}", body.name));
+        layout.marks.extend(points.map(|point| mark(&mechanism, &parts, &point)));
+    }
     for spring in &described.springs {
         add_spring(&mut mechanism, &parts, spring);
     }
@@ -170,6 +175,19 @@ pub fn drive(scenario: &Scenario) -> Drive {
     }
 }
 
+/// The kind that all drives have; "none" without any, "mixed" where they differ.
+pub(super) fn kind_of_drives(mechanism: &Mechanism) -> &'static str {
+    let kind = |drive: &Drive| match drive {
+        Drive::Prescribed => "prescribed",
+        Drive::Servo { .. } => "servo",
+        Drive::Sampled(_) => "sampled",
+        Drive::Effort => "force",
+    };
+    let mut kinds = mechanism.actuators.iter().map(|actuator| kind(&actuator.drive));
+    let Some(first) = kinds.next() else { return "none" };
+    if kinds.all(|kind| kind == first) { first } else { "mixed" }
+}
+
 fn joint_drive(drive: &JointDrive) -> Drive {
     match drive {
         JointDrive::Prescribed(_) => Drive::Prescribed,
@@ -193,7 +211,8 @@ fn cascade(sampled: &Sampled) -> Cascade {
 }
 
 /// What is written, and which of it is the machine's output: what the motion moves, else the first output,
-/// else the last body.
+/// else the centre of mass of the body that most joints separate from the ground (of several, the last): it
+/// feels the play of all of them.
 fn outputs(
     scenario: &Scenario,
     described: &Described,
@@ -209,10 +228,13 @@ fn outputs(
     }
     let main = match &scenario.target {
         Some(Target::Body(name) | Target::Point(name)) => Some(name.as_str()),
-        None if described.outputs.is_empty() => described.bodies.last().map(|b| b.name.as_str()),
         None => described.outputs.first().map(scenario::Output::of),
     };
-    // The main one first: the body's reference point is that of the output.
+    if main.is_none() {
+        mechanism.output = mechanism.farthest_body();
+        mechanism.bodies[mechanism.output].reference = Vector2::zeros();
+    }
+    // The body's reference point is that of the output.
     if let Some((Attachment { body: Some(body), point }, _)) = main.map(|name| located(parts, name))
     {
         mechanism.output = body;
@@ -235,17 +257,18 @@ pub(super) fn located(parts: &Parts, name: &str) -> (Attachment, f64) {
     (Attachment { body: part.body, point: part.origin }, part.angle)
 }
 
+/// A point `body.point` that stays where it is in its body.
+fn mark(mechanism: &Mechanism, parts: &Parts, name: &str) -> Mark {
+    let Attachment { body, point } = parts.point(name).0;
+    let reference = body.map_or_else(Vector2::zeros, |i: usize| mechanism.bodies[i].reference);
+    Mark { body, point: point - reference }
+}
+
 fn add_spring(mechanism: &mut Mechanism, parts: &Parts, spring: &Spring) {
     let (stiffness, damping) = (spring.stiffness, spring.damping);
     if let Some(points) = &spring.between {
-        let mark = |name: &String| {
-            let Attachment { body, point } = parts.point(name).0;
-            let reference =
-                body.map_or_else(Vector2::zeros, |i: usize| mechanism.bodies[i].reference);
-            Mark { body, point: point - reference }
-        };
         let spring = PointSpring {
-            ends: [mark(&points[0]), mark(&points[1])],
+            ends: points.each_ref().map(|point| mark(mechanism, parts, point)),
             stiffness,
             damping,
             free_length: spring.free_length.unwrap_or_default(),

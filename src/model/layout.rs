@@ -1,6 +1,6 @@
 //! Which columns a machine's results have.
 
-use crate::mechanism::{Attachment, BodyState};
+use crate::mechanism::{BodyState, Mark};
 use nalgebra::{Vector2, Vector3};
 
 /// The columns of a machine's time series.
@@ -10,6 +10,8 @@ pub struct Layout {
     pub outputs: Vec<Written>,
     /// What stands after `q` and `F` in the columns of each drive.
     pub drives: Vec<String>,
+    /// Named points of bodies, for pictures.
+    pub marks: Vec<Mark>,
     /// Indices of the revolute joints that have columns: those with a declared clearance.
     pub joints: Vec<usize>,
 }
@@ -49,10 +51,5 @@ impl Written {
         let r = state.rotation * (reference + self.point);
         let omega2 = state.twist.z * state.twist.z;
         Vector3::new(a.x - a.z * r.y - omega2 * r.x, a.y + a.z * r.x - omega2 * r.y, a.z)
-    }
-
-    /// The written point as an attachment; `reference` as above.
-    pub fn attachment(&self, reference: Vector2<f64>) -> Attachment {
-        Attachment { body: Some(self.body), point: reference + self.point }
     }
 }

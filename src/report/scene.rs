@@ -16,8 +16,10 @@ pub struct Scene {
     pub bodies: Vec<SceneBody>,
     /// The revolute joints.
     pub joints: Vec<SceneJoint>,
-    /// Index of the body whose origin leaves a track.
+    /// Index of the body that carries the point which leaves a track.
     pub tracked: usize,
+    /// That point in the body's axes, m.
+    pub tracked_point: [f64; 2],
     /// Curves over time.
     pub charts: Vec<SceneChart>,
 }

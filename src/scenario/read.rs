@@ -21,12 +21,12 @@ struct TopLevel {
     seed: u64,
     mechanism: Option<Table>,
     ground: Option<Table>,
-    body: Vec<Table>,
-    joint: Vec<Table>,
-    spring: Vec<Table>,
-    stop: Vec<Table>,
-    output: Vec<Table>,
-    sensor: Vec<Table>,
+    body: Many,
+    joint: Many,
+    spring: Many,
+    stop: Many,
+    output: Many,
+    sensor: Many,
     legs: Option<Table>,
     joints: Option<Table>,
     contact: Table,
@@ -48,6 +48,45 @@ enum OneOrMany {
     Many(Vec<Table>),
 }
 
+/// `[[section]]`, a list; a single `[section]` is kept to be complained about.
+#[derive(Deserialize, Default)]
+#[serde(from = "OneOrMany")]
+struct Many {
+    tables: Vec<Table>,
+    single: bool,
+}
+
+impl From<OneOrMany> for Many {
+    fn from(section: OneOrMany) -> Self {
+        match section {
+            OneOrMany::One(table) => Many { tables: vec![table], single: true },
+            OneOrMany::Many(tables) => Many { tables, single: false },
+        }
+    }
+}
+
+impl Many {
+    fn is_empty(&self) -> bool {
+        self.tables.is_empty()
+    }
+
+    /// The tables, after a complaint if there is one without a list around it.
+    fn take(&mut self, reader: &mut Reader<'_>, section: &str) -> Vec<Table> {
+        if self.single {
+            let help = match section {
+                "joint" => {
+                    "did you mean `joints`? A machine that describes itself lists them by [[joint]]"
+                        .to_owned()
+                }
+                _ => format!("write [[{section}]], once for each"),
+            };
+            reader.complain(section, "is one section, not a list".to_owned(), help);
+            return Vec::new();
+        }
+        std::mem::take(&mut self.tables)
+    }
+}
+
 impl Default for TopLevel {
     fn default() -> Self {
         TopLevel {
@@ -55,12 +94,12 @@ impl Default for TopLevel {
             seed: 1,
             mechanism: None,
             ground: None,
-            body: Vec::new(),
-            joint: Vec::new(),
-            spring: Vec::new(),
-            stop: Vec::new(),
-            output: Vec::new(),
-            sensor: Vec::new(),
+            body: Many::default(),
+            joint: Many::default(),
+            spring: Many::default(),
+            stop: Many::default(),
+            output: Many::default(),
+            sensor: Many::default(),
             legs: None,
             joints: None,
             contact: Table::new(),
@@ -135,6 +174,10 @@ pub(super) fn scenario(document: Document) -> Result<Scenario, Problems> {
 
 // serde's own tagged enums would lose the path of a wrong key, hence the dispatch by hand.
 fn mechanism(reader: &mut Reader<'_>, top: &mut TopLevel) -> Mechanism {
+    for (section, list) in [("body", &mut top.body), ("joint", &mut top.joint)] {
+        list.tables = list.take(reader, section);
+        list.single = false;
+    }
     let described = !top.body.is_empty() || !top.joint.is_empty() || top.ground.is_some();
     let Some(mut table) = top.mechanism.take() else {
         if described {
@@ -197,7 +240,7 @@ fn describe(reader: &mut Reader<'_>, top: &mut TopLevel) -> Described {
         }
         _ => Vec::new(),
     };
-    let joints = std::mem::take(&mut top.joint);
+    let joints = top.joint.take(reader, "joint");
     let joints = each(reader, "joint", joints, |reader, path, mut table| {
         Some(match kind(reader, path, &mut table, &Joint::KINDS, "joint")? {
             "prismatic" => Joint::Prismatic(reader.read::<Prismatic>(path, table)),
@@ -205,15 +248,14 @@ fn describe(reader: &mut Reader<'_>, top: &mut TopLevel) -> Described {
             _ => Joint::Revolute(reader.read::<Revolute>(path, table)),
         })
     });
-    let list =
-        |section: &str, tables: &mut Vec<Table>| (section.to_owned(), std::mem::take(tables));
     let [bodies, springs, stops, outputs, sensors] = [
-        list("body", &mut top.body),
-        list("spring", &mut top.spring),
-        list("stop", &mut top.stop),
-        list("output", &mut top.output),
-        list("sensor", &mut top.sensor),
-    ];
+        ("body", &mut top.body),
+        ("spring", &mut top.spring),
+        ("stop", &mut top.stop),
+        ("output", &mut top.output),
+        ("sensor", &mut top.sensor),
+    ]
+    .map(|(section, list)| (section.to_owned(), list.take(reader, section)));
     Described {
         ground: reader.read::<Ground>("ground", top.ground.take().unwrap_or_default()),
         bodies: all::<Body>(reader, bodies),

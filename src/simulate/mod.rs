@@ -17,5 +17,5 @@ pub use crate::model::{
 };
 pub use checks::{Finding, Severity, findings};
 pub use provenance::Provenance;
-pub use summary::{JointSummary, Recorder, Summary, kind_of_drives};
+pub use summary::{JointSummary, Recorder, Summary};
 pub use timeseries::TimeSeries;

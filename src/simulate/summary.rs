@@ -2,7 +2,7 @@
 
 use super::provenance::Provenance;
 use crate::engine::{Instant, StepControl, Work};
-use crate::mechanism::{Drive, JointIndex, Mechanism};
+use crate::mechanism::{JointIndex, Mechanism};
 use crate::model::{IdealInstant, Machine, radial_clearance};
 use crate::scenario::{Law, Scenario};
 use serde::Serialize;
@@ -94,6 +94,21 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Whether no joint has clearance.
+    pub fn without_play(&self) -> bool {
+        self.joints.iter().all(|joint| joint.clearance_m.is_none())
+    }
+
+    /// Largest effort of the drives and that of the ideal machine's, each with its unit: forces of prismatic
+    /// joints, torques of revolute ones.
+    pub fn drive_peaks(&self) -> Vec<(f64, f64, &'static str)> {
+        let torque = self.peak_actuator_torque.zip(self.ideal_peak_actuator_torque);
+        let torque = torque.map(|(peak, ideal)| (peak, ideal, "N m"));
+        let force = (self.peak_actuator_force, self.ideal_peak_actuator_force, "N");
+        let pushes = self.drive != "none" && (torque.is_none() || force.0 > 0.0);
+        pushes.then_some(force).into_iter().chain(torque).collect()
+    }
+
     /// Whether the run got past the start that is left out, so that there are figures at all.
     pub fn has_figures(&self) -> bool {
         self.impacts_per_s.is_finite()
@@ -262,7 +277,7 @@ impl Recorder {
             provenance: Provenance::of(scenario),
             seed: scenario.seed,
             law: scenario.contact.law,
-            drive: kind_of_drives(&machine.mechanism),
+            drive: machine.drives,
             step_s,
             tolerance_m_s,
             halted,
@@ -296,19 +311,6 @@ impl Recorder {
             files,
         }
     }
-}
-
-/// The kind that all drives have.
-pub fn kind_of_drives(mechanism: &Mechanism) -> &'static str {
-    let kind = |drive: &Drive| match drive {
-        Drive::Prescribed => "prescribed",
-        Drive::Servo { .. } => "servo",
-        Drive::Sampled(_) => "sampled",
-        Drive::Effort => "force",
-    };
-    let mut kinds = mechanism.actuators.iter().map(|actuator| kind(&actuator.drive));
-    let Some(first) = kinds.next() else { return "none" };
-    if kinds.all(|kind| kind == first) { first } else { "mixed" }
 }
 
 impl JointRecord {

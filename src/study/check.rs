@@ -4,9 +4,7 @@ use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Actuator, BodyState, Drive, JointIndex, Loop, Mechanism};
 use crate::model::DrivenPath;
 use crate::scenario::{self, Law, Problem, Scenario};
-use crate::simulate::{
-    Finding, Machine, Severity, findings, kind_of_drives, leg_use, radial_clearance,
-};
+use crate::simulate::{Finding, Machine, Severity, findings, leg_use, radial_clearance};
 use serde::Serialize;
 
 /// Instants at which the ideal machine's forces are looked at.
@@ -271,7 +269,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         longest_step_s: mechanism.longest_step(TYPICAL_IMPACT_SPEED),
         step_s,
         tolerance_m_s,
-        drive: kind_of_drives(mechanism),
+        drive: machine.drives,
         drives: drives(mechanism, path.as_ref()),
         freedoms: freedoms(mechanism),
         loops: loops(mechanism),

@@ -3,7 +3,7 @@
 use super::recent::Recent;
 use crate::engine::{Instant, Schedule};
 use crate::measure::envelope::Envelope;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{JointIndex, Mechanism};
 use crate::report::{
     Curve, Orbit, Panel, Picture, ReportError, Style, length, number, orbits_svg, panels_svg,
     path_svg,
@@ -43,6 +43,9 @@ pub(super) struct Gallery {
 #[derive(Debug)]
 struct Drive {
     name: String,
+    /// Title of the panel and label of its axis.
+    title: String,
+    label: &'static str,
     force: Envelope,
     ideal: Envelope,
 }
@@ -63,6 +66,11 @@ impl Gallery {
         let path = || Recent::new(PATH_ROWS);
         let drives = mechanism.actuators.iter().map(|joint| Drive {
             name: joint.name.clone(),
+            title: format!("Actuator {}", joint.name),
+            label: match joint.joint {
+                JointIndex::Revolute(_) => "torque (N m)",
+                JointIndex::Prismatic(_) => "force (N)",
+            },
             force: envelope(),
             ideal: envelope(),
         });
@@ -211,9 +219,9 @@ impl Gallery {
             .drives
             .iter()
             .map(|drive| Panel {
-                title: format!("Actuator {}", drive.name),
+                title: drive.title.clone(),
                 x_label: TIME.into(),
-                y_label: "force (N)".into(),
+                y_label: drive.label.into(),
                 curves: vec![solid(&drive.name, &drive.force), ideal(drive.ideal.points())],
             })
             .collect();
@@ -252,9 +260,12 @@ impl Gallery {
     }
 
     fn orbits(&self) -> Result<Picture, ReportError> {
+        // Joints without clearance have no orbit; a machine without any shows its centres.
+        let plays = self.joints.iter().any(|joint| joint.clearance.is_some());
         let orbits: Vec<Orbit> = self
             .joints
             .iter()
+            .filter(|joint| joint.clearance.is_some() || !plays)
             .map(|joint| Orbit {
                 joint: joint.name.clone(),
                 clearance_m: joint.clearance.unwrap_or(0.0),

@@ -103,7 +103,7 @@ fn run_into(
     let mechanism = &machine.mechanism;
     let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
     let mut gallery = Gallery::new(mechanism, machine.schedule);
-    let mut film = Film::new(&scenario.name, mechanism);
+    let mut film = Film::new(&scenario.name, mechanism, &machine.layout);
 
     let file = File::create(folder.file(TIME_SERIES_FILE)).map_err(refused(TIME_SERIES_FILE))?;
     let mut series = TimeSeries::new(BufWriter::new(file), mechanism, &machine.layout)

@@ -25,13 +25,16 @@ fn lead(s: &Summary, body: &str) -> String {
             number(s.simulated_s)
         );
     }
-    if s.law == Law::Ideal {
+    let drives = s.drive_peaks();
+    if s.without_play() {
+        let needs: Vec<String> =
+            drives.iter().map(|(peak, _, unit)| format!("{} {unit}", number(*peak))).collect();
         return format!(
             "Without clearance, {}the {body} accelerates at up to {} m/s² ({} s simulated).",
-            if s.peak_actuator_force > 0.0 {
-                format!("the actuators need up to {} N, and ", number(s.peak_actuator_force))
-            } else {
+            if needs.is_empty() {
                 String::new()
+            } else {
+                format!("the actuators need up to {}, and ", needs.join(" and "))
             },
             number(s.peak_platform_acceleration_m_s2),
             number(s.simulated_s)
@@ -40,18 +43,29 @@ fn lead(s: &Summary, body: &str) -> String {
     format!(
         "With {} in its joints, the {body} strays from its ideal path by up to {} and accelerates \
          at up to {} m/s², where the machine without clearance needs {} m/s². The journals hit \
-         their bearings {} times a second, with up to {} N; the actuators feel up to {} N instead \
-         of {} N.{}",
+         their bearings {} times a second, with up to {} N{}.{}",
         clearance(s),
         length(s.max_path_error_m),
         number(s.peak_platform_acceleration_m_s2),
         number(s.ideal_peak_platform_acceleration_m_s2),
         number(s.impacts_per_s),
         number(s.peak_contact_force),
-        number(s.peak_actuator_force),
-        number(s.ideal_peak_actuator_force),
+        felt(&drives),
         after_the_start(s),
     )
+}
+
+/// What the drives feel.
+fn felt(drives: &[(f64, f64, &str)]) -> String {
+    let each = |(peak, ideal, unit): &(f64, f64, &str)| {
+        format!("{} {unit} instead of {} {unit}", number(*peak), number(*ideal))
+    };
+    let all: Vec<String> = drives.iter().map(each).collect();
+    if all.is_empty() {
+        String::new()
+    } else {
+        format!("; the actuators feel up to {}", all.join(" and "))
+    }
 }
 
 fn after_the_start(s: &Summary) -> String {
@@ -90,11 +104,6 @@ fn facts(s: &Summary, body: &str) -> Vec<Fact> {
                 unit(s.peak_platform_acceleration_m_s2, "m/s²"),
                 ideal(s.ideal_peak_platform_acceleration_m_s2, "m/s²"),
             ),
-            fact(
-                "Peak actuator force",
-                unit(s.peak_actuator_force, "N"),
-                ideal(s.ideal_peak_actuator_force, "N"),
-            ),
             fact("Peak contact force", unit(s.peak_contact_force, "N"), hardest_joint(s)),
             fact(
                 "Path error, largest",
@@ -106,14 +115,23 @@ fn facts(s: &Summary, body: &str) -> Vec<Fact> {
                 unit(s.rms_acceleration_deviation_m_s2, "m/s²"),
                 String::new(),
             ),
-            fact(
-                "Actuator forces, rms deviation from ideal",
-                unit(s.rms_actuator_force_deviation, "N"),
-                "mean of all actuators".into(),
-            ),
         ]);
+        for (peak, ideal_peak, of) in s.drive_peaks() {
+            let (name, deviation) = match of {
+                "N" => ("force", s.rms_actuator_force_deviation),
+                _ => ("torque", s.rms_actuator_torque_deviation.unwrap_or(f64::NAN)),
+            };
+            facts.extend([
+                fact(&format!("Peak actuator {name}"), unit(peak, of), ideal(ideal_peak, of)),
+                fact(
+                    &format!("Actuator {name}s, rms deviation from ideal"),
+                    unit(deviation, of),
+                    "mean of all actuators".into(),
+                ),
+            ]);
+        }
     }
-    if s.has_figures() && s.law != Law::Ideal {
+    if s.has_figures() && !s.without_play() {
         facts.extend([
             fact(
                 "Impacts",

@@ -121,7 +121,7 @@ impl Film<'_> {
             svg.push_str("</g>\n");
         }
         let track: Vec<[f64; 2]> = (self.frames.iter())
-            .map(|f| view.place(world(f, Some(scene.tracked), [0.0, 0.0])))
+            .map(|f| view.place(world(f, Some(scene.tracked), scene.tracked_point)))
             .collect();
         self.revealed(svg, "t", &track)?;
 
@@ -284,6 +284,7 @@ mod tests {
                 clearance_m: Some(1e-3),
             }],
             tracked: 0,
+            tracked_point: [0.0, 0.0],
             charts: vec![],
         }
     }

@@ -83,6 +83,7 @@ mod tests {
             bodies: vec![],
             joints: vec![],
             tracked: 0,
+            tracked_point: [0.0, 0.0],
             charts: vec![],
         };
         let mut frames = Frames::new(2);

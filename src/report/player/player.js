@@ -70,8 +70,11 @@ const stage = document.getElementById("stage");
 const machine = [];
 const bearings = [];
 const pathOf = (frame, deviated) => {
-  const body = 1 + 3 * scene.tracked;
-  return [0, 1].map((i) => number(frame, body + i) - (deviated ? number(frame, DEVIATION + i) : 0));
+  const [x, y, angle] = [0, 1, 2].map((n) => number(frame, 1 + 3 * scene.tracked + n));
+  const [u, v] = scene.tracked_point;
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  const place = [x + c * u - s * v, y + s * u + c * v];
+  return place.map((at, i) => at - (deviated ? number(frame, DEVIATION + i) : 0));
 };
 const stretch = [...Array(count).keys()];
 let track;
@@ -97,7 +100,7 @@ function buildMachine() {
   const [left, top] = [Math.min(...xs), Math.min(...ys)];
   const [width, height] = [Math.max(...xs) - left, Math.max(...ys) - top];
   const size = Math.max(width, height);
-  const margin = 0.07 * size;
+  const margin = 0.1 * size;
   set(stage, { viewBox: [left - margin, top - margin, width + 2 * margin, height + 2 * margin].join(" ") });
   const ground = add(stage, "g", { class: "ground" });
   for (const o of scene.ground) outline(ground, o);
@@ -136,7 +139,9 @@ function showMachine({ linear, angle }) {
   const k = frameAt(now);
   const step = Math.ceil((k + 1) / 2000);
   const points = stretch.slice(0, k + 1).filter((n) => n % step === 0).map((n) => pathOf(n, false));
-  const { x, y } = poses[scene.tracked];
+  const { x: left, y: low, c, s } = poses[scene.tracked];
+  const [u, v] = scene.tracked_point;
+  const [x, y] = [left + c * u - s * v, low + s * u + c * v];
   track.setAttribute("d", path([...points, [x, y]]));
 }
 
@@ -222,7 +227,12 @@ let shown; // from and to of the stretch shown, s
 const chart = () => scene.charts[document.getElementById("chart").value];
 const windowLength = () => Number(document.getElementById("window").value) || end;
 const xOf = (t) => EDGE.left + ((t - shown[0]) / (shown[1] - shown[0] || 1)) * (plot.clientWidth - EDGE.left - EDGE.right);
-const colour = (i) => COLOURS[i % COLOURS.length];
+// A joint's curve has the colour of its ring: its signal is its place among the joints.
+const colour = (i) => {
+  const { signal } = chart().curves[i];
+  const joint = scene.joints[signal] ? signal : i;
+  return COLOURS[joint % COLOURS.length];
+};
 
 function ticks(from, to, most) {
   const rough = (to - from) / most || 1;

@@ -41,10 +41,10 @@ fn every_mistake_says_where_what_and_what_would_be_right() {
             &["my.toml:8: unknown key `motion.terms.1.freqency`; did you mean `frequency`?"],
         ),
         (
-            "[mechanism]\nkind = \"3rrr\"\n",
+            "[mechanism]\nkind = \"pendulm\"\n",
             &[],
             &[
-                "my.toml:2: mechanism.kind: \"3rrr\" is not a kind of mechanism; did you mean `3rpr`?",
+                "my.toml:2: mechanism.kind: \"pendulm\" is not a kind of mechanism; did you mean `pendulum`?",
             ],
         ),
         (
@@ -97,7 +97,7 @@ fn every_mistake_says_where_what_and_what_would_be_right() {
         (
             MINIMAL,
             &["joint.clearance=1"],
-            &["--set joint.clearance: unknown key `joint`; did you mean"],
+            &["--set joint.clearance: joint: is one section, not a list; did you mean `joints`?"],
         ),
         (
             MINIMAL,
