@@ -4,32 +4,15 @@ use super::adaptive::Adaptive;
 use super::fixed::Fixed;
 use super::run::Stepper;
 use super::world::World;
-use crate::contact::{Clearance, CoulombFriction, HertzStep};
-use crate::mechanism::motion::Circle;
-use crate::mechanism::three_rpr::{Geometry, InverseKinematics, LegBars, build};
-use crate::mechanism::{Bearing, BodyState, Drive, Mechanism};
-use nalgebra::Vector2;
-use std::f64::consts::PI;
-use std::sync::Arc;
+use crate::mechanism::{BodyState, Mechanism};
+use crate::model::assemble;
+use crate::scenario::Scenario;
 
 /// The paper's machine with friction, upright, so that joints hit, slide and stay loaded.
-fn machine(drive: Drive) -> Mechanism {
-    let motion =
-        Circle { center: Vector2::zeros(), radius: 0.05, period: 1.0, phase: 0.0, phi: PI / 6.0 };
-    let kinematics = InverseKinematics {
-        geometry: Geometry { base_side: 0.66, platform_side: 0.1 },
-        motion: Arc::new(motion),
-    };
-    let law = HertzStep { stiffness: 3.7e9, exponent: 1.5, c_max: 500.0, d_max: 1e-5, clip: true };
-    let bearing = Bearing::Clearance(Clearance {
-        bearing_radius: 0.01,
-        journal_radius: 0.0095,
-        law: Arc::new(law),
-        friction: Some(CoulombFriction { coefficient: 0.1, velocity: 1e-3 }),
-    });
-    let bars = LegBars { density: 2270.0, cylinder: [0.2, 0.02], rod: [0.2, 0.012] };
-    let joints = std::array::from_fn(|_| bearing.clone());
-    build(kinematics, (0.2, 1.7e-4), bars, joints, drive, Vector2::new(0.0, -9.81))
+fn machine(drive: &str) -> Mechanism {
+    let sets = ["joints.friction=0.1", "environment.gravity=[0,-9.81]", drive].map(str::to_owned);
+    let scenario = Scenario::load(None, &sets).expect("right");
+    assemble(&scenario).expect("put together").mechanism
 }
 
 /// States after 0.1 s, the number of steps, and how many steps saw a contact.
@@ -48,7 +31,7 @@ fn go(stepper: &mut dyn Stepper, mechanism: &Mechanism) -> (Vec<BodyState>, usiz
 
 #[test]
 fn colliders_do_not_show_in_the_trajectory() {
-    for drive in [Drive::Prescribed, Drive::Servo { stiffness: 5e5, damping: 300.0 }] {
+    for drive in ["drive.mode=prescribed", "drive.mode=servo"] {
         let mechanism = machine(drive);
         let crowded = || World::new(&mechanism, true);
         assert!((0..6).all(|joint| crowded().colliders.pair(joint).is_some()));

@@ -53,6 +53,12 @@ impl Mechanism {
         loops
     }
 
+    /// Whether the sign of a loop's area names its branch: where all its joints are revolute. The triangle of
+    /// a slider-crank turns over at every dead centre of the crank.
+    pub fn has_branches(&self, of: &Loop) -> bool {
+        of.joints.iter().all(|joint| matches!(joint, JointIndex::Revolute(_)))
+    }
+
     /// Area in m² of the polygon of a loop's joints, positive where they run counterclockwise; zero where
     /// the loop has fewer than three corners.
     pub fn signed_area(&self, of: &Loop, states: &[BodyState]) -> f64 {

@@ -54,8 +54,13 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
                     name: joint.name.clone(),
                     base,
                     slider,
-                    // The slider's described axes keep the angle `axis` against the base's.
-                    axes: [direction(base_angle + joint.axis), direction(slider_angle)],
+                    // Where the slider's axes keep another angle than `axis`, the axis is turned in them.
+                    axes: [
+                        direction(base_angle + joint.axis),
+                        direction(
+                            slider_angle + joint.angle.map_or(0.0, |angle| joint.axis - angle),
+                        ),
+                    ],
                 });
             }
             Joint::Fixed(_) => {}

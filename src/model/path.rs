@@ -60,7 +60,8 @@ impl DrivenPath {
             turned: Vec::new(),
             stuck: None,
         };
-        let loops: Vec<Loop> = mechanism.loops();
+        let mut loops: Vec<Loop> = mechanism.loops();
+        loops.retain(|of| mechanism.has_branches(of));
         let mut areas: Vec<f64> = Vec::new();
         let mut before: Option<Hold> = None;
         let mut worst: Vec<Option<(f64, f64, f64)>> = vec![None; drives];

@@ -92,7 +92,7 @@ pub struct CheckedMachine {
     pub drives: Vec<CheckedDrive>,
     /// How the machine without clearance can move.
     pub freedoms: CheckedFreedoms,
-    /// Closed loops of joints, and the area that each runs around: its sign is the branch on which the
+    /// Closed loops of revolute joints, and the area that each runs around: its sign is the branch on which the
     /// machine is put together.
     pub loops: Vec<CheckedLoop>,
     /// Gains of the first servo in N/m and N s/m (of a revolute joint N m/rad and N m s/rad), if there is one.
@@ -322,7 +322,7 @@ fn loops(mechanism: &Mechanism) -> Vec<CheckedLoop> {
         joints: of.joints.iter().map(|&joint| mechanism.joint_name(joint).to_owned()).collect(),
         area_m2: mechanism.signed_area(&of, &states),
     };
-    mechanism.loops().into_iter().map(checked).collect()
+    mechanism.loops().into_iter().filter(|of| mechanism.has_branches(of)).map(checked).collect()
 }
 
 /// Extremes of the ideal machine over the motion.

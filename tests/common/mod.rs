@@ -6,9 +6,9 @@ use freeplay::contact::{
     Clearance, CoulombFriction, HertzStep, Material, StiffnessForm, hertz_stiffness,
 };
 use freeplay::engine::{Instant, Schedule, StepControl, Work, run};
-use freeplay::mechanism::motion::Circle;
-use freeplay::mechanism::three_rpr::{Geometry, InverseKinematics, LegBars, build};
 use freeplay::mechanism::{Bearing, BodyState, Drive, Dynamics, Evaluation, Mechanism};
+use freeplay::scenario::Scenario;
+use freeplay::simulate::assemble;
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -54,27 +54,28 @@ impl Case {
         self.with(self.bearing())
     }
 
+    /// The machine with every joint as `bearing`.
     pub fn with(&self, bearing: Bearing) -> Mechanism {
-        let motion = Circle {
-            center: Vector2::zeros(),
-            radius: 0.05,
-            period: 1.0,
-            phase: self.phase,
-            phi: PI / 6.0,
+        let drive = match self.drive {
+            Drive::Servo { stiffness, damping } => {
+                vec![
+                    "drive.mode=servo".into(),
+                    format!("drive.stiffness={stiffness:e}"),
+                    format!("drive.damping={damping:e}"),
+                ]
+            }
+            _ => Vec::new(),
         };
-        let kinematics = InverseKinematics {
-            geometry: Geometry { base_side: 0.66, platform_side: 0.1 },
-            motion: Arc::new(motion),
-        };
-        let bars = LegBars { density: 2270.0, cylinder: [0.2, 0.02], rod: [0.2, 0.012] };
-        build(
-            kinematics,
-            (0.2, 0.2 * 0.01 / 12.0),
-            bars,
-            std::array::from_fn(|_| bearing.clone()),
-            self.drive,
-            Vector2::new(0.0, self.gravity),
-        )
+        let sets = [
+            format!("motion.phase={:e}", self.phase),
+            format!("environment.gravity=[0,{:e}]", self.gravity),
+        ];
+        let scenario = Scenario::load(None, &[&sets[..], &drive[..]].concat()).unwrap();
+        let mut mechanism = assemble(&scenario).unwrap().mechanism;
+        for joint in &mut mechanism.revolutes {
+            joint.bearing = bearing.clone();
+        }
+        mechanism
     }
 }
 

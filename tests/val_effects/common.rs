@@ -1,16 +1,15 @@
 //! A machine with an effect, what its drives give, and what they should give by virtual work.
 
 use freeplay::engine::{Instant, Schedule, StepControl, run};
-use freeplay::mechanism::motion::PathPoint;
-use freeplay::mechanism::three_rpr::{Geometry, LegBars, ideal_states};
-use freeplay::mechanism::{BodyState, Dynamics, Evaluation, Mechanism};
+use freeplay::mechanism::motion::{Motion, PathPoint};
+use freeplay::mechanism::three_rpr::Geometry;
+use freeplay::mechanism::{BodyState, Dynamics, Evaluation, Mechanism, TelescopicLegs};
 use freeplay::scenario::Scenario;
 use freeplay::simulate::{Machine, assemble};
 use nalgebra::{Vector2, Vector3};
+use std::sync::Arc;
 
 pub(super) const GEOMETRY: Geometry = Geometry { base_side: 0.66, platform_side: 0.1 };
-pub(super) const BARS: LegBars =
-    LegBars { density: 2270.0, cylinder: [0.2, 0.02], rod: [0.2, 0.012] };
 
 /// A motion in x, y and φ, and gravity: everything that a load can be confused with is there.
 pub(super) const LIVELY: &str = "motion = { kind = \"multisine\", center = [0.01, -0.01, 0.6], terms = [\n\
@@ -65,13 +64,27 @@ pub(super) fn balance(pose: Vector3<f64>, wrench: Vector3<f64>) -> Vector3<f64> 
     GEOMETRY.jacobian(pose).transpose().lu().solve(&-wrench).expect("not singular")
 }
 
+/// One point of a motion, at all times.
+#[derive(Debug)]
+struct At(PathPoint);
+
+impl Motion for At {
+    fn at(&self, _: f64) -> PathPoint {
+        self.0
+    }
+}
+
 /// The wrench on the platform that does the virtual work of wrenches on all bodies.
 pub(super) fn reduced(pose: Vector3<f64>, wrenches: &[Vector3<f64>]) -> Vector3<f64> {
+    let mechanism = ideal("", &[]).mechanism;
+    let platform = mechanism.output;
     Vector3::from_fn(|axis, _| {
         let mut rate = Vector3::zeros();
         rate[axis] = 1.0;
         let point = PathPoint { pose, rate, ..PathPoint::default() };
-        let states = ideal_states(&GEOMETRY, &BARS, &point);
+        let motion = Arc::new(At(point));
+        let legs = TelescopicLegs::of(&mechanism, platform, Vector2::zeros(), motion).unwrap();
+        let states = legs.states(0.0);
         states.iter().zip(wrenches).map(|(state, w)| state.twist.dot(w)).sum::<f64>()
     })
 }

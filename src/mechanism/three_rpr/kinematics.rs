@@ -1,11 +1,10 @@
 //! Inverse and forward kinematics of the machine without clearance (paper eqs. 1–2), and its
 //! distance from singularity.
 
-use crate::mechanism::motion::{Motion, PathPoint};
-use crate::mechanism::{Command, Commands};
+use crate::mechanism::Command;
+use crate::mechanism::motion::PathPoint;
 use nalgebra::{Matrix3, Rotation2, Vector2, Vector3};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 /// Side lengths of the two triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,25 +104,10 @@ fn corner(side: f64, leg: usize) -> Vector2<f64> {
     Vector2::new(angle.cos(), angle.sin()) * (side / 3f64.sqrt())
 }
 
-/// Leg lengths that carry the ideal platform along a motion.
-#[derive(Clone, Debug)]
-pub struct InverseKinematics {
-    /// The machine.
-    pub geometry: Geometry,
-    /// The platform's motion.
-    pub motion: Arc<dyn Motion>,
-}
-
-impl Commands for InverseKinematics {
-    fn at(&self, t: f64, commands: &mut [Command]) {
-        commands.copy_from_slice(&self.geometry.inverse(&self.motion.at(t)));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::motion::{MultiSine, SineTerm};
+    use crate::mechanism::motion::{Motion, MultiSine, SineTerm};
 
     const PAPER: Geometry = Geometry { base_side: 0.66, platform_side: 0.1 };
 

@@ -69,6 +69,7 @@ pub(super) fn prismatic(name: &str, base: &str, slider: &str, range: Option<[f64
         base: base.to_owned(),
         slider: slider.to_owned(),
         axis: 0.0,
+        angle: None,
         range,
     })
 }

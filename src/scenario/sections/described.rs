@@ -182,8 +182,12 @@ pub struct Prismatic {
     pub name: String,
     /// Point on the axis, `body.point`.
     pub base: String,
-    /// Direction of the axis in the base's axes, rad. The slider keeps this angle against the base.
+    /// Direction of the axis in the base's axes, rad. Default 0.
     pub axis: f64,
+    /// Angle that the slider's axes keep against the base's, rad. Default `axis`: the slider's x axis lies
+    /// along it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
     /// Point of the slider that moves along the axis, `body.point`.
     pub slider: String,
     /// Shortest and longest length, m, that the motion may ask for. Default none: nothing is checked.
