@@ -74,8 +74,8 @@ pub fn check(model: &Scenario, recording: &Recording) -> Result<(), CalibrateErr
         .map(ToString::to_string)
         .collect();
     if !matches!(model.mechanism, scenario::Mechanism::ThreeRpr(_)) {
-        let help = "machines of one joint have a prediction of their own (calibrate::single)";
-        found.push(model.problem("mechanism.kind", "is not \"3rpr\"", help).to_string());
+        let help = "predict takes a model of the kind \"3rpr\", \"drive-stage\" or \"pendulum\"";
+        found.push(model.problem("mechanism.kind", "is another machine", help).to_string());
     }
     if model.contact.law == Law::Native {
         let help = "write law = \"hertz-step\": predict needs a contact law whose error is known";

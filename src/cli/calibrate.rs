@@ -1,6 +1,6 @@
 //! `freeplay calibrate`: close the loop with measured data.
 
-use super::failure::Failure;
+use super::failure::{Failure, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::self_test::SelfTest;
@@ -82,6 +82,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     };
     let without = without(&arguments.without)?;
     let rig = Scenario::load(Some(rig), &arguments.sets.sets)?;
+    warn_of_unused(&rig);
     let paths: Vec<&Path> =
         std::iter::once(data).chain(&arguments.validate).map(PathBuf::as_path).collect();
     if let Some(machine) = Machine::of(&rig) {

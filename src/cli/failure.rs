@@ -1,7 +1,7 @@
 //! How a command fails: whose fault, and what is said.
 
 use super::output;
-use crate::scenario::{Problem, Problems};
+use crate::scenario::{Problem, Problems, Scenario};
 use crate::simulate::{Finding, Severity};
 use crate::study::sweep::SweepError;
 use crate::study::{FolderError, RunError};
@@ -77,6 +77,13 @@ impl From<SweepError> for Failure {
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
         Failure::Other(format!("cannot write the result: {error}"))
+    }
+}
+
+/// Says which sections of a scenario mean nothing to its machine.
+pub(super) fn warn_of_unused(scenario: &Scenario) {
+    for problem in scenario.unused() {
+        output::complain(&Finding::warning(problem).to_string());
     }
 }
 

@@ -1,6 +1,6 @@
 //! `freeplay predict`: hold a model against a recording.
 
-use super::failure::Failure;
+use super::failure::{Failure, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use crate::calibrate::errors::ChannelError;
@@ -53,6 +53,7 @@ Examples:
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let model = Scenario::load(Some(&arguments.model), &arguments.sets.sets)?;
+    warn_of_unused(&model);
     if let Some(machine) = Machine::of(&model) {
         return single_joint(arguments, &model, machine);
     }

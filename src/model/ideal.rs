@@ -100,3 +100,32 @@ impl Ideal {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::model::assemble;
+    use crate::scenario::Scenario;
+
+    /// Drive forces against an independent solver's, platform acceleration against the motion's.
+    #[test]
+    fn forces_are_those_of_the_independent_solver() {
+        for (set, file) in [("0,0", "ideal.csv"), ("0,-9.81", "ideal_gravity.csv")] {
+            let set = format!("environment.gravity=[{set}]");
+            let scenario = Scenario::load(None, &[set]).expect("right");
+            let mut machine = assemble(&scenario).expect("no table to read");
+            let path = format!("{}/assets/reference/{file}", env!("CARGO_MANIFEST_DIR"));
+            let mut reader = csv::Reader::from_path(path).expect("reference");
+            for record in reader.records() {
+                let row: Vec<f64> =
+                    record.expect("row").iter().map(|f| f.parse().expect("number")).collect();
+                let instant = machine.ideal.at(row[0]);
+                for (force, expected) in instant.drive_forces.iter().zip(&row[4..7]) {
+                    assert!((force - expected).abs() < 1e-8, "{file} {row:?}: {force}");
+                }
+                let motion = machine.motion.at(row[0]);
+                assert!((instant.acceleration - motion.acceleration).norm() < 1e-9);
+                assert!((instant.position - motion.pose.xy()).norm() < 1e-15);
+            }
+        }
+    }
+}

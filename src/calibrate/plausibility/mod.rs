@@ -58,8 +58,8 @@ pub fn rig(rig: &Scenario) -> Vec<Problem> {
         found.push(rig.problem(path, message, help));
     };
     if !matches!(rig.mechanism, Mechanism::ThreeRpr(_)) {
-        let help = "machines of one joint have a calibration of their own (calibrate::single)";
-        complain("mechanism.kind", "is not \"3rpr\"".to_owned(), help);
+        let help = "calibrate takes a rig of the kind \"3rpr\", \"drive-stage\" or \"pendulum\"";
+        complain("mechanism.kind", "is another machine".to_owned(), help);
     }
     if !rig.effects.is_empty() {
         let message = format!("holds {} effect(s)", rig.effects.len());
