@@ -23,6 +23,11 @@ const NODES: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];
 /// stepped over.
 pub const LONGEST_STEP: f64 = 2e-4;
 
+/// Shortest step in s that error control asks for where rigid joints are nearly singular. Joints that are
+/// closed but for rounding ε at a distance c (rad) from such a pose leave a velocity of `ε ω/c²`: a shorter
+/// step ends closer to the pose, and loses more than it wins.
+const SINGULAR_STEP: f64 = 2e-5;
+
 /// First step in s, before anything is known of the error.
 const FIRST_STEP: f64 = 1e-6;
 
@@ -231,6 +236,9 @@ impl Stepper for Adaptive {
         let loads = mechanism.loads.iter().filter_map(|load| load.longest_step_at(at));
         let longest = loads.fold(self.longest, f64::min);
         let mut h = self.next_step.min(longest);
+        if self.coupled {
+            self.dynamics.was_singular();
+        }
         let (h, reached) = loop {
             let last = h >= span * (1.0 - 1e-9);
             if last {
@@ -263,6 +271,15 @@ impl Stepper for Adaptive {
             if ratio.is_nan() || ratio >= 0.9 {
                 self.next_step = (h * (0.9 * ratio).clamp(0.3, 2.0)).min(longest);
                 break (h, if last { until } else { t + h });
+            }
+            // Shorter steps do not help against the errors of a nearly singular pose.
+            if self.coupled && self.dynamics.was_singular() {
+                if h <= SINGULAR_STEP {
+                    self.next_step = h;
+                    break (h, if last { until } else { t + h });
+                }
+                h = (h * (0.85 * ratio).max(0.2)).max(SINGULAR_STEP);
+                continue;
             }
             h *= (0.85 * ratio).max(0.2);
         };
