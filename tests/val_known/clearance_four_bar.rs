@@ -1,11 +1,11 @@
 //! A four-bar whose coupler and rocker hang in three bearings with 5 mm of play, its crank under a tracking
 //! controller: the limit of contacts that return nothing.
 //!
-//! Example `FourBarLinkageWith3clearance` of siconos-tutorials (commit b6c9bfd; Akhadkar, Acary, Brogliato,
-//! Multibody System Dynamics, 2018): links of 1, 4 and 2.5 m and 1 kg each on a ground of 3 m, journals of
-//! 55 mm in rings of 60 mm, coefficient of restitution 0, of friction 0.1; Moreau's time stepping with 0.1 ms.
-//! The crank's angle is to follow 6 sin(0.75 π t) rad. Here the contacts are stiff springs with more than
-//! critical damping.
+//! Example `FourBarLinkageWith3clearance` of siconos-tutorials (commit b6c9bfd), after Akhadkar, Acary and
+//! Brogliato, Multibody System Dynamics 38 (2016), 101-136: links of 1, 4 and 2.5 m and 1 kg each on a ground
+//! of 3 m, journals of 55 mm in rings of 60 mm, coefficient of restitution 0, of friction 0.1; Moreau's time
+//! stepping with 0.1 ms. The crank's angle is to follow 6 sin(0.75 π t) rad. Here the contacts are stiff
+//! springs with more than critical damping.
 
 use super::{body, machine, short, simulate};
 use freeplay::engine::Schedule;

@@ -130,7 +130,7 @@ fn torque_and_forces_are_those_of_another_program() {
     // The force of the ground on the crank.
     close_to("A", now.reactions[a], [25.763_681_188_2, -8.129_890_652_6]);
     close_to("G", now.reactions[g], [-18.446_342_964_345_8, -33.697_807_972_190]);
-    // Five degrees away from a toggle that stands at 41.
+    // Some five degrees before a toggle.
     let (_, now) = turned(&mut machine, 36f64.to_radians());
     close_to("G at 36°", now.reactions[g], [754.824_390_075_91, -791.498_601_800_584]);
 
