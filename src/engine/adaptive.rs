@@ -167,6 +167,9 @@ impl Adaptive {
 impl Stepper for Adaptive {
     fn synchronise(&mut self, mechanism: &Mechanism, t: f64) {
         let hp = self.previous_step;
+        if self.coupled {
+            self.dynamics.forget_singular();
+        }
         if hp > 0.0 {
             self.world.read(&mut self.states);
             for (half, state) in self.half.iter_mut().zip(&self.states) {
@@ -236,9 +239,6 @@ impl Stepper for Adaptive {
         let loads = mechanism.loads.iter().filter_map(|load| load.longest_step_at(at));
         let longest = loads.fold(self.longest, f64::min);
         let mut h = self.next_step.min(longest);
-        if self.coupled {
-            self.dynamics.was_singular();
-        }
         let (h, reached) = loop {
             let last = h >= span * (1.0 - 1e-9);
             if last {

@@ -24,7 +24,7 @@ pub struct Dynamics {
     telescopes: Vec<(usize, [usize; 2])>,
     /// The other rigid joints, group by group.
     groups: Vec<Group>,
-    /// Whether a group was nearly singular since it was last asked.
+    /// Whether a group was nearly singular since that was last forgotten.
     singular: bool,
     coupled: bool,
     /// Each prismatic joint at the state last asked for.
@@ -153,9 +153,14 @@ impl Dynamics {
         self.coupled
     }
 
-    /// Whether rigid joints were solved in a nearly singular pose since this was last asked.
-    pub fn was_singular(&mut self) -> bool {
-        std::mem::take(&mut self.singular)
+    /// Whether rigid joints were solved in a nearly singular pose since this was last forgotten.
+    pub fn was_singular(&self) -> bool {
+        self.singular
+    }
+
+    /// Forgets whether they were.
+    pub fn forget_singular(&mut self) {
+        self.singular = false;
     }
 
     /// M⁻¹ of each body as the diagonal (1/kg, 1/kg, 1/(kg·m²)).
