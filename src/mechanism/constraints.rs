@@ -33,8 +33,14 @@ pub(super) struct Constraints {
     pub multipliers: Vec<f64>,
     diagonal: Vec<f64>,
     backup: Vec<f64>,
-    /// Whether the rows last solved depended on each other.
-    pub redundant: bool,
+    /// Rank of the rows last solved.
+    pub rank: usize,
+    /// How far the rows last solved were from having a lower one: their smallest pivot in shares of its
+    /// row's diagonal; of rows that depend on each other the smallest eigenvalue that is not zero, in shares
+    /// of the largest.
+    pub weakest: f64,
+    /// Farthest that these rows usually are from a lower rank, as `weakest` says it; 0 where nothing is known.
+    pub usual: f64,
 }
 
 impl Constraints {
@@ -90,14 +96,16 @@ impl Constraints {
     /// then the smallest one, each row measured by its own diagonal.
     fn solve_system(&mut self) {
         let n = self.multipliers.len();
-        self.redundant = false;
         self.diagonal.clear();
         self.diagonal.extend((0..n).map(|i| self.matrix[i * n + i]));
         self.backup.clone_from(&self.multipliers);
-        if factorise_and_solve(&mut self.matrix, &mut self.multipliers, &self.diagonal) {
+        let zero = DEPENDENT.max(SINGULAR * self.usual);
+        let solved =
+            factorise_and_solve(&mut self.matrix, &mut self.multipliers, &self.diagonal, zero);
+        if let Some(weakest) = solved {
+            (self.rank, self.weakest) = (n, weakest);
             return;
         }
-        self.redundant = true;
         let entry = |i: usize, j: usize| {
             let mut sum = 0.0;
             let (a, b) = (&self.rows[i], &self.rows[j]);
@@ -110,7 +118,8 @@ impl Constraints {
             }
             sum
         };
-        self.multipliers = smallest_solution(n, entry, &self.backup);
+        (self.multipliers, self.rank, self.weakest) =
+            smallest_solution(n, entry, &self.backup, zero);
     }
 }
 
@@ -118,19 +127,27 @@ impl Constraints {
 /// leave 1e-16 to 1e-14 of it, rows that differ by a microradian leave 1e-12.
 const DEPENDENT: f64 = 1e-13;
 
+/// The same in shares of what is usual for the rows: within some 30 µrad of a singular pose. There the forces
+/// grow without limit, and make of the velocities' errors accelerations larger than those that the rows hold
+/// back.
+const SINGULAR: f64 = 1e-9;
+
 /// Cholesky solution of a symmetric positive definite system given by its lower triangle (row
-/// major); the right-hand side becomes the solution. False, and nothing of use, where a row depends on
-/// those before it. In place because it runs several times a step on systems of two or three rows, where
-/// an allocation would cost more than the solution.
-fn factorise_and_solve(a: &mut [f64], b: &mut [f64], diagonal: &[f64]) -> bool {
+/// major); the right-hand side becomes the solution. Returns the smallest pivot in shares of its diagonal;
+/// none, with nothing of use in a and b, where a row's pivot is not above the share `zero`: it depends on
+/// those before it. In place because it runs several times a step on systems of two or three rows, where an
+/// allocation would cost more than the solution.
+fn factorise_and_solve(a: &mut [f64], b: &mut [f64], diagonal: &[f64], zero: f64) -> Option<f64> {
     let n = b.len();
+    let mut weakest = 1.0f64;
     for j in 0..n {
         for k in 0..j {
             a[j * n + j] -= a[j * n + k] * a[j * n + k];
         }
-        if a[j * n + j] <= DEPENDENT * diagonal[j] {
-            return false;
+        if a[j * n + j] <= zero * diagonal[j] {
+            return None;
         }
+        weakest = weakest.min(a[j * n + j] / diagonal[j]);
         let pivot = a[j * n + j].sqrt();
         a[j * n + j] = pivot;
         for i in j + 1..n {
@@ -150,12 +167,19 @@ fn factorise_and_solve(a: &mut [f64], b: &mut [f64], diagonal: &[f64]) -> bool {
         }
         b[j] /= a[j * n + j];
     }
-    true
+    Some(weakest)
 }
 
 /// The smallest λ with `A λ = b` in the sense of least squares, A symmetric and positive semidefinite of
-/// any rank: with rows and columns scaled to a diagonal of ones, the pseudo-inverse by eigenvalues.
-fn smallest_solution(n: usize, entry: impl Fn(usize, usize) -> f64, b: &[f64]) -> Vec<f64> {
+/// any rank: with rows and columns scaled to a diagonal of ones, the pseudo-inverse by eigenvalues, of which
+/// those up to the share `zero` of the largest are none. With it the rank, and the smallest of the other
+/// eigenvalues in shares of the largest.
+fn smallest_solution(
+    n: usize,
+    entry: impl Fn(usize, usize) -> f64,
+    b: &[f64],
+    zero: f64,
+) -> (Vec<f64>, usize, f64) {
     let scale: Vec<f64> = (0..n).map(|i| entry(i, i).max(f64::MIN_POSITIVE).sqrt()).collect();
     let matrix = DMatrix::from_fn(n, n, |i, j| {
         let (i, j) = (i.max(j), i.min(j));
@@ -163,16 +187,22 @@ fn smallest_solution(n: usize, entry: impl Fn(usize, usize) -> f64, b: &[f64]) -
     });
     let rhs = DVector::from_fn(n, |i, _| b[i] / scale[i]);
     if rhs.iter().chain(matrix.iter()).any(|x| !x.is_finite()) {
-        return vec![f64::NAN; n];
+        return (vec![f64::NAN; n], 0, 0.0);
     }
     let eigen = matrix.symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
     let mut along = eigen.eigenvectors.tr_mul(&rhs);
+    let (mut rank, mut weakest) = (0, 1.0f64);
     for (component, value) in along.iter_mut().zip(&eigen.eigenvalues) {
-        *component = if *value > DEPENDENT * largest { *component / value } else { 0.0 };
+        if *value > zero * largest {
+            *component /= value;
+            (rank, weakest) = (rank + 1, weakest.min(value / largest));
+        } else {
+            *component = 0.0;
+        }
     }
     let solution = eigen.eigenvectors * along;
-    solution.iter().zip(&scale).map(|(x, s)| x / s).collect()
+    (solution.iter().zip(&scale).map(|(x, s)| x / s).collect(), rank, weakest)
 }
 
 /// What holds bodies rigidly, grouped by the bodies that it connects. The ground connects nothing: it

@@ -23,7 +23,9 @@ pub struct Dynamics {
     /// Prismatic joints that alone hold two moving bodies, and these: solved in closed form.
     telescopes: Vec<(usize, [usize; 2])>,
     /// The other rigid joints, group by group.
-    groups: Vec<Vec<Rigid>>,
+    groups: Vec<Group>,
+    /// Whether a group was nearly singular since that was last forgotten.
+    singular: bool,
     coupled: bool,
     /// Each prismatic joint at the state last asked for.
     prismatics: Vec<Telescope>,
@@ -39,6 +41,32 @@ pub struct Dynamics {
     memories: Vec<Memory>,
     /// Workspace of a group.
     constraints: Constraints,
+}
+
+/// How much closer than usual to a lower rank a group's rows are where it counts as nearly singular: a
+/// thousandth of a radian away from the singular pose of a common linkage.
+const NEARLY_SINGULAR: f64 = 1e-6;
+
+/// Rigid joints that are solved together.
+#[derive(Clone, Debug)]
+struct Group {
+    joints: Vec<Rigid>,
+    /// Highest rank of the rows so far, and the farthest that they were from a lower one.
+    rank: usize,
+    weakest: f64,
+}
+
+impl Group {
+    fn new(joints: Vec<Rigid>) -> Self {
+        Self { joints, rank: 0, weakest: 0.0 }
+    }
+
+    /// Whether rows of this rank, so far from a lower one, are nearly singular.
+    fn nearly_singular(&mut self, rank: usize, weakest: f64) -> bool {
+        self.rank = self.rank.max(rank);
+        self.weakest = self.weakest.max(weakest);
+        rank < self.rank || weakest < NEARLY_SINGULAR * self.weakest
+    }
 }
 
 fn add(wrenches: &mut [Vector3<f64>], body: Option<usize>, wrench: Vector3<f64>) {
@@ -58,7 +86,7 @@ impl Dynamics {
         for group in groups(mechanism) {
             match Self::telescope(mechanism, &group) {
                 Some(telescope) => telescopes.push(telescope),
-                None => others.push(group),
+                None => others.push(Group::new(group)),
             }
         }
         let beside = |joint: &Prismatic| {
@@ -91,6 +119,7 @@ impl Dynamics {
                 .collect(),
             telescopes,
             groups: others,
+            singular: false,
             prismatics: mechanism
                 .prismatics
                 .iter()
@@ -122,6 +151,16 @@ impl Dynamics {
     /// is not that of its two centres of mass. Joints solved one after another then miss the forces.
     pub fn coupled(&self) -> bool {
         self.coupled
+    }
+
+    /// Whether rigid joints were solved in a nearly singular pose since this was last forgotten.
+    pub fn was_singular(&self) -> bool {
+        self.singular
+    }
+
+    /// Forgets whether they were.
+    pub fn forget_singular(&mut self) {
+        self.singular = false;
     }
 
     /// M⁻¹ of each body as the diagonal (1/kg, 1/kg, 1/(kg·m²)).
@@ -331,7 +370,7 @@ impl Dynamics {
     ) {
         let rows = &mut self.constraints.rows;
         rows.clear();
-        for joint in &self.groups[g] {
+        for joint in &self.groups[g].joints {
             match *joint {
                 Rigid::Prismatic(i) => {
                     let [side, angle, mut along] =
@@ -350,10 +389,13 @@ impl Dynamics {
                 }
             }
         }
+        self.constraints.usual = self.groups[g].weakest;
         self.constraints.solve(&self.inverse_masses, &mut out.accelerations);
+        let Constraints { rank, weakest, .. } = self.constraints;
+        self.singular |= self.groups[g].nearly_singular(rank, weakest);
         let mut multipliers = self.constraints.multipliers.iter();
         let mut next = || multipliers.next().copied().unwrap_or_default();
-        for joint in &self.groups[g] {
+        for joint in &self.groups[g].joints {
             match *joint {
                 Rigid::Prismatic(i) => {
                     let _side_and_angle = [next(), next()];
@@ -437,7 +479,7 @@ mod tests {
             let mut general = closed.clone();
             assert_eq!(general.telescopes.len(), 1);
             general.telescopes.clear();
-            general.groups.push(vec![Rigid::Prismatic(0)]);
+            general.groups.push(Group::new(vec![Rigid::Prismatic(0)]));
             let [a, b] = [&mut closed, &mut general].map(|dynamics| {
                 let mut now = Evaluation::new(&mechanism);
                 dynamics.forces(&mechanism, 0.0, &states, &mut now);
