@@ -15,6 +15,8 @@ pub struct Plan {
     base: Scenario,
     design: Design,
     identity: Identity,
+    /// Columns of this machine's own.
+    more: Vec<String>,
     shard: Shard,
     warnings: Vec<String>,
 }
@@ -45,16 +47,18 @@ impl Plan {
         let base = source.scenario(sets)?;
         let varied = vary.iter().map(|text| Vary::parse(text)).collect::<Result<Vec<_>, _>>()?;
         let design = Design::new(varied, base.seed)?;
+        let more = row::more(&base);
         let identity = Identity {
             provenance: Provenance::of(&base),
             seed: base.seed,
             vary: design.varied().iter().map(Vary::to_string).collect(),
             runs: design.runs(),
-            columns: row::columns(design.varied()),
+            columns: row::columns(design.varied(), &more),
             runs_hash: String::new(),
         };
         let sets = sets.to_vec();
-        let mut plan = Plan { source, sets, base, design, identity, shard, warnings: Vec::new() };
+        let mut plan =
+            Plan { source, sets, base, design, identity, more, shard, warnings: Vec::new() };
         plan.check()?;
         Ok(plan)
     }
@@ -67,6 +71,11 @@ impl Plan {
     /// What makes this sweep the one it is.
     pub fn identity(&self) -> &Identity {
         &self.identity
+    }
+
+    /// Columns that its table has beside those of every machine.
+    pub(super) fn more(&self) -> &[String] {
+        &self.more
     }
 
     /// The part of it that this process is to run.

@@ -1,7 +1,9 @@
 //! A row of the table: the values of a run, its figures, how it ended.
 
 use super::Vary;
-use crate::simulate::Summary;
+use crate::mechanism::{Actuator, JointIndex};
+use crate::scenario::Scenario;
+use crate::simulate::{Summary, assemble};
 use serde_json::Value;
 
 /// The figures of a row, by their names in `summary.json`. What depends on the machine that computes
@@ -49,18 +51,64 @@ pub(super) enum Status {
     Refused,
 }
 
+/// Figures of torques, of machines that have drives of revolute joints.
+const TORQUES: [&str; 3] = [
+    "peak_actuator_torque_Nm",
+    "ideal_peak_actuator_torque_Nm",
+    "rms_actuator_torque_deviation_Nm",
+];
+
+/// What a joint's columns are called, before and after its name.
+const OF_JOINTS: [[&str; 2]; 3] =
+    [["peak_force_", "_N"], ["contact_fraction_", ""], ["impacts_", ""]];
+
+/// The columns that a machine has beside [`FIGURES`]: torques, and each joint with a clearance by its name. The
+/// table of the machines that had one before joints had columns stays as it was.
+pub(super) fn more(base: &Scenario) -> Vec<String> {
+    use crate::scenario::Mechanism::{DriveStage, Pendulum, ThreeRpr};
+    if matches!(base.mechanism, ThreeRpr(_) | DriveStage(_) | Pendulum(_)) {
+        return Vec::new();
+    }
+    // What cannot be put together has no joints to name; its runs are refused one by one.
+    let Ok(machine) = assemble(base) else { return Vec::new() };
+    let mechanism = &machine.mechanism;
+    let turns = |actuator: &Actuator| matches!(actuator.joint, JointIndex::Revolute(_));
+    let torques = if mechanism.actuators.iter().any(turns) { &TORQUES[..] } else { &[] };
+    let joints = machine.layout.joints.iter().map(|&joint| &mechanism.revolutes[joint].name);
+    let of_joints = joints.flat_map(|name| OF_JOINTS.map(|[a, b]| format!("{a}{name}{b}")));
+    torques.iter().map(|name| (*name).to_owned()).chain(of_joints).collect()
+}
+
 /// The header of the table.
-pub(super) fn columns(varied: &[Vary]) -> Vec<String> {
+pub(super) fn columns(varied: &[Vary], more: &[String]) -> Vec<String> {
     let paths = varied.iter().map(|vary| vary.path.clone());
-    paths.chain(FIGURES.into_iter().chain([STATUS]).map(str::to_owned)).collect()
+    let figures = FIGURES.into_iter().map(str::to_owned).chain(more.iter().cloned());
+    paths.chain(figures).chain([STATUS.to_owned()]).collect()
+}
+
+/// A figure of `more`: one of a joint, or one of the summary by its name.
+fn figure(json: &Value, name: &str) -> Value {
+    let joints = json["joints"].as_array().map(Vec::as_slice).unwrap_or_default();
+    for joint in joints {
+        let of = joint["joint"].as_str().unwrap_or_default();
+        for ([before, after], key) in
+            OF_JOINTS.iter().zip(["peak_force_N", "contact_fraction", "impacts"])
+        {
+            if name == format!("{before}{of}{after}") {
+                return joint[key].clone();
+            }
+        }
+    }
+    json[name].clone()
 }
 
 /// The row of a run that was simulated.
-pub(super) fn of_summary(values: Vec<String>, summary: &Summary) -> Vec<String> {
+pub(super) fn of_summary(values: Vec<String>, summary: &Summary, more: &[String]) -> Vec<String> {
     // A summary is nothing but names, numbers and texts: it always becomes JSON.
     let json = serde_json::to_value(summary).unwrap_or_default();
     let mut row = values;
-    row.extend(FIGURES.iter().map(|name| match &json[*name] {
+    let names = FIGURES.into_iter().chain(more.iter().map(String::as_str));
+    row.extend(names.map(|name| match figure(&json, name) {
         Value::Number(number) => number.to_string(),
         // No number is an empty cell.
         _ => String::new(),
@@ -73,9 +121,9 @@ pub(super) fn of_summary(values: Vec<String>, summary: &Summary) -> Vec<String> 
 }
 
 /// The row of a run that the machine refuses.
-pub(super) fn refused(values: Vec<String>, reason: &str) -> Vec<String> {
+pub(super) fn refused(values: Vec<String>, reason: &str, more: &[String]) -> Vec<String> {
     let mut row = values;
-    row.extend(FIGURES.iter().map(|_| String::new()));
+    row.extend((0..FIGURES.len() + more.len()).map(|_| String::new()));
     row.push(format!("{REFUSED}{reason}"));
     row
 }
@@ -93,8 +141,7 @@ pub(super) fn status(row: &[String]) -> Status {
 mod tests {
     use super::*;
     use crate::engine::Work;
-    use crate::scenario::Scenario;
-    use crate::simulate::{Recorder, assemble};
+    use crate::simulate::Recorder;
 
     /// Numbers of `summary.json` that are no figures: the same in all rows, not reproducible, or
     /// looked for by `freeplay run` alone, because they take runs of their own.
@@ -107,6 +154,22 @@ mod tests {
         "lyapunov_exponent_1_s",
         "predictability_horizon_s",
     ];
+
+    #[test]
+    fn joints_and_torques_of_other_machines_have_columns() {
+        let text = "mechanism.kind = 'four-bar'\n";
+        let scenario = Scenario::from_text(text, "my.toml", &[]).expect("right");
+        let machine = assemble(&scenario).expect("put together");
+        let more = more(&scenario);
+        assert_eq!(more[0], TORQUES[0]);
+        assert!(more.contains(&"peak_force_B_N".to_owned()), "{more:?}");
+        let recorder = Recorder::new(&machine.mechanism, 0.0);
+        let summary = recorder.finish(&scenario, &machine, Work::default(), 1.0, None, Vec::new());
+        let row = of_summary(vec![], &summary, &more);
+        assert_eq!(row.len(), columns(&[], &more).len());
+        let impacts = columns(&[], &more).iter().position(|name| name == "impacts_B");
+        assert_eq!(row[impacts.expect("there")], "0");
+    }
 
     #[test]
     fn every_figure_of_the_summary_is_in_the_table() {
@@ -128,8 +191,8 @@ mod tests {
             assert!(known, "{name}: a figure of the table, or none?");
         }
         assert_eq!(
-            of_summary(vec![], &summary).len() + 1,
-            columns(&[Vary::parse("a=1").expect("right")]).len()
+            of_summary(vec![], &summary, &[]).len() + 1,
+            columns(&[Vary::parse("a=1").expect("right")], &[]).len()
         );
     }
 }

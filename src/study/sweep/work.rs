@@ -120,8 +120,10 @@ fn create(plan: &Plan, target: &Path, force: bool) -> Result<(), SweepError> {
 /// Makes run `run`.
 fn row_of(plan: &Plan, run: usize) -> Vec<String> {
     match plan.machine(run) {
-        Ok((scenario, machine)) => row::of_summary(plan.values(run), &summary(&scenario, machine)),
-        Err(reason) => row::refused(plan.values(run), &reason),
+        Ok((scenario, machine)) => {
+            row::of_summary(plan.values(run), &summary(&scenario, machine), plan.more())
+        }
+        Err(reason) => row::refused(plan.values(run), &reason, plan.more()),
     }
 }
 
