@@ -143,6 +143,7 @@ fn explain(path: &str, message: &str) -> (String, String) {
                 .replace("invalid length ", "a list of ")
                 .replace("invalid type: ", "")
                 .replace("invalid value: ", "");
+            let found = if found == "sequence" { "a list" } else { &found };
             (format!("found {found}"), format!("expected {}", in_words(expected)))
         }
         None => (message.to_owned(), "see the built-in default scenario".to_owned()),
