@@ -144,7 +144,12 @@ fn explain(path: &str, message: &str) -> (String, String) {
                 .replace("invalid type: ", "")
                 .replace("invalid value: ", "");
             let found = if found == "sequence" { "a list" } else { &found };
-            (format!("found {found}"), format!("expected {}", in_words(expected)))
+            let mut help = format!("expected {}", in_words(expected));
+            // `[[joints]]` for `[[joint]]`, which is a list.
+            if found == "a list" && path == "joints" {
+                help.push_str(", the defaults of all joints; one joint is a [[joint]]");
+            }
+            (format!("found {found}"), help)
         }
         None => (message.to_owned(), "see the built-in default scenario".to_owned()),
     }
