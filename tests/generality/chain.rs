@@ -180,7 +180,7 @@ impl Chain {
                 return if j == 0 { ground } else { hinge };
             }
             let share = j as f64 / self.second as f64;
-            let side = if j % 2 == 0 { -1.0 } else { 1.0 };
+            let side = if j.is_multiple_of(2) { -1.0 } else { 1.0 };
             let jitter = self.links[first + j].place[0] - 0.1;
             ground + (hinge - ground) * share + across * side * (0.04 + jitter)
         };
