@@ -96,6 +96,26 @@ impl Checks<'_> {
                 self.complain(&format!("{path}.shape"), message, &suggest(point, &known));
             }
         }
+        let place = |name: &String| body.points.get(name).copied().unwrap_or_default();
+        let flat = match shape {
+            Shape::Bar { from, to, .. } => place(from) == place(to),
+            Shape::Disc { .. } => false,
+            Shape::Polygon { corners, .. } => {
+                let next = corners.iter().cycle().skip(1);
+                let double: f64 = corners
+                    .iter()
+                    .zip(next)
+                    .map(|(a, b)| (place(a), place(b)))
+                    .map(|([ax, ay], [bx, by])| ax * by - ay * bx)
+                    .sum();
+                double == 0.0
+            }
+        };
+        if flat {
+            let message = format!("of the body \"{}\" has no extent, and so no mass", body.name);
+            let help = "a bar between two places, or a polygon with an area";
+            self.complain(&format!("{path}.shape"), message, help);
+        }
         if let Shape::Polygon { corners, .. } = shape
             && corners.len() < 3
         {

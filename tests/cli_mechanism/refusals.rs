@@ -259,6 +259,45 @@ fn numbers_that_no_body_or_joint_can_have() {
 }
 
 #[test]
+fn shapes_without_extent_and_fixed_joints_that_do_not_fit() {
+    let mass = "mass = 0.2\ninertia = 6.7e-4\ncenter_of_mass = [0.09, 0.0]\n";
+    let shape = |keys: &str| four_bar(mass, &format!("shape = {{ {keys}, density = 7800.0 }}\n"));
+    let fixed = |joints: &str| four_bar("[[drive]]", &format!("{joints}\n[[drive]]"));
+    refuse(vec![
+        wrong(
+            shape("kind = \"bar\", from = \"A\", to = \"A\", diameter = 0.01"),
+            "shape = ",
+            "body.1.shape: of the body \"coupler\" has no extent",
+            &["a bar between two places"],
+        ),
+        wrong(
+            shape("kind = \"polygon\", corners = [\"A\", \"B\", \"A\"], thickness = 0.01"),
+            "shape = ",
+            "body.1.shape: of the body \"coupler\" has no extent",
+            &["a polygon with an area"],
+        ),
+        wrong(
+            fixed("[[joint]]\nname = \"F\"\nkind = \"fixed\"\nbase = \"crank.A\"\npart = \"coupler.A\"\n"),
+            "[[joint]]\nname = \"A\"",
+            "joint.1: \"A\" joins two parts that fixed joints make one body",
+            &["take it out, or the fixed joint"],
+        ),
+        wrong(
+            four_bar("kind = \"revolute\"\nring = \"crank.A\"\njournal = \"coupler.A\"\nclearance = 1.5e-4\nbearing_radius = 0.008", "kind = \"fixed\"\nbase = \"crank.A\"\npart = \"coupler.A\"")
+                .replacen(
+                    "[[drive]]",
+                    "[[joint]]\nname = \"F\"\nkind = \"fixed\"\nbase = \"crank.O\"\npart = \
+                     \"coupler.B\"\nangle = 0.1\n\n[[drive]]",
+                    1,
+                ),
+            "[[joint]]\nname = \"F\"",
+            "joint.4: \"F\" contradicts the other fixed joints of its bodies: 240.000 mm and 0.1000 rad",
+            &["a second one must fit"],
+        ),
+    ]);
+}
+
+#[test]
 fn joints_that_do_not_close_and_bodies_that_nothing_holds() {
     let free = "[[body]]\nname = \"loose\"\nmass = 0.1\ninertia = 1e-4\n\n[[joint]]\nname = \"O\"";
     let pinned = "B = [0.13, 0.0]";
