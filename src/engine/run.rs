@@ -324,6 +324,8 @@ impl Watch {
             tally.energy += force * 0.5 * (before.rate + now.rate) * self.dt;
             *before = *now;
         }
+        // A row's instant is looked at twice: the step that ended there counts once.
+        self.dt = 0.0;
     }
 
     fn record(

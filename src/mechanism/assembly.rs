@@ -271,5 +271,19 @@ pub(super) fn smallest(rows: &[Row], bodies: usize, change: DVector<f64>) -> Opt
     if matrix.iter().chain(change.iter()).any(|x| !x.is_finite()) {
         return None;
     }
-    matrix.svd(true, true).solve(&change, 1e-12).ok()
+    let factors = matrix.clone().svd(true, true);
+    let mut motion = factors.solve(&change, 1e-12).ok()?;
+    // Near a singular pose the factors are not exact: what they leave is solved for again.
+    for _ in 0..5 {
+        let left = &change - &matrix * &motion;
+        if left.norm() <= 1e-13 + 1e-10 * change.norm() {
+            break;
+        }
+        let better = &motion + factors.solve(&left, 1e-12).ok()?;
+        if (&change - &matrix * &better).norm() >= left.norm() {
+            break;
+        }
+        motion = better;
+    }
+    Some(motion)
 }

@@ -4,6 +4,7 @@ use super::build::{Built, build, joint_named, kind_of_drives, located};
 use super::commands::{Each, Source};
 use super::ideal::{Ideal, States};
 use super::layout::Layout;
+use super::parts::Parts;
 use super::path::DrivenPath;
 use super::templates::expand;
 use super::{motion, native};
@@ -18,7 +19,7 @@ use crate::mechanism::{
     TelescopicLegs, Tracker, angle_near,
 };
 use crate::scenario::{self, JointDrive, Problem, Scenario, Target};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::sync::Arc;
 
 /// A machine, its motion, how it is to be stepped, and itself without clearance.
@@ -154,6 +155,7 @@ fn described(scenario: &Scenario) -> &scenario::Described {
 fn put_together(scenario: &Scenario, path: Arc<dyn Motion>) -> Result<Assembled, Problem> {
     let described = described(scenario);
     let mut built = build(scenario, described);
+    fixed_parts(scenario, described, &built.parts)?;
     let mut legs = None;
     let known_until = match &scenario.target {
         Some(target) => {
@@ -181,6 +183,45 @@ fn put_together(scenario: &Scenario, path: Arc<dyn Motion>) -> Result<Assembled,
     }
     let ranges = ranges(&built.mechanism, described);
     Ok(Assembled { built, motion: path, known_until, legs, ranges })
+}
+
+/// Distance (m) and angle (rad) to which fixed joints of the same bodies agree.
+const FITS: f64 = 1e-9;
+
+/// Fixed joints that contradict each other, and other joints between bodies that fixed joints make one.
+fn fixed_parts(
+    scenario: &Scenario,
+    described: &scenario::Described,
+    parts: &Parts,
+) -> Result<(), Problem> {
+    for (i, joint) in described.joints.iter().enumerate() {
+        let [(first, angle), (second, other)] = joint.points().map(|(_, point)| parts.point(point));
+        if first.body != second.body {
+            continue;
+        }
+        let key = format!("joint.{i}");
+        let scenario::Joint::Fixed(fixed) = joint else {
+            let message = format!(
+                "\"{}\" joins two parts that fixed joints make one body, or ground",
+                joint.name()
+            );
+            let help = "take it out, or the fixed joint";
+            return Err(scenario.problem(&key, message, help));
+        };
+        let gap = (first.point - second.point).norm();
+        let turned = UnitComplex::new(other - angle - fixed.angle).angle().abs();
+        if gap > FITS || turned > FITS {
+            let message = format!(
+                "\"{}\" contradicts the other fixed joints of its bodies: {:.3} mm and {turned:.4} rad are \
+                 left between its points",
+                fixed.name,
+                1e3 * gap
+            );
+            let help = "one fixed joint holds two bodies; a second one must fit";
+            return Err(scenario.problem(&key, message, help));
+        }
+    }
+    Ok(())
 }
 
 /// The declared range of each drive's joint.

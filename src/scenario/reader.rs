@@ -143,7 +143,13 @@ fn explain(path: &str, message: &str) -> (String, String) {
                 .replace("invalid length ", "a list of ")
                 .replace("invalid type: ", "")
                 .replace("invalid value: ", "");
-            (format!("found {found}"), format!("expected {}", in_words(expected)))
+            let found = if found == "sequence" { "a list" } else { &found };
+            let mut help = format!("expected {}", in_words(expected));
+            // `[[joints]]` for `[[joint]]`, which is a list.
+            if found == "a list" && path == "joints" {
+                help.push_str(", the defaults of all joints; one joint is a [[joint]]");
+            }
+            (format!("found {found}"), help)
         }
         None => (message.to_owned(), "see the built-in default scenario".to_owned()),
     }

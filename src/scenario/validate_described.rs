@@ -96,6 +96,26 @@ impl Checks<'_> {
                 self.complain(&format!("{path}.shape"), message, &suggest(point, &known));
             }
         }
+        let place = |name: &String| body.points.get(name).copied().unwrap_or_default();
+        let flat = match shape {
+            Shape::Bar { from, to, .. } => place(from) == place(to),
+            Shape::Disc { .. } => false,
+            Shape::Polygon { corners, .. } => {
+                let next = corners.iter().cycle().skip(1);
+                let double: f64 = corners
+                    .iter()
+                    .zip(next)
+                    .map(|(a, b)| (place(a), place(b)))
+                    .map(|([ax, ay], [bx, by])| ax * by - ay * bx)
+                    .sum();
+                double == 0.0
+            }
+        };
+        if flat {
+            let message = format!("of the body \"{}\" has no extent, and so no mass", body.name);
+            let help = "a bar between two places, or a polygon with an area";
+            self.complain(&format!("{path}.shape"), message, help);
+        }
         if let Shape::Polygon { corners, .. } = shape
             && corners.len() < 3
         {
@@ -148,13 +168,28 @@ impl Checks<'_> {
                     ("stiffness", joint.stiffness, f64::MIN_POSITIVE),
                     ("d_max", joint.d_max, f64::MIN_POSITIVE),
                 ];
-                let ideal = joint.law == Some(super::Law::Ideal);
+                let without = if joint.law == Some(super::Law::Ideal) {
+                    Some("take one of both out")
+                } else if joint.clearance.is_none() && self.scenario.joints.clearance.is_none() {
+                    // A clearance of 0 is written on purpose, and may be one of many in a sweep.
+                    Some("give the joint a clearance, or take this out")
+                } else {
+                    None
+                };
+                if let (Some(help), Some(law)) = (without, joint.law)
+                    && law != super::Law::Ideal
+                {
+                    let message = "is a contact law, and this joint is ideal".to_owned();
+                    self.complain(&format!("{path}.law"), message, help);
+                }
                 for (key, value, least) in numbers {
                     let Some(value) = value else { continue };
-                    if ideal {
+                    // No friction is right for every joint.
+                    let some = key != "friction" || value != 0.0;
+                    if let Some(help) = without.filter(|_| some) {
                         let message =
                             "belongs to a contact law, and this joint is ideal".to_owned();
-                        self.complain(&format!("{path}.{key}"), message, "take one of both out");
+                        self.complain(&format!("{path}.{key}"), message, help);
                     } else if value < least {
                         let help =
                             if least > 0.0 { "expected above 0" } else { "expected 0 or more" };

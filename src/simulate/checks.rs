@@ -3,7 +3,7 @@
 use super::three_rpr;
 use crate::contact::StiffnessForm;
 use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
-use crate::mechanism::{Bearing, JointIndex, Mechanism};
+use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism};
 use crate::model::{Machine, Singular, radial_clearance};
 use crate::scenario::{self, Problem, Scenario};
 use std::fmt;
@@ -71,7 +71,10 @@ pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {
         scenario::Mechanism::ThreeRpr(kind) => {
             three_rpr::findings(scenario, kind, &*machine.motion, &mut found);
         }
-        _ => driven_path(scenario, machine, &mut found),
+        _ => match overdriven(scenario, machine) {
+            Some(finding) => found.push(finding),
+            None => driven_path(scenario, machine, &mut found),
+        },
     }
     found.extend(inertias(scenario, machine));
     found.extend(redundant(scenario, machine));
@@ -87,6 +90,46 @@ fn joint_key(scenario: &Scenario, name: &str) -> String {
     let joints = scenario.mechanism.described().map(|described| &described.joints);
     let place = joints.and_then(|joints| joints.iter().position(|joint| joint.name() == name));
     place.map_or_else(|| "mechanism".to_owned(), |i| format!("joint.{i}"))
+}
+
+/// More drives with a command than ways to move.
+fn overdriven(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
+    let mechanism = machine.ideal.mechanism();
+    let states: Vec<_> = mechanism.bodies.iter().map(|body| body.start).collect();
+    let freedoms = mechanism.freedoms(&states);
+    let with_command = mechanism.actuators.iter().filter(|a| a.drive != Drive::Effort).count();
+    // Otherwise they say the same twice at this pose only: a singular one.
+    if with_command <= freedoms.free {
+        return None;
+    }
+    let name = |drive: &usize| mechanism.actuators[*drive].name.as_str();
+    let names: Vec<&str> = freedoms.overdriven.iter().map(name).collect();
+    let message = format!(
+        "{} are all told where to be, and without clearance the machine has {} {}: they fight each other",
+        names.join(", "),
+        freedoms.free,
+        if freedoms.free == 1 { "freedom" } else { "freedoms" },
+    );
+    let help = "drive as many joints as there are freedoms, or give a [[drive]] kind = \"force\"";
+    let key = drive_key(scenario, names.last()?);
+    Some(Finding::error(scenario.problem(&key, message, help)))
+}
+
+/// The place of a joint's drive in the file, or of its motion where `[drive]` drives it.
+fn drive_key(scenario: &Scenario, name: &str) -> String {
+    let drives = scenario.mechanism.described().map(|described| &described.drives);
+    let place = drives.and_then(|drives| drives.iter().position(|drive| drive.joint() == name));
+    let motion = match &scenario.motion {
+        scenario::Motion::Joints(motions) if scenario.is_list("motion") => {
+            motions.iter().position(|motion| motion.joint == name)
+        }
+        _ => None,
+    };
+    match (place, motion) {
+        (Some(i), _) => format!("drive.{i}"),
+        (None, Some(i)) => format!("motion.{i}"),
+        (None, None) => "motion".to_owned(),
+    }
 }
 
 /// Drives that leave their range, toggles, singular poses, loops that turn over.

@@ -1,0 +1,8 @@
+//! Mechanism files and templates, the real binary.
+
+#[path = "../cli_common/mod.rs"]
+mod cli_common;
+mod commands;
+mod files;
+mod refusals;
+mod templates;

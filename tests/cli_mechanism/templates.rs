@@ -1,0 +1,78 @@
+//! A machine with a kind and the mechanism file that it expands to are the same machine.
+
+use crate::cli_common::Place;
+
+/// Runs a scenario and its expansion: the time series must be equal to the byte.
+fn same_bytes(place: &Place, name: &str, text: &str, sets: &str) {
+    place.write(&format!("{name}.toml"), text);
+    let expanded = place.freeplay(&format!("expand {name}.toml {sets}"));
+    assert_eq!(expanded.code, 0, "{name} {sets}: {}", expanded.err);
+    assert!(expanded.out.contains("[[body]]") && !expanded.out.contains("[mechanism]"));
+    place.write(&format!("{name}-expanded.toml"), &expanded.out);
+    for (file, sets) in [(name.to_owned(), sets), (format!("{name}-expanded"), "")] {
+        let done = place.freeplay(&format!("run {file}.toml --quiet --force --out {file} {sets}"));
+        assert_eq!(done.code, 0, "{file} {sets}: {}", done.err);
+    }
+    let [template, file] =
+        ["", "-expanded"].map(|end| place.read(&format!("{name}{end}/timeseries.csv")));
+    assert!(template.lines().count() > 20, "{name} {sets}");
+    assert_eq!(template, file, "{name} {sets}");
+    // A mechanism file is already what it expands to.
+    assert_eq!(expanded.out, place.good(&format!("expand {name}-expanded.toml")), "{name} {sets}");
+}
+
+const EFFECTS: &str = r#"
+[[effect]]
+kind = "payload"
+mass_kg = 0.1
+com_x_m = 0.02
+[[effect]]
+kind = "joint-wear"
+joint = "C2"
+clearance_m = 8e-4
+[[effect]]
+kind = "anchor-offset"
+joint = "A1"
+dx_m = 1e-4
+dy_m = 0.0
+"#;
+
+#[test]
+fn the_3rpr_and_its_expansion_give_the_same_bytes() {
+    let place = Place::new();
+    let kind = "[mechanism]\nkind = \"3rpr\"\n[simulation]\nduration = 0.03\n";
+    for sets in [
+        "",
+        "--set drive.mode=servo --set environment.gravity=[0,-9.81]",
+        "--set drive.mode=sampled",
+        "--set contact.law=ideal",
+        "--set contact.law=native --set simulation.step=1e-5",
+        "--set simulation.step=2e-5 --set joints.friction=0.1",
+        "--set joints.clearance=[1e-4,2e-4,3e-4,1e-4,2e-4,3e-4]",
+        "--set motion.kind=quintic",
+        "--set motion.kind=line --set drive.mode=servo",
+    ] {
+        same_bytes(&place, "three", kind, sets);
+    }
+    same_bytes(&place, "effects", &format!("{kind}{EFFECTS}"), "--set drive.mode=servo");
+}
+
+#[test]
+fn every_template_and_its_expansion_give_the_same_bytes() {
+    let place = Place::new();
+    let down = "--set environment.gravity=[0,-9.81]";
+    for (kind, sets) in [
+        ("drive-stage", ["", "--set drive.mode=servo"]),
+        ("pendulum", ["", "--set joints.clearance=1e-4"]),
+        ("slider-crank", ["", "--set drive.mode=servo --set drive.stiffness=400"]),
+        ("four-bar", ["", "--set contact.law=ideal"]),
+        ("five-bar", ["", "--set contact.law=native --set simulation.step=1e-5"]),
+        ("3rrr", ["", "--set joints.clearance=1e-4"]),
+        ("double-pendulum", ["", "--set simulation.tolerance=1e-6"]),
+    ] {
+        let text = format!("[mechanism]\nkind = \"{kind}\"\n[simulation]\nduration = 0.03\n");
+        for sets in sets {
+            same_bytes(&place, kind, &text, &format!("{down} {sets}"));
+        }
+    }
+}
