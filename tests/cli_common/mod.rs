@@ -116,5 +116,5 @@ pub const WRONG: &[(&str, &[&str])] = &[
 /// The files that [`WRONG`] names.
 pub fn write_wrong_files(place: &Place) {
     place.write("syntax.toml", "[mechanism]\nkind = 3rpr\n");
-    place.write("no-such-kind.toml", "[mechanism]\nkind = \"3rrr\"\n");
+    place.write("no-such-kind.toml", "[mechanism]\nkind = \"3rpp\"\n");
 }
