@@ -1,6 +1,6 @@
 //! The force in one clearance joint: Hertz, damping with a STEP, never pulling, and Coulomb friction.
 
-use super::machine::{BEARING_RADIUS, Machine, contact_stiffness};
+use super::machine::contact_stiffness;
 
 /// Slip at which friction reaches tanh 1 of its full value, in m/s.
 const SLIP_SPEED: f64 = 1e-3;
@@ -33,14 +33,20 @@ pub struct Load {
 }
 
 impl ContactLaw {
-    pub fn new(machine: &Machine) -> Self {
-        let journal_radius = BEARING_RADIUS - machine.clearance;
+    /// Damping `c_max` in N·s/m of a contact deeper than `d_max` m; `friction` is Coulomb's coefficient.
+    pub fn new(
+        bearing_radius: f64,
+        clearance: f64,
+        [c_max, d_max]: [f64; 2],
+        friction: f64,
+    ) -> Self {
+        let journal_radius = bearing_radius - clearance;
         Self {
-            clearance: machine.clearance,
-            stiffness: contact_stiffness(journal_radius),
-            c_max: machine.c_max,
-            inverse_d_max: 1.0 / machine.d_max,
-            friction: machine.friction,
+            clearance,
+            stiffness: contact_stiffness(bearing_radius, journal_radius),
+            c_max,
+            inverse_d_max: 1.0 / d_max,
+            friction,
             journal_radius,
         }
     }

@@ -16,10 +16,11 @@
 
 use super::contact::{ContactLaw, Load};
 use super::machine::{
-    Bar, CYLINDER, Machine, PLATFORM_INERTIA, PLATFORM_MASS, Path, ROD, SERVO_DAMPING,
-    SERVO_STIFFNESS,
+    BEARING_RADIUS, Bar, CYLINDER, Machine, PLATFORM_INERTIA, PLATFORM_MASS, Path, ROD,
+    SERVO_DAMPING, SERVO_STIFFNESS,
 };
-use super::pose::{ANGLE, LENGTH, PLATFORM, Pose, SERVO, Y, squares};
+use super::pose::{ANGLE, LENGTH, PLATFORM, Pose, SERVO, Y, squares, start};
+use super::system::{Onset, System};
 
 const M1: f64 = CYLINDER.mass();
 const M2: f64 = ROD.mass();
@@ -43,17 +44,61 @@ pub struct Loads {
     pub normal: [f64; 6],
 }
 
-/// When the next journal reaches its bearing, and how fast it then closes in.
-pub struct Onset {
-    pub time: f64,
-    pub speed: f64,
+/// Angular rates count as speeds at these radii: half a leg, and the platform's corners.
+const LEG_RADIUS: f64 = 0.3;
+const PLATFORM_RADIUS: f64 = 0.058;
+
+impl<const N: usize> System<N> for Dynamics {
+    type Pose = Pose;
+
+    const ENTRY: f64 = 3e-4;
+
+    fn start(&self) -> ([f64; N], [f64; N]) {
+        start(&self.path)
+    }
+
+    fn radii(&self) -> [f64; N] {
+        std::array::from_fn(|n| match n {
+            _ if n == ANGLE + PLATFORM => PLATFORM_RADIUS,
+            _ if (ANGLE..ANGLE + PLATFORM).contains(&n) => LEG_RADIUS,
+            _ => 1.0,
+        })
+    }
+
+    #[inline(always)]
+    fn evaluate(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], Pose) {
+        let pose = Pose::new(&self.path, t, q, v);
+        let a = self.accelerations(v, &pose, &self.loads(v, &pose));
+        (a, pose)
+    }
+
+    #[inline(always)]
+    fn next_onset(&self, v: &[f64; N], pose: &Pose) -> Onset {
+        let limit = self.law.clearance * self.law.clearance;
+        let (base, top) = (squares(&pose.base), squares(&pose.top));
+        let mut next = Onset::NEVER;
+        for i in 0..3 {
+            if base[i] <= limit {
+                next.or(&pose.base_meeting(v, i), base[i], self.law.clearance);
+            }
+            if top[i] <= limit {
+                next.or(&pose.top_meeting(v, i), top[i], self.law.clearance);
+            }
+        }
+        next
+    }
 }
 
 impl Dynamics {
     pub fn new(machine: &Machine) -> Self {
         Self {
             path: Path::new(machine.phase),
-            law: ContactLaw::new(machine),
+            law: ContactLaw::new(
+                BEARING_RADIUS,
+                machine.clearance,
+                [machine.c_max, machine.d_max],
+                machine.friction,
+            ),
             gravity: machine.gravity,
         }
     }
@@ -127,33 +172,6 @@ impl Dynamics {
             }
         }
         a
-    }
-
-    /// The next onset if no journal were accelerated from here on: `|e + ė τ| = c` for those in flight.
-    #[inline(always)]
-    pub fn next_onset<const N: usize>(&self, v: &[f64; N], pose: &Pose) -> Onset {
-        let limit = self.law.clearance * self.law.clearance;
-        let (base, top) = (squares(&pose.base), squares(&pose.top));
-        let mut next = Onset { time: f64::INFINITY, speed: 0.0 };
-        for i in 0..3 {
-            for (square, is_base) in [(base[i], true), (top[i], false)] {
-                if square > limit {
-                    continue;
-                }
-                let meeting =
-                    if is_base { pose.base_meeting(v, i) } else { pose.top_meeting(v, i) };
-                let ([ex, ey], [vx, vy]) = (meeting.e, meeting.v);
-                let along = ex * vx + ey * vy;
-                let root = (along * along + (vx * vx + vy * vy) * (limit - square)).sqrt();
-                // a journal at rest in the middle of its bearing never arrives: x/0 = ∞
-                let time = (limit - square) / (root + along);
-                if time < next.time {
-                    next = Onset { time, speed: root };
-                }
-            }
-        }
-        next.speed /= self.law.clearance;
-        next
     }
 }
 

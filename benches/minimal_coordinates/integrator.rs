@@ -1,7 +1,6 @@
 //! Step size control: the estimated error of the velocities, and the next onset of contact.
 
-use super::dynamics::Dynamics;
-use super::pose::{ANGLE, PLATFORM, start};
+use super::system::System;
 use super::tsitouras::{EVALUATIONS, State, interpolate, step};
 
 /// What a run cost.
@@ -28,42 +27,34 @@ const LARGEST_SHRINKAGE: f64 = 0.2;
 const EXPONENT: f64 = 0.2;
 const BETA: f64 = 0.04;
 
-/// Angular rates count as speeds at these radii: half a leg, and the platform's corners.
-const LEG_RADIUS: f64 = 0.3;
-const PLATFORM_RADIUS: f64 = 0.058;
-
-/// How far a step may reach into a contact that begins within it. There the force is K (v τ)^1.5, and a
-/// polynomial misses a fixed part of K v^1.5 τ^2.5/m of the velocity; that is `tolerance` at
-/// `ENTRY (tolerance² / v³)^0.2`, the scale found by trial for this machine's K and m.
-const ENTRY: f64 = 3e-4;
-/// A step from further away than so many reaches would weight the force at its end by its own length: it
-/// stops short of the onset, at this part of the forecast, which leaves out accelerations.
+/// A step from further away than so many reaches ([`System::ENTRY`]) would weight the force at its end by
+/// its own length: it stops short of the onset, at this part of the forecast, which leaves out accelerations.
 const NEAR: f64 = 2.0;
 const APPROACH: f64 = 0.95;
 /// The step after an entry is at most so many times as long as the reach.
 const AFTER_ENTRY: f64 = 3.0;
 
 /// Goes from t = 0 through all `times`, which increase, and hands over the state at each.
-pub fn integrate<const N: usize>(
-    dynamics: &Dynamics,
+pub fn integrate<const N: usize, S: System<N>>(
+    system: &S,
     tolerance: f64,
     times: &[f64],
     mut observe: impl FnMut(f64, [f64; N], [f64; N]),
 ) -> Work {
-    let weights = weights::<N>(tolerance);
-    let (q, v) = start(&dynamics.path);
-    let (mut state, mut pose) = State::new(dynamics, 0.0, q, v);
+    let weights = system.radii().map(|radius| radius / tolerance);
+    let (q, v) = system.start();
+    let (mut state, mut pose) = State::new(system, 0.0, q, v);
     let mut work = Work { evaluations: 1, ..Work::default() };
     let mut remaining = times;
     let mut wanted = FIRST_STEP;
     let mut log_before = 0.0;
     while !remaining.is_empty() {
-        let onset = dynamics.next_onset(&state.v, &pose);
+        let onset = system.next_onset(&state.v, &pose);
         loop {
             let mut h = wanted.min(LONGEST_STEP);
             let mut next_at_most = f64::INFINITY;
             if onset.time < h {
-                let reach = ENTRY * (tolerance * tolerance / onset.speed.powi(3)).powf(0.2);
+                let reach = S::ENTRY * (tolerance * tolerance / onset.speed.powi(3)).powf(0.2);
                 if onset.time > NEAR * reach {
                     h = h.min(APPROACH * onset.time);
                 } else if onset.time + reach < h {
@@ -72,7 +63,7 @@ pub fn integrate<const N: usize>(
                 }
             }
             assert!(h > SHORTEST_STEP, "no step is short enough at t = {} s", state.t);
-            let trial = step(dynamics, &state, h);
+            let trial = step(system, &state, h);
             work.evaluations += EVALUATIONS;
             let square = weighted_square(&trial.velocity_error, &weights);
             if square <= 1.0 {
@@ -97,15 +88,6 @@ pub fn integrate<const N: usize>(
         }
     }
     work
-}
-
-/// What turns errors of the velocities into multiples of the tolerance.
-fn weights<const N: usize>(tolerance: f64) -> [f64; N] {
-    std::array::from_fn(|n| match n {
-        _ if n == ANGLE + PLATFORM => PLATFORM_RADIUS / tolerance,
-        _ if (ANGLE..ANGLE + PLATFORM).contains(&n) => LEG_RADIUS / tolerance,
-        _ => 1.0 / tolerance,
-    })
 }
 
 #[inline(always)]

@@ -180,8 +180,8 @@ pub struct Start {
 }
 
 /// Stiffness of the Hertz contact, `K = 4/(3π (h + h)) √(R_b R_j/(R_b + R_j))`, `h = (1 − ν²)/(π E)`.
-pub fn contact_stiffness(journal_radius: f64) -> f64 {
+pub fn contact_stiffness(bearing_radius: f64, journal_radius: f64) -> f64 {
     let h = (1.0 - POISSON * POISSON) / (PI * YOUNG);
-    let radii = BEARING_RADIUS * journal_radius / (BEARING_RADIUS + journal_radius);
+    let radii = bearing_radius * journal_radius / (bearing_radius + journal_radius);
     4.0 / (3.0 * PI * (h + h)) * radii.sqrt()
 }

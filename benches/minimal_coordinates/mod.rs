@@ -1,6 +1,6 @@
 //! The machine solved without a physics engine, as fast as we know how: minimal coordinates, the equations
 //! of motion in closed form, an adaptive explicit Runge–Kutta pair. It knows this one machine on its
-//! default circle and nothing else.
+//! default circle, and a slider-crank (`slider_crank`), and nothing else.
 //!
 //! `tolerance` is the error in m/s that one step may add to the velocities.
 
@@ -9,6 +9,8 @@ mod dynamics;
 mod integrator;
 mod machine;
 mod pose;
+pub mod slider_crank;
+mod system;
 mod trigonometry;
 mod tsitouras;
 
@@ -62,7 +64,7 @@ fn run<const N: usize>(
     mut observe: impl FnMut(&Sample),
 ) -> Work {
     let dynamics = Dynamics::new(machine);
-    integrate::<N>(&dynamics, tolerance, times, |t, q, v| observe(&sample(&dynamics, t, &q, &v)))
+    integrate::<N, _>(&dynamics, tolerance, times, |t, q, v| observe(&sample(&dynamics, t, &q, &v)))
 }
 
 fn sample<const N: usize>(dynamics: &Dynamics, t: f64, q: &[f64; N], v: &[f64; N]) -> Sample {

@@ -9,8 +9,7 @@
 //!
 //! which is the same method on the first-order system, with accelerations only to be kept.
 
-use super::dynamics::Dynamics;
-use super::pose::Pose;
+use super::system::System;
 
 const STAGES: usize = 7;
 
@@ -93,17 +92,16 @@ pub struct State<const N: usize> {
 
 impl<const N: usize> State<N> {
     #[inline(always)]
-    pub fn new(dynamics: &Dynamics, t: f64, q: [f64; N], v: [f64; N]) -> (Self, Pose) {
-        let pose = Pose::new(&dynamics.path, t, &q, &v);
-        let a = dynamics.accelerations(&v, &pose, &dynamics.loads(&v, &pose));
+    pub fn new<S: System<N>>(system: &S, t: f64, q: [f64; N], v: [f64; N]) -> (Self, S::Pose) {
+        let (a, pose) = system.evaluate(t, &q, &v);
         (Self { t, q, v, a }, pose)
     }
 }
 
 /// Where a step ended, and the estimated error of its velocities.
-pub struct Trial<const N: usize> {
+pub struct Trial<const N: usize, S: System<N>> {
     pub end: State<N>,
-    pub pose: Pose,
+    pub pose: S::Pose,
     pub velocity_error: [f64; N],
 }
 
@@ -111,17 +109,17 @@ pub struct Trial<const N: usize> {
 pub const EVALUATIONS: u64 = STAGES as u64 - 1;
 
 #[inline(always)]
-pub fn step<const N: usize>(dynamics: &Dynamics, from: &State<N>, h: f64) -> Trial<N> {
+pub fn step<const N: usize, S: System<N>>(system: &S, from: &State<N>, h: f64) -> Trial<N, S> {
     let mut a = [[0.0; N]; STAGES];
     a[0] = from.a;
     // no loop: with the stage a literal, the compiler drops the zero coefficients
-    a[1] = stage(dynamics, from, &a, 1, h);
-    a[2] = stage(dynamics, from, &a, 2, h);
-    a[3] = stage(dynamics, from, &a, 3, h);
-    a[4] = stage(dynamics, from, &a, 4, h);
-    a[5] = stage(dynamics, from, &a, 5, h);
+    a[1] = stage(system, from, &a, 1, h);
+    a[2] = stage(system, from, &a, 2, h);
+    a[3] = stage(system, from, &a, 3, h);
+    a[4] = stage(system, from, &a, 4, h);
+    a[5] = stage(system, from, &a, 5, h);
     let (q, v) = combine(from, &a, 6, h);
-    let (end, pose) = State::new(dynamics, from.t + h, q, v);
+    let (end, pose) = State::new(system, from.t + h, q, v);
     a[6] = end.a;
     let velocity_error = std::array::from_fn(|n| h * weighted(&ERROR, &a, STAGES, n));
     Trial { end, pose, velocity_error }
@@ -129,26 +127,26 @@ pub fn step<const N: usize>(dynamics: &Dynamics, from: &State<N>, h: f64) -> Tri
 
 /// The accelerations of stage `i`.
 #[inline(always)]
-fn stage<const N: usize>(
-    dynamics: &Dynamics,
+fn stage<const N: usize, S: System<N>>(
+    system: &S,
     from: &State<N>,
     a: &[[f64; N]; STAGES],
     i: usize,
     h: f64,
 ) -> [f64; N] {
     let (q, v) = combine(from, a, i, h);
-    accelerations(dynamics, from.t + C[i] * h, &q, &v)
+    accelerations(system, from.t + C[i] * h, &q, &v)
 }
 
 /// The right-hand side, once in the program: five copies would not stay in the instruction cache.
 #[inline(never)]
-fn accelerations<const N: usize>(
-    dynamics: &Dynamics,
+fn accelerations<const N: usize, S: System<N>>(
+    system: &S,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
 ) -> [f64; N] {
-    State::new(dynamics, t, *q, *v).0.a
+    system.evaluate(t, q, v).0
 }
 
 /// Coordinates and rates of stage `i`, from the accelerations of those before.

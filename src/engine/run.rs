@@ -7,6 +7,7 @@ use crate::contact::Contact;
 use crate::mechanism::{
     Actuator, Bearing, BodyState, Drive, Evaluation, JointIndex, Mechanism, angle_near,
 };
+use nalgebra::UnitComplex;
 use std::ops::ControlFlow;
 
 /// How the time step is chosen.
@@ -239,6 +240,7 @@ fn drive(
                 work.step_error = Some(work.step_error.map_or(error, |worst| worst.max(error)));
             }
         }
+        watch.look_at_angles(stepper.states(), |_, _| true);
         let Watch { tallies, peaks, angles, .. } = &watch;
         let (states, evaluation) = (stepper.states(), stepper.evaluation());
         let instant = Instant { t, states, angles, evaluation, tallies, peaks: *peaks };
@@ -296,8 +298,9 @@ impl Clock {
 struct Watch {
     tallies: Vec<Tally>,
     peaks: Peaks,
-    /// Angle of each body in rad, whole turns counted.
+    /// Angle of each body in rad, whole turns counted, when it was looked at last, and its rotation then.
     angles: Vec<f64>,
+    rotations: Vec<UnitComplex<f64>>,
     /// Contacts at the instant before, and the time in s since then.
     before: Vec<Contact>,
     dt: f64,
@@ -310,6 +313,7 @@ impl Watch {
             tallies: vec![Tally::default(); joints],
             peaks: Peaks::default(),
             angles: mechanism.bodies.iter().map(|body| body.angle).collect(),
+            rotations: mechanism.bodies.iter().map(|body| body.start.rotation).collect(),
             before: vec![Contact::default(); joints],
             dt: 0.0,
         }
@@ -353,8 +357,22 @@ impl Watch {
             };
             *peak = peak.max(effort.abs());
         }
-        for (angle, state) in self.angles.iter_mut().zip(states) {
-            *angle = angle_near(state.rotation, *angle);
+        // An arc tangent a step is dear; whole turns are counted as well every quarter of a turn.
+        self.look_at_angles(states, |before, now| before.re * now.re + before.im * now.im <= 0.0);
+    }
+
+    /// Brings angles up to date, those of bodies for whose rotations then and now it is `due`.
+    fn look_at_angles(
+        &mut self,
+        states: &[BodyState],
+        due: impl Fn(&UnitComplex<f64>, &UnitComplex<f64>) -> bool,
+    ) {
+        let angles = self.angles.iter_mut().zip(&mut self.rotations);
+        for ((angle, rotation), state) in angles.zip(states) {
+            if due(rotation, &state.rotation) {
+                *angle = angle_near(state.rotation, *angle);
+                *rotation = state.rotation;
+            }
         }
     }
 
@@ -412,4 +430,32 @@ fn likely_cause(mechanism: &Mechanism, control: StepControl) -> String {
         "likely hits far harder than usual, or a machine near a singularity: try a smaller \
          simulation.{key}, or `freeplay check`"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::Body;
+    use nalgebra::{Vector2, Vector3};
+
+    #[test]
+    fn whole_turns_between_rows_are_counted() {
+        let body = |spin| {
+            let twist = Vector3::new(0.0, 0.0, spin);
+            let (position, rotation) = (Vector2::zeros(), UnitComplex::new(3.0));
+            Body::new("wheel", 1.0, 1.0, BodyState { position, rotation, twist })
+        };
+        let spins = [40.0, -25.0, 0.1];
+        let mechanism = Mechanism::free(spins.map(body).to_vec());
+        let schedule = Schedule { duration: 2.0, interval: 0.5 };
+        for control in [StepControl::Fixed(1e-3), StepControl::Tolerance(1e-5)] {
+            run(&mechanism, control, schedule, &mut |instant| {
+                for (angle, spin) in instant.angles.iter().zip(spins) {
+                    let expected = 3.0 + spin * instant.t;
+                    assert!((angle - expected).abs() < 1e-9, "{control:?}: {angle} {expected}");
+                }
+            })
+            .expect("runs to its end");
+        }
+    }
 }

@@ -170,6 +170,7 @@ impl Dynamics {
 
     /// True coordinate (m or rad, whole turns counted from the last step's end) and rate of the joint of
     /// drive `index`.
+    #[inline]
     pub fn coordinate(
         &mut self,
         mechanism: &Mechanism,
