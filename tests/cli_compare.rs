@@ -130,11 +130,11 @@ fn a_pendulum_with_clearance_is_compared() {
 fn a_machine_without_revolute_joints_is_refused() {
     let place = Place::new();
     let stage = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/drive-stage.toml");
-    let fragments = ["drive-stage.toml:7: mechanism.kind: has no revolute joint", "\"pendulum\""];
+    let fragments = ["drive-stage.toml:7: mechanism.kind: has no joint with clearance", "revolute"];
     place.refused(&format!("compare {stage} --duration 0.3"), &fragments);
     place.refused(
         "compare --set mechanism.kind=drive-stage --duration 0.3",
-        &["--set mechanism.kind: has no revolute joint"],
+        &["--set mechanism.kind: has no joint with clearance"],
     );
 }
 

@@ -227,7 +227,8 @@ impl Scenario {
         Scenario { mechanism, motion, target, ..self.clone() }
     }
 
-    /// What is there and has no meaning for this machine.
+    /// What is there and has no meaning for this machine; what the built-in default says beside it is nobody's
+    /// mistake.
     pub fn unused(&self) -> Vec<Problem> {
         let unused = |section: &&str| {
             self.problem(
@@ -236,7 +237,8 @@ impl Scenario {
                 "take it out, or see `freeplay expand` for the sections of this machine",
             )
         };
-        self.unused.iter().map(unused).collect()
+        let by_user = |problem: &Problem| !matches!(&problem.location, Location::File { name, .. } if name == DEFAULT_SOURCE);
+        self.unused.iter().map(unused).filter(by_user).collect()
     }
 
     /// The scenario as TOML with every default filled in. It loads back to the same scenario from
