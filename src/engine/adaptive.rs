@@ -11,7 +11,7 @@
 //! the forward half of the last average got wrong is made good in the next, where the path is known
 //! better: `kick = ∫F over the past step − forward part given before + forward part`.
 
-use super::run::Stepper;
+use super::stepper::Stepper;
 use super::world::{Target, World, joint_advance};
 use crate::mechanism::{Bearing, BodyState, Dynamics, Evaluation, Mechanism, Situation};
 use nalgebra::Vector3;

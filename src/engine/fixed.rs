@@ -9,7 +9,7 @@
 //! That is the velocity-Verlet scheme, symmetric in time: on the reference curves its error is a
 //! seventh of the extrapolation's, and a tenth in the rebound of one hit.
 
-use super::run::{Stepper, equal_step};
+use super::stepper::{Stepper, equal_step};
 use super::world::{Target, World, joint_advance};
 use crate::mechanism::{BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;

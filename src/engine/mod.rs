@@ -7,15 +7,19 @@
 
 mod adaptive;
 mod clearance_joints;
+mod clock;
 mod colliders;
 mod dispatcher;
 mod fixed;
+mod inserter;
 mod leapfrog;
 mod native;
 mod ring;
 mod run;
+mod stepper;
 #[cfg(test)]
 mod tests;
+mod watch;
 mod world;
 
 pub use adaptive::LONGEST_STEP;
@@ -23,9 +27,8 @@ pub use clearance_joints::{ClearanceJoint, ClearanceJoints};
 pub use colliders::{JointColliders, Solver};
 pub use dispatcher::RingDispatcher;
 pub use ring::BearingRing;
-pub use run::{
-    Halt, Instant, Peaks, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Tally, Work, run, run_while,
-};
+pub use run::{Halt, Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Work, run, run_while};
+pub use watch::{Peaks, Tally};
 
 use nalgebra::Vector2;
 use rapier2d_f64::dynamics::IntegrationParameters;

@@ -15,7 +15,7 @@
 //! [`predictive`](crate::mechanism::NativeContacts::predictive) off a hook drops the rigid rows, and
 //! the spring alone has limits like any law.
 
-use super::run::{Stepper, equal_step};
+use super::stepper::{Stepper, equal_step};
 use super::world::{Target, World, joint_advance};
 use crate::mechanism::{BodyState, Command, Drive, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;

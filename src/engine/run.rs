@@ -1,13 +1,13 @@
 //! A mechanism from start to end: what a run is asked for, what it hands out, how it can fail.
 
 use super::adaptive::Adaptive;
+use super::clock::Clock;
 use super::fixed::Fixed;
 use super::native::Native;
+use super::stepper::Stepper;
+use super::watch::{Peaks, Tally, Watch};
 use crate::contact::Contact;
-use crate::mechanism::{
-    Actuator, Bearing, BodyState, Drive, Evaluation, JointIndex, Mechanism, angle_near,
-};
-use nalgebra::UnitComplex;
+use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
 use std::ops::ControlFlow;
 
 /// How the time step is chosen.
@@ -45,33 +45,6 @@ impl Schedule {
     pub fn time(&self, k: usize) -> f64 {
         if k >= self.intervals() { self.duration } else { k as f64 * self.interval }
     }
-}
-
-/// What one joint has gone through.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tally {
-    /// Largest normal force in N since the row before.
-    pub peak: f64,
-    /// Contacts begun since the start.
-    pub impacts: u64,
-    /// Time in contact since the start, in s.
-    pub contact_time: f64,
-    /// Energy that the normal force has taken from the bodies since the start, in J, `∫ F_N δ̇ dt`:
-    /// what the contact dissipated and, while it is touching, what it holds as a spring.
-    pub energy: f64,
-    /// Touching at the present instant.
-    pub touching: bool,
-}
-
-/// Largest values since the row before, over all steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Peaks {
-    /// Of the output body's acceleration |(a_x, a_y)| in m/s².
-    pub acceleration: f64,
-    /// Of the force |F| of a drive of a prismatic joint in N.
-    pub drive_force: f64,
-    /// Of the torque of a drive of a revolute joint in N·m.
-    pub drive_torque: f64,
 }
 
 /// Everything that is known at one instant. States, accelerations and forces belong together:
@@ -121,35 +94,6 @@ pub struct Halt {
     pub work: Work,
 }
 
-/// A way of stepping. The driver asks it for the present instant, then for a step towards the next
-/// row, in turn.
-pub(super) trait Stepper {
-    /// Makes states and evaluation those of time `t` in s.
-    fn synchronise(&mut self, mechanism: &Mechanism, t: f64);
-    /// States at the instant last synchronised.
-    fn states(&self) -> &[BodyState];
-    /// Forces, accelerations, contacts at that instant.
-    fn evaluation(&self) -> &Evaluation;
-    /// Largest normal force (N) of each joint inside the step that ended at that instant, where the
-    /// way of stepping looks there.
-    fn peaks_inside(&self) -> &[f64];
-    /// Lets the sampled controllers that are due compute what they hold from the instant last
-    /// synchronised on.
-    fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]);
-    /// Makes one step from `t` of at most `until − t` s; returns the time reached, exactly `until`
-    /// if it got there.
-    fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
-    /// Estimated velocity error of the last step in m/s, if there is an estimate.
-    fn step_error(&self) -> Option<f64> {
-        None
-    }
-    /// Whether the contact forces of an instant are the means over the step that ended there, and not
-    /// those of the instant itself.
-    fn mean_forces(&self) -> bool {
-        false
-    }
-}
-
 /// Simulates `mechanism` and calls `observe` at each row of the schedule.
 ///
 /// # Errors
@@ -188,16 +132,6 @@ pub fn run_while(
             drive(&mut Adaptive::new(mechanism, tolerance), mechanism, control, schedule, observe)
         }
     }
-}
-
-/// Length of the next step from `t` so that steps of equal length, at most `step` s, end exactly at
-/// `until`; and the time reached. (A sliver left over by rounding would give a prescribed drive an
-/// endless force.)
-pub(super) fn equal_step(step: f64, t: f64, until: f64) -> (f64, f64) {
-    let span = until - t;
-    let count = (span / step * (1.0 - 1e-9)).ceil().max(1.0);
-    let dt = span / count;
-    (dt, if count == 1.0 { until } else { t + dt })
 }
 
 fn drive(
@@ -252,146 +186,6 @@ fn drive(
     Ok(work)
 }
 
-/// When controllers take samples: each at multiples of its own interval.
-#[derive(Debug)]
-struct Clock {
-    /// Interval in s of each drive's controller, and how many samples it took.
-    intervals: Vec<Option<(f64, u64)>>,
-    /// The drives whose controllers take a sample now.
-    due: Vec<bool>,
-}
-
-impl Clock {
-    fn new(mechanism: &Mechanism) -> Self {
-        let interval = |actuator: &Actuator| match actuator.drive {
-            Drive::Sampled(cascade) => Some((cascade.interval, 0)),
-            Drive::Prescribed | Drive::Servo { .. } | Drive::Effort => None,
-        };
-        let intervals: Vec<_> = mechanism.actuators.iter().map(interval).collect();
-        Self { due: vec![false; intervals.len()], intervals }
-    }
-
-    /// Finds who takes a sample at `t` (s), and counts it; false if nobody does.
-    fn due(&mut self, t: f64) -> bool {
-        for (due, interval) in self.due.iter_mut().zip(&mut self.intervals) {
-            // Rows and samples that mean the same time differ by rounding.
-            *due = interval.is_some_and(|(dt, samples)| t >= samples as f64 * dt - 1e-9 * dt);
-            if let Some((_, samples)) = interval {
-                *samples += u64::from(*due);
-            }
-        }
-        self.due.contains(&true)
-    }
-
-    /// The end of steps that may go as far as `until`: there, or at the next sample.
-    fn end(&self, until: f64) -> f64 {
-        self.intervals.iter().flatten().fold(until, |end, &(dt, samples)| {
-            let next = samples as f64 * dt;
-            // Samples that mean the same time as a row, or as another's, differ from it by rounding.
-            if next < end - 1e-9 * dt { next } else { end }
-        })
-    }
-}
-
-/// Keeps account of what happens between rows.
-#[derive(Debug)]
-struct Watch {
-    tallies: Vec<Tally>,
-    peaks: Peaks,
-    /// Angle of each body in rad, whole turns counted, when it was looked at last, and its rotation then.
-    angles: Vec<f64>,
-    rotations: Vec<UnitComplex<f64>>,
-    /// Contacts at the instant before, and the time in s since then.
-    before: Vec<Contact>,
-    dt: f64,
-}
-
-impl Watch {
-    fn new(mechanism: &Mechanism) -> Self {
-        let joints = mechanism.revolutes.len();
-        Self {
-            tallies: vec![Tally::default(); joints],
-            peaks: Peaks::default(),
-            angles: mechanism.bodies.iter().map(|body| body.angle).collect(),
-            rotations: mechanism.bodies.iter().map(|body| body.start.rotation).collect(),
-            before: vec![Contact::default(); joints],
-            dt: 0.0,
-        }
-    }
-
-    /// Keeps account of energy. An impulse J between the rates a and b takes `J (a + b)/2`, exactly;
-    /// for a force that varies over the step this is the trapezoidal rule.
-    fn account(&mut self, contacts: &[Contact], mean_forces: bool) {
-        for ((tally, now), before) in self.tallies.iter_mut().zip(contacts).zip(&mut self.before) {
-            let [was, is] = [before.normal_force, now.normal_force];
-            let force = if mean_forces { is } else { 0.5 * (was + is) };
-            tally.energy += force * 0.5 * (before.rate + now.rate) * self.dt;
-            *before = *now;
-        }
-        // A row's instant is looked at twice: the step that ended there counts once.
-        self.dt = 0.0;
-    }
-
-    fn record(
-        &mut self,
-        mechanism: &Mechanism,
-        states: &[BodyState],
-        now: &Evaluation,
-        inside: &[f64],
-    ) {
-        for (tally, peak) in self.tallies.iter_mut().zip(inside) {
-            tally.peak = tally.peak.max(*peak);
-        }
-        for (tally, contact) in self.tallies.iter_mut().zip(&now.contacts) {
-            let touching = contact.normal_force > 0.0;
-            tally.peak = tally.peak.max(contact.normal_force);
-            tally.impacts += u64::from(touching && !tally.touching);
-            tally.touching = touching;
-        }
-        let acceleration = mechanism.output_acceleration(states, &now.accelerations).xy().norm();
-        self.peaks.acceleration = self.peaks.acceleration.max(acceleration);
-        for (actuator, effort) in mechanism.actuators.iter().zip(&now.drive_forces) {
-            let peak = match actuator.joint {
-                JointIndex::Prismatic(_) => &mut self.peaks.drive_force,
-                JointIndex::Revolute(_) => &mut self.peaks.drive_torque,
-            };
-            *peak = peak.max(effort.abs());
-        }
-        // An arc tangent a step is dear; whole turns are counted as well every quarter of a turn.
-        self.look_at_angles(states, |before, now| before.re * now.re + before.im * now.im <= 0.0);
-    }
-
-    /// Brings angles up to date, those of bodies for whose rotations then and now it is `due`.
-    fn look_at_angles(
-        &mut self,
-        states: &[BodyState],
-        due: impl Fn(&UnitComplex<f64>, &UnitComplex<f64>) -> bool,
-    ) {
-        let angles = self.angles.iter_mut().zip(&mut self.rotations);
-        for ((angle, rotation), state) in angles.zip(states) {
-            if due(rotation, &state.rotation) {
-                *angle = angle_near(state.rotation, *angle);
-                *rotation = state.rotation;
-            }
-        }
-    }
-
-    fn elapse(&mut self, dt: f64) {
-        self.dt = dt;
-        for tally in self.tallies.iter_mut().filter(|tally| tally.touching) {
-            tally.contact_time += dt;
-        }
-    }
-
-    /// Called after a row was handed out.
-    fn new_row(&mut self) {
-        self.peaks = Peaks::default();
-        for tally in &mut self.tallies {
-            tally.peak = 0.0;
-        }
-    }
-}
-
 /// The first thing that is impossible at an instant, if any: a state that is no number, or a
 /// journal whose penetration exceeds its bearing's radius.
 fn impossible(mechanism: &Mechanism, states: &[BodyState], contacts: &[Contact]) -> Option<String> {
@@ -436,7 +230,7 @@ fn likely_cause(mechanism: &Mechanism, control: StepControl) -> String {
 mod tests {
     use super::*;
     use crate::mechanism::Body;
-    use nalgebra::{Vector2, Vector3};
+    use nalgebra::{UnitComplex, Vector2, Vector3};
 
     #[test]
     fn whole_turns_between_rows_are_counted() {

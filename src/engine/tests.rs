@@ -2,7 +2,7 @@
 
 use super::adaptive::Adaptive;
 use super::fixed::Fixed;
-use super::run::Stepper;
+use super::stepper::Stepper;
 use super::world::World;
 use crate::mechanism::{BodyState, Mechanism};
 use crate::model::assemble;

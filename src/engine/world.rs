@@ -1,26 +1,12 @@
 //! A [`Mechanism`] as bodies, joints and motors of a rapier world.
 
+use super::inserter::{Inserter, MOTOR_FORCE, Slide, Solved};
 use super::leapfrog::read;
-use super::{JointColliders, Solver, physics_world, to_rapier};
-use crate::mechanism::{
-    Attachment, Bearing, BodyState, Drive, JointIndex, Mechanism, NativeContacts, Prismatic,
-};
-use nalgebra::{UnitComplex, Vector2, Vector3};
-use rapier2d_f64::dynamics::{
-    GenericJoint, GenericJointBuilder, ImpulseJointHandle, JointAxesMask, JointAxis,
-    MassProperties, MotorModel, PrismaticJointBuilder, RevoluteJointBuilder, RigidBodyBuilder,
-    RigidBodyHandle, SpringCoefficients,
-};
-use rapier2d_f64::math::{Pose, Rotation, Vector};
+use super::{JointColliders, to_rapier};
+use crate::mechanism::{Attachment, BodyState, Drive, JointIndex, Mechanism, Prismatic};
+use nalgebra::{Vector2, Vector3};
+use rapier2d_f64::dynamics::{ImpulseJointHandle, JointAxis, RigidBodyHandle};
 use rapier2d_f64::pipeline::PhysicsWorld;
-
-/// Largest motor force in N: practically none. (`f64::MAX` overflows when rapier multiplies it.)
-const MOTOR_FORCE: f64 = 1e30;
-
-/// Joints without give. rapier's default, a spring of 1 MHz, gives way by 2 % of the joint's impulse
-/// in a step of 1 µs: an error that grows as the step shrinks.
-const RIGID: SpringCoefficients<f64> =
-    SpringCoefficients { natural_frequency: 1e15, damping_ratio: 1.0 };
 
 /// Where a prismatic joint goes in one step, along and across the axis that its base has at the
 /// step's beginning, in m.
@@ -78,27 +64,6 @@ fn excess(turn: f64) -> f64 {
     turn * s / 3.0 * (1.0 + s * (0.4 + s * (17.0 / 105.0)))
 }
 
-/// A prismatic joint in rapier's world.
-struct Slide {
-    handle: ImpulseJointHandle,
-    /// Its axis in its base's axes, and where along it the base's attachment point stands, in m.
-    axis: UnitComplex<f64>,
-    along: f64,
-    /// Whether rapier's motor prescribes its length.
-    prescribed: bool,
-}
-
-/// Who computes the force of a revolute joint.
-#[derive(Clone, Copy)]
-enum Solved {
-    /// A force law, outside rapier.
-    Law,
-    /// rapier's contact between the colliders of this index.
-    Contact(usize),
-    /// rapier's joint.
-    Pivot(ImpulseJointHandle),
-}
-
 /// A rapier world that holds one mechanism, gravity included in the wrenches it is given.
 pub(super) struct World {
     physics: PhysicsWorld,
@@ -120,131 +85,30 @@ impl World {
     /// Builds the world. `colliders` gives rings and journals a shape each; only rapier's own
     /// contacts need them.
     pub fn new(mechanism: &Mechanism, colliders: bool) -> Self {
-        let mut physics = physics_world(0.0);
-        // Nobody reads them, and they cost a clock reading at every stage of a step.
-        physics.physics_pipeline.counters.disable();
-        let native = &mechanism.native;
-        let softness = SpringCoefficients {
-            natural_frequency: native.frequency,
-            damping_ratio: native.damping_ratio,
-        };
-        let parameters = &mut physics.integration_parameters;
-        parameters.contact_softness = softness;
-        // rapier's default is twice as stiff against fixed bodies; a bearing is a bearing.
-        parameters.static_contact_softness = softness;
-        parameters.num_internal_pgs_iterations = native.iterations;
-        let ground = physics.bodies.insert(RigidBodyBuilder::fixed());
-        let handles: Vec<_> = mechanism
-            .bodies
+        let mut inserter = Inserter::new(mechanism);
+        let mut prismatics: Vec<Slide> =
+            mechanism.prismatics.iter().map(|joint| inserter.prismatic(joint)).collect();
+        let revolutes: Vec<Solved> = mechanism
+            .revolutes
             .iter()
-            .map(|body| {
-                let start = &body.start;
-                let rotation =
-                    Rotation::from_cos_sin_unchecked(start.rotation.re, start.rotation.im);
-                let pose = Pose::from_parts(to_rapier(start.position), rotation);
-                physics.bodies.insert(
-                    RigidBodyBuilder::dynamic()
-                        .pose(pose)
-                        .linvel(to_rapier(start.twist.xy()))
-                        .angvel(start.twist.z)
-                        .additional_mass_properties(MassProperties::new(
-                            Vector::ZERO,
-                            body.mass,
-                            body.inertia,
-                        ))
-                        .can_sleep(false)
-                        .allow_fast_rotation(true),
-                )
-            })
+            .map(|joint| inserter.revolute(joint, &mechanism.native, colliders))
             .collect();
-        let of = |a: &Attachment| a.body.map_or(ground, |i| handles[i]);
-        let mut prismatics: Vec<Slide> = mechanism
-            .prismatics
+        let motors = mechanism
+            .actuators
             .iter()
-            .map(|joint| {
-                let builder = PrismaticJointBuilder::new(Vector::X)
-                    .contacts_enabled(false)
-                    .softness(RIGID)
-                    .local_anchor1(to_rapier(joint.base.point))
-                    .local_anchor2(to_rapier(joint.slider.point))
-                    .motor_model(MotorModel::AccelerationBased)
-                    .motor_max_force(MOTOR_FORCE);
-                let mut builder = GenericJoint::from(builder);
-                for (frame, axis) in [&mut builder.local_frame1, &mut builder.local_frame2]
-                    .into_iter()
-                    .zip(joint.axes)
-                {
-                    frame.rotation = Rotation::from_cos_sin_unchecked(axis.re, axis.im);
-                }
-                let (base, slider) = (of(&joint.base), of(&joint.slider));
-                let handle = physics.impulse_joints.insert(base, slider, builder, true);
-                Slide { handle, axis: joint.axes[0], along: joint.points()[0].x, prescribed: false }
-            })
-            .collect();
-        let mut pivots = Vec::new();
-        let mut joint_colliders = JointColliders::default();
-        let mut revolutes = Vec::with_capacity(mechanism.revolutes.len());
-        let mut inserted = 0;
-        for joint in &mechanism.revolutes {
-            let bodies = [of(&joint.ring), of(&joint.journal)];
-            let points = [joint.ring.point, joint.journal.point];
-            let (radii, friction, solver) = match &joint.bearing {
-                Bearing::Ideal => {
-                    let builder = RevoluteJointBuilder::new()
-                        .contacts_enabled(false)
-                        .softness(RIGID)
-                        .local_anchor1(to_rapier(points[0]))
-                        .local_anchor2(to_rapier(points[1]));
-                    let handle = physics.impulse_joints.insert(bodies[0], bodies[1], builder, true);
-                    pivots.push((handle, [joint.ring, joint.journal]));
-                    revolutes.push(Solved::Pivot(handle));
-                    continue;
-                }
-                Bearing::Clearance(c) => ([c.bearing_radius, c.journal_radius], 0.0, Solver::Law),
-                Bearing::Native { bearing_radius, journal_radius, friction } => {
-                    let NativeContacts { restitution, predictive, .. } = *native;
-                    let solver = Solver::Native { restitution, predictive };
-                    ([*bearing_radius, *journal_radius], *friction, solver)
-                }
-            };
-            revolutes.push(match solver {
-                Solver::Law => Solved::Law,
-                Solver::Native { .. } => Solved::Contact(inserted),
-            });
-            if colliders {
-                joint_colliders.insert(&mut physics, bodies, points, radii, friction, solver);
-                inserted += 1;
-            }
-        }
-        let mut motors = Vec::with_capacity(mechanism.actuators.len());
-        for actuator in &mechanism.actuators {
-            motors.push((actuator.drive == Drive::Prescribed).then(|| match actuator.joint {
-                JointIndex::Prismatic(i) => {
-                    prismatics[i].prescribed = true;
-                    (prismatics[i].handle, JointAxis::LinX)
-                }
-                JointIndex::Revolute(i) => {
-                    let handle = match revolutes[i] {
-                        Solved::Pivot(handle) => handle,
-                        Solved::Law | Solved::Contact(_) => {
-                            // A joint that locks nothing: it carries the motor.
-                            let joint = &mechanism.revolutes[i];
-                            let bodies = [of(&joint.ring), of(&joint.journal)];
-                            let free = GenericJointBuilder::new(JointAxesMask::empty())
-                                .contacts_enabled(true)
-                                .softness(RIGID);
-                            physics.impulse_joints.insert(bodies[0], bodies[1], free, true)
-                        }
-                    };
-                    if let Some(joint) = physics.impulse_joints.get_mut(handle, false) {
-                        let motor = &mut joint.data;
-                        motor.set_motor_model(JointAxis::AngX, MotorModel::AccelerationBased);
-                        motor.set_motor_max_force(JointAxis::AngX, MOTOR_FORCE);
+            .map(|actuator| {
+                (actuator.drive == Drive::Prescribed).then(|| match actuator.joint {
+                    JointIndex::Prismatic(i) => {
+                        prismatics[i].prescribed = true;
+                        (prismatics[i].handle, JointAxis::LinX)
                     }
-                    (handle, JointAxis::AngX)
-                }
-            }));
-        }
+                    JointIndex::Revolute(i) => {
+                        (inserter.motor(&mechanism.revolutes[i], revolutes[i]), JointAxis::AngX)
+                    }
+                })
+            })
+            .collect();
+        let Inserter { physics, handles, pivots, colliders, .. } = inserter;
         Self {
             physics,
             inertias: mechanism.bodies.iter().map(|body| body.inertia).collect(),
@@ -254,7 +118,7 @@ impl World {
             motors,
             pivots,
             revolutes,
-            colliders: joint_colliders,
+            colliders,
         }
     }
 
