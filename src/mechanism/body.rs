@@ -35,6 +35,20 @@ impl BodyState {
         }
     }
 
+    /// The state of a point of the body, given in the body's own axes from its centre of mass (m).
+    pub fn at(&self, local: Vector2<f64>) -> Self {
+        let frame = self.frame(local);
+        let twist = Vector3::new(frame.velocity.x, frame.velocity.y, frame.spin);
+        Self { position: frame.centre, twist, ..*self }
+    }
+
+    /// Acceleration of that point, `a + α × r − ω² r`, and α (m/s², m/s², rad/s²), from that of the body.
+    pub fn acceleration_at(&self, a: Vector3<f64>, local: Vector2<f64>) -> Vector3<f64> {
+        let r = self.rotation * local;
+        let omega2 = self.twist.z * self.twist.z;
+        Vector3::new(a.x - a.z * r.y - omega2 * r.x, a.y + a.z * r.x - omega2 * r.y, a.z)
+    }
+
     /// Position, arm and velocity of a point given in the body's own axes (m, from its centre of
     /// mass).
     pub fn frame(&self, local: Vector2<f64>) -> Frame {

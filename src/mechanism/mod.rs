@@ -96,23 +96,17 @@ impl Mechanism {
 
     /// Motion of the output: position and velocity of its reference point.
     pub fn output_state(&self, states: &[BodyState]) -> BodyState {
-        let state = states[self.output];
-        let frame = state.frame(self.bodies[self.output].reference);
-        let twist = Vector3::new(frame.velocity.x, frame.velocity.y, frame.spin);
-        BodyState { position: frame.centre, twist, ..state }
+        states[self.output].at(self.bodies[self.output].reference)
     }
 
-    /// Acceleration of the output's reference point r from the centre of mass,
-    /// `a + α × r − ω² r`, and α (m/s², m/s², rad/s²).
+    /// Acceleration of the output's reference point, and α (m/s², m/s², rad/s²).
     pub fn output_acceleration(
         &self,
         states: &[BodyState],
         accelerations: &[Vector3<f64>],
     ) -> Vector3<f64> {
-        let (a, state) = (accelerations[self.output], states[self.output]);
-        let r = state.rotation * self.bodies[self.output].reference;
-        let omega2 = state.twist.z * state.twist.z;
-        Vector3::new(a.x - a.z * r.y - omega2 * r.x, a.y + a.z * r.x - omega2 * r.y, a.z)
+        let reference = self.bodies[self.output].reference;
+        states[self.output].acceleration_at(accelerations[self.output], reference)
     }
 
     /// Puts a point mass (kg) on body `index`, at a point given from the body's reference point in
@@ -127,9 +121,7 @@ impl Mechanism {
         body.inertia += reduced * from_centre.norm_squared();
         body.mass = total;
         body.reference -= shift;
-        let frame = body.start.frame(shift);
-        body.start.position = frame.centre;
-        body.start.twist = Vector3::new(frame.velocity.x, frame.velocity.y, frame.spin);
+        body.start = body.start.at(shift);
         let revolutes = self.revolutes.iter_mut().flat_map(|j| [&mut j.ring, &mut j.journal]);
         let prismatics = self.prismatics.iter_mut().flat_map(|j| [&mut j.base, &mut j.slider]);
         for attachment in revolutes.chain(prismatics) {
@@ -164,6 +156,17 @@ impl Mechanism {
     pub fn ring_turn(&self, index: usize, turns: &[f64]) -> f64 {
         let JointIndex::Revolute(joint) = self.actuators[index].joint else { return 0.0 };
         self.revolutes[joint].ring.body.map_or(0.0, |body| turns[body])
+    }
+
+    /// Coordinate of a joint (m, rad) at the bodies' starts.
+    pub fn start_coordinate(&self, joint: JointIndex) -> f64 {
+        match joint {
+            JointIndex::Revolute(i) => self.start_angle(i),
+            JointIndex::Prismatic(i) => {
+                let states: Vec<BodyState> = self.bodies.iter().map(|body| body.start).collect();
+                self.prismatics[i].length(&states)
+            }
+        }
     }
 
     /// Angle (rad) at the start of revolute joint `index`: that of the journal's body less that of the

@@ -1,8 +1,8 @@
 //! Commands of drives, each from a source of its own.
 
 use crate::measure::spline::CubicSpline;
+use crate::mechanism::motion::{rest_to_rest, sine};
 use crate::mechanism::{Command, Commands};
-use std::f64::consts::TAU;
 
 /// A number over time, and its first and second derivative.
 #[derive(Clone, Debug)]
@@ -11,7 +11,7 @@ pub(super) enum Source {
     Hold(f64),
     /// start + velocity · t.
     Line { start: f64, velocity: f64 },
-    /// From rest to rest, `10τ³ − 15τ⁴ + 6τ⁵`.
+    /// From rest to rest ([`rest_to_rest`]).
     Quintic { from: f64, to: f64, time: f64 },
     /// center + Σ amplitude · sin(2π frequency t + phase).
     Sines { center: f64, terms: Vec<[f64; 3]> },
@@ -28,21 +28,16 @@ impl Source {
             Source::Hold(value) => [*value, 0.0, 0.0],
             Source::Line { start, velocity } => [start + velocity * t, *velocity, 0.0],
             Source::Quintic { from, to, time } => {
-                let tau = (t / time).clamp(0.0, 1.0);
                 let way = to - from;
-                let s = tau * tau * tau * (10.0 + tau * (6.0 * tau - 15.0));
-                let ds = 30.0 * (tau * (1.0 - tau)).powi(2) / time;
-                let dds = 60.0 * tau * (1.0 - tau) * (1.0 - 2.0 * tau) / (time * time);
+                let [s, ds, dds] = rest_to_rest(t, *time);
                 [from + way * s, way * ds, way * dds]
             }
             Source::Sines { center, terms } => {
                 let mut sum = [*center, 0.0, 0.0];
                 for [amplitude, frequency, phase] in terms {
-                    let omega = TAU * frequency;
-                    let (sin, cos) = (omega * t + phase).sin_cos();
-                    sum[0] += amplitude * sin;
-                    sum[1] += amplitude * (omega * cos);
-                    sum[2] -= amplitude * (omega * omega * sin);
+                    for (sum, term) in sum.iter_mut().zip(sine(t, *frequency, *phase)) {
+                        *sum += amplitude * term;
+                    }
                 }
                 sum
             }

@@ -35,21 +35,16 @@ impl Written {
     /// Position and velocity of the written point; `reference` is the body's reference point from its centre
     /// of mass (m).
     pub fn state(&self, states: &[BodyState], reference: Vector2<f64>) -> BodyState {
-        let state = states[self.body];
-        let frame = state.frame(reference + self.point);
-        let twist = Vector3::new(frame.velocity.x, frame.velocity.y, frame.spin);
-        BodyState { position: frame.centre, twist, ..state }
+        states[self.body].at(reference + self.point)
     }
 
-    /// Its acceleration, `a + α × r − ω² r` and α (m/s², m/s², rad/s²), from that of the body.
+    /// Its acceleration (m/s², m/s², rad/s²), from that of the body.
     pub fn acceleration(
         &self,
         state: &BodyState,
         a: Vector3<f64>,
         reference: Vector2<f64>,
     ) -> Vector3<f64> {
-        let r = state.rotation * (reference + self.point);
-        let omega2 = state.twist.z * state.twist.z;
-        Vector3::new(a.x - a.z * r.y - omega2 * r.x, a.y + a.z * r.x - omega2 * r.y, a.z)
+        state.acceleration_at(a, reference + self.point)
     }
 }

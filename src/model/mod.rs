@@ -7,6 +7,7 @@
 mod assemble;
 mod build;
 mod commands;
+mod drives;
 mod ideal;
 mod layout;
 mod motion;

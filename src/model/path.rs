@@ -177,7 +177,7 @@ pub(super) fn inverse_kinematics(
         let mut tracker = Tracker::new(ideal.clone(), imposed.clone(), starts.clone(), 0.0)?;
         let first = tracker.states().to_vec();
         let mut near: Vec<f64> = (0..ideal.actuators.len())
-            .map(|i| start_near(&ideal, ideal.actuators[i].joint))
+            .map(|i| ideal.start_coordinate(ideal.actuators[i].joint))
             .collect();
         let interval = until / count as f64;
         let mut samples = vec![sample(&tracker, &mut near)];
@@ -201,13 +201,6 @@ pub(super) fn inverse_kinematics(
         // The error falls with the sixth power of the interval.
         let finer = (missed / FINE).powf(1.0 / 6.0).clamp(1.5, 16.0);
         count = (count as f64 * finer).ceil() as usize;
-    }
-}
-
-fn start_near(mechanism: &Mechanism, joint: JointIndex) -> f64 {
-    match joint {
-        JointIndex::Revolute(i) => mechanism.start_angle(i),
-        JointIndex::Prismatic(_) => 0.0,
     }
 }
 

@@ -57,8 +57,8 @@ impl Motion for Line {
     }
 }
 
-/// Point to point from rest to rest, `s(τ) = 10τ³ − 15τ⁴ + 6τ⁵` with τ = t/T (the lowest polynomial
-/// with no jump in acceleration), and rest before and after.
+/// Point to point from rest to rest ([`rest_to_rest`]: the lowest polynomial with no jump in
+/// acceleration), and rest before and after.
 #[derive(Clone, Debug)]
 pub struct Quintic {
     /// Pose at the start (m, m, rad).
@@ -69,13 +69,20 @@ pub struct Quintic {
     pub time: f64,
 }
 
+/// The share of the way from rest to rest that is done at time `t` of `time` (s),
+/// `s(τ) = 10τ³ − 15τ⁴ + 6τ⁵` with τ = t/time, and its first and second derivative in 1/s and 1/s².
+pub fn rest_to_rest(t: f64, time: f64) -> [f64; 3] {
+    let tau = (t / time).clamp(0.0, 1.0);
+    let s = tau * tau * tau * (10.0 + tau * (6.0 * tau - 15.0));
+    let ds = 30.0 * (tau * (1.0 - tau)).powi(2) / time;
+    let dds = 60.0 * tau * (1.0 - tau) * (1.0 - 2.0 * tau) / (time * time);
+    [s, ds, dds]
+}
+
 impl Motion for Quintic {
     fn at(&self, t: f64) -> PathPoint {
-        let tau = (t / self.time).clamp(0.0, 1.0);
         let way = self.to - self.from;
-        let s = tau * tau * tau * (10.0 + tau * (6.0 * tau - 15.0));
-        let ds = 30.0 * (tau * (1.0 - tau)).powi(2) / self.time;
-        let dds = 60.0 * tau * (1.0 - tau) * (1.0 - 2.0 * tau) / (self.time * self.time);
+        let [s, ds, dds] = rest_to_rest(t, self.time);
         PathPoint { pose: self.from + way * s, rate: way * ds, acceleration: way * dds }
     }
 }
@@ -101,15 +108,21 @@ pub struct MultiSine {
     pub terms: Vec<SineTerm>,
 }
 
+/// `sin(2πft + phase)`, f in Hz, phase in rad, and its first and second derivative in 1/s and 1/s².
+pub fn sine(t: f64, frequency: f64, phase: f64) -> [f64; 3] {
+    let omega = TAU * frequency;
+    let (sin, cos) = (omega * t + phase).sin_cos();
+    [sin, omega * cos, -(omega * omega * sin)]
+}
+
 impl Motion for MultiSine {
     fn at(&self, t: f64) -> PathPoint {
         let mut point = PathPoint { pose: self.center, ..PathPoint::default() };
         for term in &self.terms {
-            let omega = TAU * term.frequency;
-            let (sin, cos) = (omega * t + term.phase).sin_cos();
+            let [sin, rate, acceleration] = sine(t, term.frequency, term.phase);
             point.pose += term.amplitude * sin;
-            point.rate += term.amplitude * (omega * cos);
-            point.acceleration -= term.amplitude * (omega * omega * sin);
+            point.rate += term.amplitude * rate;
+            point.acceleration += term.amplitude * acceleration;
         }
         point
     }

@@ -3,7 +3,7 @@
 mod kinds;
 mod table;
 
-pub use kinds::{Circle, Line, MultiSine, Quintic, SineTerm};
+pub use kinds::{Circle, Line, MultiSine, Quintic, SineTerm, rest_to_rest, sine};
 pub use table::{Table, TableError, read_columns};
 
 use nalgebra::Vector3;

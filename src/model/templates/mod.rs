@@ -6,6 +6,7 @@ mod five_bar;
 mod four_bar;
 mod parts;
 mod pendulum;
+mod platform;
 mod slider_crank;
 mod three_rpr;
 mod three_rrr;

@@ -1,10 +1,10 @@
 //! The 3-RPR: a platform on three telescopic legs between A1 A2 A3 on the ground and its corners C1 C2 C3.
 
-use super::parts::{body, described, drive, ground, plain_output, prismatic, revolute};
+use super::parts::{body, drive, prismatic, revolute};
+use super::platform::{Platform, on_three_legs, triangle};
 use crate::mechanism::motion::Motion;
 use crate::mechanism::three_rpr::{Geometry, Reach, reach};
-use crate::model::motion;
-use crate::scenario::{Described, Legs, Problem, Scenario, Target, ThreeRpr};
+use crate::scenario::{Legs, Problem, Scenario, ThreeRpr};
 use std::f64::consts::PI;
 
 /// How far each leg travels, and how near the machine comes to a singularity.
@@ -14,15 +14,6 @@ pub type LegUse = Reach;
 pub fn leg_use(scenario: &Scenario, machine: &ThreeRpr, motion: &dyn Motion) -> LegUse {
     let geometry = Geometry { base_side: machine.base_side, platform_side: machine.platform_side };
     reach(&geometry, motion, scenario.simulation.duration, scenario.legs.stroke)
-}
-
-/// Corners in m of an equilateral triangle about the origin, at angles 7π/6 + 2π/3·i.
-pub(super) fn triangle(side: f64) -> [[f64; 2]; 3] {
-    [0.0, 1.0, 2.0].map(|i| {
-        let angle = 7.0 * PI / 6.0 + 2.0 * PI / 3.0 * i;
-        let radius = side / 3f64.sqrt();
-        [angle.cos() * radius, angle.sin() * radius]
-    })
 }
 
 /// Mass in kg and inertia in kg·m² about its middle of a solid round bar of a length and a diameter in m:
@@ -39,13 +30,11 @@ pub(super) fn expand(scenario: &Scenario, machine: &ThreeRpr) -> Result<Scenario
     let Legs { density, stroke, .. } = scenario.legs;
     let cylinder = [scenario.legs.cylinder_length, scenario.legs.cylinder_diameter];
     let rod = [scenario.legs.rod_length, scenario.legs.rod_diameter];
-    let (anchors, corners) = (triangle(machine.base_side), triangle(machine.platform_side));
-    let pose = motion::path(scenario)?.at(0.0).pose;
-    let (sin, cos) = pose.z.sin_cos();
+    let anchors = triangle(machine.base_side);
+    let platform = Platform::new(scenario, machine.platform_side)?;
     let mut bodies = Vec::new();
     for leg in 0..3 {
-        let ([ax, ay], [x, y]) = (anchors[leg], corners[leg]);
-        let [cx, cy] = [pose.x + cos * x - sin * y, pose.y + sin * x + cos * y];
+        let ([ax, ay], [cx, cy]) = (anchors[leg], platform.corner(leg));
         let angle = (cy - ay).atan2(cx - ax);
         let (s, c) = angle.sin_cos();
         let half = [0.5 * cylinder[0], 0.5 * rod[0]];
@@ -56,9 +45,7 @@ pub(super) fn expand(scenario: &Scenario, machine: &ThreeRpr) -> Result<Scenario
         let name = format!("rod {}", leg + 1);
         bodies.push(body(&name, round_bar(density, rod), &[("C", [half[1], 0.0])], start));
     }
-    let named: Vec<(&str, [f64; 2])> = ["C1", "C2", "C3"].into_iter().zip(corners).collect();
-    let platform = (machine.platform_mass, machine.platform_inertia());
-    bodies.push(body("platform", platform, &named, [pose.x, pose.y, pose.z]));
+    bodies.push(platform.body((machine.platform_mass, machine.platform_inertia())));
     let mut joints = Vec::new();
     for leg in 0..3 {
         let (ring, journal) = (format!("ground.A{}", leg + 1), format!("cylinder {}.A", leg + 1));
@@ -74,15 +61,6 @@ pub(super) fn expand(scenario: &Scenario, machine: &ThreeRpr) -> Result<Scenario
         joints.push(prismatic(&format!("P{leg}"), &base, &slider, Some(stroke)));
         drives.push(drive(scenario, &format!("P{leg}"), Some(&leg.to_string())));
     }
-    let anchored: Vec<(&str, [f64; 2])> = ["A1", "A2", "A3"].into_iter().zip(anchors).collect();
-    let machine = Described {
-        ground: ground(&anchored),
-        bodies,
-        joints,
-        drives,
-        outputs: plain_output("platform"),
-        ..Described::default()
-    };
-    let target = Some(Target::Body("platform".to_owned()));
-    Ok(described(scenario, machine, scenario.motion.clone(), target))
+    let anchors = [("A1", anchors[0]), ("A2", anchors[1]), ("A3", anchors[2])];
+    Ok(on_three_legs(scenario, anchors, bodies, joints, drives))
 }

@@ -1,22 +1,16 @@
 //! A platform on three legs of a driven crank and a rod each.
 
-use super::parts::{
-    bar, body, corner, described, direction, drive, ground, plain_output, revolute,
-};
-use super::three_rpr::triangle;
-use crate::model::motion;
-use crate::scenario::{Described, Problem, Scenario, Target, ThreeRrr};
+use super::parts::{bar, corner, direction, drive, revolute};
+use super::platform::{Platform, on_three_legs, triangle};
+use crate::scenario::{Problem, Scenario, ThreeRrr};
 
 /// The motion is that of the platform; all elbows lie on the same side of their legs.
 pub(super) fn expand(scenario: &Scenario, m: &ThreeRrr) -> Result<Scenario, Problem> {
     let anchors = triangle(m.base_side);
-    let corners = triangle(m.platform_side);
-    let pose = motion::path(scenario)?.at(0.0).pose;
-    let (sin, cos) = pose.z.sin_cos();
+    let platform = Platform::new(scenario, m.platform_side)?;
     let mut bodies = Vec::new();
     for leg in 0..3 {
-        let [x, y] = corners[leg];
-        let c = [pose.x + cos * x - sin * y, pose.y + sin * x + cos * y];
+        let c = platform.corner(leg);
         let a = corner(anchors[leg], c, [m.crank, m.rod], 1.0).ok_or_else(|| {
             let far = (c[0] - anchors[leg][0]).hypot(c[1] - anchors[leg][1]);
             let message =
@@ -33,11 +27,8 @@ pub(super) fn expand(scenario: &Scenario, m: &ThreeRrr) -> Result<Scenario, Prob
         bodies.push(link("crank", m.crank, ["O", "A"], anchors[leg], a));
         bodies.push(link("rod", m.rod, ["A", "C"], a, c));
     }
-    let names = ["C1", "C2", "C3"];
-    let named: Vec<(&str, [f64; 2])> = names.into_iter().zip(corners).collect();
     let inertia = m.platform_mass * m.platform_side.powi(2) / 12.0;
-    let start = [pose.x, pose.y, pose.z];
-    bodies.push(body("platform", (m.platform_mass, inertia), &named, start));
+    bodies.push(platform.body((m.platform_mass, inertia)));
     let (mut joints, mut drives) = (Vec::new(), Vec::new());
     for (kind, letter) in ["O", "A", "C"].into_iter().enumerate() {
         for leg in 1..=3 {
@@ -53,15 +44,6 @@ pub(super) fn expand(scenario: &Scenario, m: &ThreeRrr) -> Result<Scenario, Prob
             }
         }
     }
-    let anchored: Vec<(&str, [f64; 2])> = ["O1", "O2", "O3"].into_iter().zip(anchors).collect();
-    let machine = Described {
-        ground: ground(&anchored),
-        bodies,
-        joints,
-        drives,
-        outputs: plain_output("platform"),
-        ..Described::default()
-    };
-    let target = Some(Target::Body("platform".to_owned()));
-    Ok(described(scenario, machine, scenario.motion.clone(), target))
+    let anchors = [("O1", anchors[0]), ("O2", anchors[1]), ("O3", anchors[2])];
+    Ok(on_three_legs(scenario, anchors, bodies, joints, drives))
 }

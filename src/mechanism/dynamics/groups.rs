@@ -1,0 +1,88 @@
+//! Rigid joints that are solved together.
+
+use super::Dynamics;
+use crate::mechanism::constraints::{Constraints, Rigid};
+use crate::mechanism::rows::{angle_row, prismatic_rows, revolute_rows};
+use crate::mechanism::{BodyState, Evaluation, Mechanism};
+use nalgebra::Vector2;
+
+/// How much closer than usual to a lower rank a group's rows are where it counts as nearly singular: a
+/// thousandth of a radian away from the singular pose of a common linkage.
+const NEARLY_SINGULAR: f64 = 1e-6;
+
+/// Rigid joints that are solved together.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    pub joints: Vec<Rigid>,
+    /// Highest rank of the rows so far, and the farthest that they were from a lower one.
+    rank: usize,
+    weakest: f64,
+}
+
+impl Group {
+    pub fn new(joints: Vec<Rigid>) -> Self {
+        Self { joints, rank: 0, weakest: 0.0 }
+    }
+
+    /// Whether rows of this rank, so far from a lower one, are nearly singular.
+    fn nearly_singular(&mut self, rank: usize, weakest: f64) -> bool {
+        self.rank = self.rank.max(rank);
+        self.weakest = self.weakest.max(weakest);
+        rank < self.rank || weakest < NEARLY_SINGULAR * self.weakest
+    }
+}
+
+impl Dynamics {
+    /// Accelerations and joint forces of one group.
+    pub(super) fn solve_group(
+        &mut self,
+        g: usize,
+        mechanism: &Mechanism,
+        states: &[BodyState],
+        out: &mut Evaluation,
+    ) {
+        let rows = &mut self.constraints.rows;
+        rows.clear();
+        for joint in &self.groups[g].joints {
+            match *joint {
+                Rigid::Prismatic(i) => {
+                    let [side, angle, mut along] =
+                        prismatic_rows(&self.prismatics[i], mechanism.prismatics[i].bodies());
+                    rows.extend([side, angle]);
+                    if let Some(drive) = self.prescribed[i] {
+                        along.bias -= out.commands[drive].acceleration;
+                        rows.push(along);
+                    }
+                }
+                Rigid::Revolute(i) => rows.extend(revolute_rows(&mechanism.revolutes[i], states)),
+                Rigid::Angle { drive, joint } => {
+                    let mut row = angle_row(&mechanism.revolutes[joint]);
+                    row.bias -= out.commands[drive].acceleration;
+                    rows.push(row);
+                }
+            }
+        }
+        self.constraints.usual = self.groups[g].weakest;
+        self.constraints.solve(&self.inverse_masses, &mut out.accelerations);
+        let Constraints { rank, weakest, .. } = self.constraints;
+        self.singular |= self.groups[g].nearly_singular(rank, weakest);
+        let mut multipliers = self.constraints.multipliers.iter();
+        let mut next = || multipliers.next().copied().unwrap_or_default();
+        for joint in &self.groups[g].joints {
+            match *joint {
+                Rigid::Prismatic(i) => {
+                    let _side_and_angle = [next(), next()];
+                    if let Some(drive) = self.prescribed[i] {
+                        out.drive_forces[drive] = next();
+                    }
+                }
+                Rigid::Revolute(i) => {
+                    let force = Vector2::new(next(), next());
+                    out.reactions[i] = force;
+                    out.contacts[i].normal_force = force.x.hypot(force.y);
+                }
+                Rigid::Angle { drive, .. } => out.drive_forces[drive] = next(),
+            }
+        }
+    }
+}
