@@ -26,6 +26,7 @@ mod load;
 mod loops;
 mod reading;
 mod rows;
+mod sensor;
 mod spring;
 mod telescope;
 mod tracker;
@@ -44,6 +45,7 @@ pub use legs::TelescopicLegs;
 pub use load::{Load, Memory, Situation};
 pub use loops::Loop;
 pub use reading::ReadingError;
+pub use sensor::{Reads, Sensor};
 pub use spring::{JointSpring, Mark, PointSpring, Stop};
 pub use tracker::{Imposed, Stuck, Tracker};
 pub use transmission::Transmission;
@@ -73,6 +75,8 @@ pub struct Mechanism {
     pub loads: Vec<Arc<dyn Load>>,
     /// The contacts of [`Bearing::Native`] joints.
     pub native: NativeContacts,
+    /// What measures it.
+    pub sensors: Vec<Sensor>,
     /// Index of the body whose reference point and angle are the mechanism's output.
     pub output: usize,
 }
@@ -91,6 +95,7 @@ impl Mechanism {
             gravity: Vector2::zeros(),
             loads: Vec::new(),
             native: NativeContacts::default(),
+            sensors: Vec::new(),
         }
     }
 

@@ -5,10 +5,11 @@ use super::parts::Parts;
 use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
 use crate::mechanism::{
     Actuator, Attachment, Bearing, Cascade, Drive, JointIndex, JointSpring, Mark, Mechanism,
-    PointSpring, Prismatic, Revolute, Stop,
+    PointSpring, Prismatic, Reads, Revolute, Sensor, Stop,
 };
 use crate::scenario::{
-    self, Described, DriveMode, Joint, JointDrive, Law, Motion, Sampled, Scenario, Spring, Target,
+    self, Described, DriveMode, Joint, JointDrive, Law, Motion, Quantity, Sampled, Scenario,
+    Spring, Target,
 };
 use nalgebra::{UnitComplex, Vector2};
 use std::sync::Arc;
@@ -100,6 +101,8 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
         };
         mechanism.loads.push(Arc::new(Stop { joint, range: stop.range, law }));
     }
+    mechanism.sensors =
+        described.sensors.iter().filter_map(|s| sensor(&mechanism, &parts, s)).collect();
     Built { mechanism, parts, layout, laws }
 }
 
@@ -267,6 +270,37 @@ fn mark(mechanism: &Mechanism, parts: &Parts, name: &str) -> Mark {
     let Attachment { body, point } = parts.point(name).0;
     let reference = body.map_or_else(Vector2::zeros, |i: usize| mechanism.bodies[i].reference);
     Mark { body, point: point - reference }
+}
+
+/// A sensor without errors of its own; none of what the machine has not.
+fn sensor(mechanism: &Mechanism, parts: &Parts, sensor: &scenario::Sensor) -> Option<Sensor> {
+    let drive = || mechanism.actuators.iter().position(|drive| drive.name == sensor.of);
+    let reads = match sensor.quantity {
+        Quantity::Command => Reads::Command(drive()?),
+        Quantity::Position => Reads::Position(joint_named(mechanism, &sensor.of)?),
+        Quantity::Force => Reads::Effort(drive()?),
+        Quantity::X => Reads::X(mark(mechanism, parts, &sensor.of)),
+        Quantity::Y => Reads::Y(mark(mechanism, parts, &sensor.of)),
+        Quantity::Angle => {
+            let (point, angle) = located(parts, &sensor.of);
+            Reads::Angle(point.body, angle)
+        }
+        Quantity::Acceleration => {
+            let axis = direction(sensor.axis.unwrap_or_default());
+            let axis = Vector2::new(axis.re, axis.im);
+            Reads::Acceleration(mark(mechanism, parts, &sensor.of), axis)
+        }
+    };
+    Some(Sensor {
+        column: sensor.column.clone(),
+        reads,
+        std: sensor.std,
+        resolution: sensor.resolution,
+        lowpass: sensor.lowpass,
+        delay: 0.0,
+        scale: 1.0,
+        offset: 0.0,
+    })
 }
 
 fn add_spring(mechanism: &mut Mechanism, parts: &Parts, spring: &Spring) {
