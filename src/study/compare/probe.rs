@@ -108,7 +108,7 @@ impl Probe {
         let clearance = s.joints.iter().any(|joint| joint.clearance_m.is_some());
         // An ideal joint transmits forces, but nothing in it touches or gives way.
         let contact = |value: f64| if clearance { value } else { f64::NAN };
-        // Drives of prismatic joints have forces, those of revolute joints torques.
+        // Only drives of prismatic joints have forces; torques are not compared.
         let mut actuators = machine.mechanism.actuators.iter();
         let pushes = actuators.any(|a| matches!(a.joint, JointIndex::Prismatic(_)));
         let force = |value: f64| if pushes { value } else { f64::NAN };
@@ -120,8 +120,6 @@ impl Probe {
             s.peak_platform_acceleration_m_s2,
             force(s.rms_actuator_force_deviation),
             force(s.peak_actuator_force),
-            s.rms_actuator_torque_deviation.unwrap_or(f64::NAN),
-            s.peak_actuator_torque.unwrap_or(f64::NAN),
             contact(quantile(&self.forces, 0.5)),
             contact(quantile(&self.forces, 0.95)),
             contact(quantile(&self.forces, 0.99)),

@@ -16,7 +16,7 @@ const fn quantity(key: &'static str, label: &'static str, unit: &'static str) ->
 }
 
 /// Number of compared quantities.
-pub const COUNT: usize = 17;
+pub const COUNT: usize = 15;
 
 /// The compared quantities, in the order of the tables. Means, peaks and fractions leave out the start
 /// (`simulation.settle`).
@@ -36,12 +36,6 @@ pub const QUANTITIES: [Quantity; COUNT] = [
     quantity("peak_platform_acceleration_m_s2", "platform acceleration, peak", "m/s²"),
     quantity("rms_actuator_force_deviation_N", "actuator forces, rms deviation from ideal", "N"),
     quantity("peak_actuator_force_N", "actuator force, peak", "N"),
-    quantity(
-        "rms_actuator_torque_deviation_Nm",
-        "actuator torques, rms deviation from ideal",
-        "N m",
-    ),
-    quantity("peak_actuator_torque_Nm", "actuator torque, peak", "N m"),
     quantity("median_contact_force_N", "contact force while touching, median", "N"),
     quantity("contact_force_95_N", "contact force while touching, 95 % quantile", "N"),
     quantity("contact_force_99_N", "contact force while touching, 99 % quantile", "N"),
