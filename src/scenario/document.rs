@@ -277,12 +277,21 @@ fn collect_not_finite(path: &str, value: &Value, found: &mut Vec<(String, f64)>)
     }
 }
 
+/// Tables of which a file may have many, and their headers.
+const LISTS: [&str; 8] = ["body", "joint", "drive", "spring", "stop", "output", "sensor", "effect"];
+
 fn syntax_problem(error: &toml::de::Error, text: &str, source: &str) -> Problem {
     let position = error.span().map(|span| line_and_column(text, span.start));
+    let line = position.and_then(|(line, _)| text.lines().nth(line as usize - 1));
+    let name = line.and_then(|line| line.trim().strip_prefix('[')?.split(']').next());
+    let help = match name.filter(|name| LISTS.contains(name)) {
+        Some(name) => format!("there may be many of them: write [[{name}]]"),
+        None => "the file must be TOML: `key = value` lines under `[section]` headers".to_owned(),
+    };
     Problem {
         path: String::new(),
         message: one_line(error.message()),
-        help: "the file must be TOML: `key = value` lines under `[section]` headers".to_owned(),
+        help,
         location: Location::File {
             name: source.to_owned(),
             line: position.map(|(line, _)| line),

@@ -89,6 +89,7 @@ impl Checks<'_> {
                 self.complain(&format!("{path}.shape.{key}"), format!("is {value}"), &help);
             }
         }
+        let known = points.iter().all(|point| body.points.contains_key(*point));
         for point in points {
             if !body.points.contains_key(point) {
                 let message = format!("the body \"{}\" has no point \"{point}\"", body.name);
@@ -111,7 +112,7 @@ impl Checks<'_> {
                 double == 0.0
             }
         };
-        if flat {
+        if flat && known {
             let message = format!("of the body \"{}\" has no extent, and so no mass", body.name);
             let help = "a bar between two places, or a polygon with an area";
             self.complain(&format!("{path}.shape"), message, help);
@@ -157,8 +158,8 @@ impl Checks<'_> {
                 {
                     let message = format!("is {clearance} m in the joint \"{}\"", joint.name);
                     let help = format!(
-                        "expected below the bearing radius, {radius} m; 0 or no clearance is an ideal \
-                         joint"
+                        "expected 0 or more, and below the bearing radius, {radius} m; 0 or no \
+                         clearance is an ideal joint"
                     );
                     self.complain(&format!("{path}.clearance"), message, &help);
                 }

@@ -155,11 +155,18 @@ fn facts(s: &Summary, body: &str) -> Vec<Fact> {
         facts.push(fact(
             "Prediction holds",
             horizon.map_or_else(|| "beyond 0.2 s".to_owned(), |t| format!("for {} s", number(t))),
-            format!(
-                "until then the path is exact to 1 µm; small differences grow like e^({} t/s), and \
-                 later digits are one of many possible motions",
-                number(rate)
-            ),
+            if rate > 0.0 {
+                format!(
+                    "until then the path is exact to 1 µm; small differences grow like e^({} t/s), \
+                     and later digits are one of many possible motions",
+                    number(rate)
+                )
+            } else {
+                format!(
+                    "until then the path is exact to 1 µm; small differences die out like e^({} t/s)",
+                    number(rate)
+                )
+            },
         ));
     }
     facts.push(fact(

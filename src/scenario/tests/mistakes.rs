@@ -9,6 +9,11 @@ fn every_mistake_says_where_what_and_what_would_be_right() {
         // Syntax.
         ("a = 1\nb = = 2\n", &[], &["my.toml:2:5: "]),
         ("a = 1\na = 2\n", &[], &["my.toml:2:1: ", "duplicate key"]),
+        (
+            "[joint]\n[joint]\n",
+            &[],
+            &["my.toml:2:2: duplicate key; there may be many of them: write [[joint]]"],
+        ),
         ("[mechanism\n", &[], &["my.toml:1:11: "]),
         ("seed = 99999999999999999999\n", &[], &["my.toml:1:"]),
         // Keys.

@@ -101,9 +101,13 @@ fn chaos_facts(chaos: &ChaosResult) -> [Fact; 2] {
                 |time| format!("{} s", number(time)),
             ),
             note: format!(
-                "until then the law's runs at their tolerance are exact to {} at the platform; later \
-                 digits are one of many motions",
-                length(chaos.horizon_error_m)
+                "until then the law's runs at their tolerance are exact to {} at the platform{}",
+                length(chaos.horizon_error_m),
+                if chaos.e_folding_s.is_some() {
+                    "; later digits are one of many motions"
+                } else {
+                    ""
+                }
             ),
         },
     ]

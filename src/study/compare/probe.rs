@@ -3,6 +3,7 @@
 use super::SAMPLE_INTERVAL;
 use super::quantities::COUNT;
 use crate::engine::{self, Instant, Work};
+use crate::mechanism::JointIndex;
 use crate::scenario::Scenario;
 use crate::simulate::{Machine, Recorder};
 use nalgebra::Vector2;
@@ -107,16 +108,18 @@ impl Probe {
         let clearance = s.joints.iter().any(|joint| joint.clearance_m.is_some());
         // An ideal joint transmits forces, but nothing in it touches or gives way.
         let contact = |value: f64| if clearance { value } else { f64::NAN };
-        let driven = !machine.mechanism.actuators.is_empty();
-        let drive = |value: f64| if driven { value } else { f64::NAN };
+        // Only drives of prismatic joints have forces; torques are not compared.
+        let mut actuators = machine.mechanism.actuators.iter();
+        let pushes = actuators.any(|a| matches!(a.joint, JointIndex::Prismatic(_)));
+        let force = |value: f64| if pushes { value } else { f64::NAN };
         let values = [
             s.rms_path_error_m,
             s.max_path_error_m,
             (self.smooth.0 / self.smooth.1 as f64).sqrt(),
             s.rms_acceleration_deviation_m_s2,
             s.peak_platform_acceleration_m_s2,
-            drive(s.rms_actuator_force_deviation),
-            drive(s.peak_actuator_force),
+            force(s.rms_actuator_force_deviation),
+            force(s.peak_actuator_force),
             contact(quantile(&self.forces, 0.5)),
             contact(quantile(&self.forces, 0.95)),
             contact(quantile(&self.forces, 0.99)),

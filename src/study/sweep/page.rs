@@ -2,7 +2,7 @@
 
 use super::Record;
 use super::journal::Rows;
-use super::row::{FIGURES, Status, status};
+use super::row::{FORCES, Status, status};
 use crate::report::{self, Fact, Picture, number};
 use crate::study::run::SCENARIO_FILE;
 
@@ -39,17 +39,21 @@ fn lead(record: &Record, rows: &Rows) -> String {
             one row a run."
 }
 
-/// Median and span of each figure over the runs that reached their end.
+/// Median and span of each figure over the runs that reached their end. Its columns stand behind those of the
+/// varied values; the status, the last one, is no number.
 fn facts(record: &Record, rows: &Rows) -> Vec<Fact> {
-    let columns = record.identity.columns.iter().enumerate();
+    let identity = &record.identity;
+    let columns = identity.columns.iter().enumerate().skip(identity.vary.len());
     columns
-        .filter(|(_, name)| FIGURES.contains(&name.as_str()))
         .filter_map(|(column, name)| {
             let ended = rows.values().filter(|row| status(row) == Status::Ok);
             let mut values: Vec<f64> =
                 ended.filter_map(|row| row.get(column)?.parse().ok()).collect();
             values.sort_by(f64::total_cmp);
             let (least, most) = (values.first()?, values.last()?);
+            if FORCES.contains(&name.as_str()) && (*least, *most) == (0.0, 0.0) {
+                return None;
+            }
             Some(Fact {
                 label: name.clone(),
                 value: number(values[values.len() / 2]),

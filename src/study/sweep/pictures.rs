@@ -1,18 +1,19 @@
 //! The pictures of a sweep: its main figures over each varied number.
 
 use super::journal::Rows;
-use super::row::{Status, status};
+use super::row::{FORCES, Status, status};
 use super::vary::Values;
 use super::{Identity, Vary};
 use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg};
 use std::collections::BTreeMap;
 
 /// What is drawn: column, heading, label of the axis, factor to the axis' unit.
-const OUTPUTS: [(&str, &str, &str, f64); 7] = [
+const OUTPUTS: [(&str, &str, &str, f64); 8] = [
     ("peak_contact_force_N", "Peak contact force", "force (N)", 1.0),
     ("peak_platform_acceleration_m_s2", "Peak platform acceleration", "|a| (m/s²)", 1.0),
     ("rms_acceleration_deviation_m_s2", "Acceleration, rms deviation from ideal", "a (m/s²)", 1.0),
     ("peak_actuator_force_N", "Peak actuator force", "force (N)", 1.0),
+    ("peak_actuator_torque_Nm", "Peak actuator torque", "torque (N m)", 1.0),
     ("rms_path_error_m", "Path error, rms", "distance (µm)", 1e6),
     ("contact_fraction", "Share of time in contact, mean of all joints", "share", 1.0),
     ("impacts_per_s", "Impacts per second, all joints", "impacts (1/s)", 1.0),
@@ -77,6 +78,9 @@ fn picture(
                 rows.iter().filter_map(point).collect()
             };
             let all = points(rows);
+            if FORCES.contains(&output.0) && all.iter().all(|point| point.1 == 0.0) {
+                return None;
+            }
             let y_log = wide(all.iter().map(|point| point.1));
             let scaled = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
                 points.into_iter().map(|(x, y)| (scale(x, x_log), scale(y, y_log))).collect()

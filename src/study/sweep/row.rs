@@ -51,6 +51,10 @@ pub(super) enum Status {
     Refused,
 }
 
+/// Figures of forces of drives: zero where drives turn, or there are none.
+pub(super) const FORCES: [&str; 3] =
+    ["peak_actuator_force_N", "ideal_peak_actuator_force_N", "rms_actuator_force_deviation_N"];
+
 /// Figures of torques, of machines that have drives of revolute joints.
 const TORQUES: [&str; 3] = [
     "peak_actuator_torque_Nm",
