@@ -4,5 +4,6 @@
 mod cli_common;
 mod commands;
 mod files;
+mod mixed;
 mod refusals;
 mod templates;
