@@ -124,3 +124,95 @@ fn each_joint_of_a_mixed_machine_reports_its_own_force() {
         assert!((torque / expected - 1.0).abs() < 1e-2, "{order:?} O: {torque} N m");
     }
 }
+
+/// Two stages that share nothing, each driven by a controller of its own.
+const STAGES: &str = r#"name = "stages"
+
+[ground.points]
+O = [0.0, 0.0]
+P = [0.0, 0.1]
+
+[[body]]
+name = "a"
+mass = 2.0
+inertia = 1e-3
+points = { O = [0.0, 0.0] }
+start = [0.1, 0.0, 0.0]
+
+[[body]]
+name = "b"
+mass = 2.0
+inertia = 1e-3
+points = { O = [0.0, 0.0] }
+start = [0.1, 0.1, 0.0]
+
+[[joint]]
+name = "A"
+kind = "prismatic"
+base = "ground.O"
+slider = "a.O"
+
+[[joint]]
+name = "B"
+kind = "prismatic"
+base = "ground.P"
+slider = "b.O"
+
+[[drive]]
+joint = "A"
+kind = "sampled"
+controller = { position_gain = 40.0, velocity_gain = 400.0, interval = 1e-3 }
+
+[[drive]]
+joint = "B"
+kind = "sampled"
+controller = { position_gain = 40.0, velocity_gain = 400.0, interval = 2.5e-3 }
+
+[[motion]]
+joint = "A"
+kind = "multisine"
+center = 0.1
+terms = [{ amplitude = 0.01, frequency = 5.0, phase = 0.4 }]
+
+[[motion]]
+joint = "B"
+kind = "multisine"
+center = 0.1
+terms = [{ amplitude = 0.01, frequency = 5.0, phase = 0.4 }]
+
+[simulation]
+duration = 0.2
+step = 1e-5
+"#;
+
+/// Each controller samples at its own interval, whatever others do. All of a machine once sampled at the
+/// shortest.
+#[test]
+fn controllers_sample_at_their_own_intervals() {
+    let place = Place::new();
+    let run = |name: &str, text: &str| {
+        place.write(&format!("{name}.toml"), text);
+        place.good(&format!("run {name}.toml --out {name} --quiet"));
+        let csv = place.read(&format!("{name}/timeseries.csv"));
+        let header: Vec<String> =
+            csv.lines().next().unwrap().split(',').map(str::to_owned).collect();
+        move |column: &str| -> Vec<f64> {
+            let place = header.iter().position(|name| name == column).unwrap();
+            let field = |line: &str| line.split(',').nth(place).unwrap().parse().unwrap();
+            csv.lines().skip(1).map(field).collect()
+        }
+    };
+    let apart =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0f64, f64::max);
+    // Only one interval in the file: that of `a`, or that of `b`.
+    let both = run("both", STAGES);
+    let fast = run("fast", &with(STAGES, "interval = 2.5e-3", "interval = 1e-3"));
+    let slow = run("slow", &with(STAGES, "interval = 1e-3", "interval = 2.5e-3"));
+    for (column, bound) in [("q_", 1e-9), ("F_", 1e-5)] {
+        let [a, b] = ["A", "B"].map(|joint| format!("{column}{joint}"));
+        assert!(apart(&both(&a), &fast(&a)) < bound, "{a}: {}", apart(&both(&a), &fast(&a)));
+        assert!(apart(&both(&b), &slow(&b)) < bound, "{b}: {}", apart(&both(&b), &slow(&b)));
+        let told = apart(&fast(&b), &slow(&b));
+        assert!(told > 1e3 * bound, "{b} does not show the interval: {told}");
+    }
+}
