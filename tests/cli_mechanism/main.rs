@@ -5,5 +5,6 @@ mod cli_common;
 mod commands;
 mod files;
 mod mixed;
+mod odd;
 mod refusals;
 mod templates;
