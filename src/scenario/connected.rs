@@ -1,6 +1,6 @@
 //! Which bodies of a description hang together: as one body, or at all.
 
-use super::{Described, Joint};
+use super::{Body, Described, GROUND, Joint};
 use std::collections::BTreeSet;
 
 impl Described {
@@ -9,6 +9,13 @@ impl Described {
     pub(crate) fn rigid_with<'a>(&'a self, name: &'a str) -> BTreeSet<&'a str> {
         let fixed = self.joints.iter().filter(|joint| matches!(joint, Joint::Fixed(_)));
         reached(name, &fixed.map(bodies).collect::<Vec<_>>())
+    }
+
+    /// Bodies that no chain of joints and springs connects to the ground.
+    pub(crate) fn floating(&self) -> Vec<&Body> {
+        let links: Vec<[&str; 2]> = self.joints.iter().map(bodies).chain(self.springs()).collect();
+        let held = reached(GROUND, &links);
+        self.bodies.iter().filter(|body| !held.contains(body.name.as_str())).collect()
     }
 
     /// Whether a joint or a spring holds the body `name` to anything.

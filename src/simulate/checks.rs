@@ -76,6 +76,7 @@ pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {
             None => driven_path(scenario, machine, &mut found),
         },
     }
+    found.extend(floating(scenario));
     found.extend(inertias(scenario, machine));
     found.extend(redundant(scenario, machine));
     found.extend(step(scenario, machine));
@@ -201,6 +202,19 @@ fn singular_pose(
         let help = "keep the motion farther from there: forces grow alike";
         Finding::warning(scenario.problem("motion", message, help))
     })
+}
+
+/// Bodies that hang together and that nothing connects to the ground.
+fn floating(scenario: &Scenario) -> Option<Finding> {
+    let described = scenario.mechanism.described()?;
+    let floating = described.floating();
+    let first = floating.first()?;
+    let place = described.bodies.iter().position(|body| body.name == first.name)?;
+    let names: Vec<String> = floating.iter().map(|body| format!("\"{}\"", body.name)).collect();
+    let message =
+        format!("{} float: no joint and no spring connects them to the ground", names.join(", "));
+    let help = "join one to a point of the ground, or leave it so if the machine is to fly free";
+    Some(Finding::warning(scenario.problem(&format!("body.{place}"), message, help)))
 }
 
 /// Inertias that no body of this machine can have.

@@ -1,6 +1,7 @@
 //! Odd but plausible mistakes in mechanism files, and what looks like one and is none.
 
-use crate::files::{FOUR_BAR, with};
+use crate::cli_common::Place;
+use crate::files::{FOUR_BAR, SLIDER_CRANK, with};
 use crate::refusals::{refuse, wrong};
 
 /// A bar and what holds it to the ground.
@@ -14,6 +15,11 @@ fn bar(joint: &str) -> String {
 
 const WELD: &str =
     "[[joint]]\nname = \"W\"\nkind = \"fixed\"\nbase = \"ground.O\"\npart = \"bar.O\"\n";
+
+/// A second bar on the first one.
+const SECOND: &str = "[[body]]\nname = \"second\"\nmass = 0.1\ninertia = 1e-4\npoints = { P = [0.0, 0.0] }\n\
+    start = [0.1, 0.0, 0.0]\n[[joint]]\nname = \"J\"\nkind = \"revolute\"\nring = \"bar.A\"\njournal = \
+    \"second.P\"\n";
 
 /// Where fixed joints held all bodies to the ground there was no body to be the output, and a panic.
 #[test]
@@ -84,4 +90,43 @@ fn columns_of_two_drives_and_plates_that_cross() {
             &["in their order around the plate"],
         ),
     ]);
+}
+
+/// Bodies that hang together and float are simulated, and told; springs hold as well as joints.
+#[test]
+fn machines_that_nothing_holds_to_the_ground_are_told() {
+    let place = Place::new();
+    place.write("float.toml", &bar(SECOND));
+    let told = "warning: float.toml:5: body.0: \"bar\", \"second\" float: no joint and no spring connects them to the \
+                ground";
+    for command in ["check float.toml", "run float.toml --out float --quiet"] {
+        let done = place.freeplay(command);
+        assert!(done.code == 0 && done.err.starts_with(told), "{command}: {}", done.err);
+        assert!(done.err.contains("fly free"), "{}", done.err);
+    }
+    // Both fall as one: ½ g t².
+    let csv = place.read("float/timeseries.csv");
+    let y: f64 = csv.lines().last().unwrap().split(',').nth(2).unwrap().parse().unwrap();
+    assert!((y + 0.5 * 9.81 * 0.02 * 0.02).abs() < 1e-9, "{y}");
+
+    // A part of a machine that floats beside it.
+    let beside = SECOND.replace("bar.A", "third.P");
+    let third =
+        "[[body]]\nname = \"third\"\nmass = 0.1\ninertia = 1e-4\npoints = { P = [0.0, 0.0] }\n";
+    place.write("beside.toml", &format!("{SLIDER_CRANK}{third}{beside}"));
+    let done = place.freeplay("check beside.toml");
+    assert!(
+        done.code == 0 && done.err.contains("body.3: \"third\", \"second\" float"),
+        "{}",
+        done.err
+    );
+
+    // A body on a rope.
+    let rope = "[[spring]]\nbetween = [\"bar.A\", \"ground.O\"]\nstiffness = 1000.0\nfree_length = 0.1\npull_only \
+                = true\n";
+    place.write("rope.toml", &bar(rope));
+    place.good("check rope.toml");
+    place.good("run rope.toml --out rope --quiet");
+    let csv = place.read("rope/timeseries.csv");
+    assert!(csv.lines().count() > 10 && !csv.contains("NaN"), "{csv}");
 }
