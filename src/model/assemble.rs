@@ -36,6 +36,8 @@ pub struct Machine {
     pub ideal: Ideal,
     /// Kind of its drives as declared; "none" without any, "mixed" where they differ.
     pub drives: &'static str,
+    /// Largest error (m, rad) of the drives' commands where they come from a table of the inverse kinematics.
+    pub table_error: Option<f64>,
     /// Which columns its results have.
     pub layout: Layout,
     /// Which instants are wanted.
@@ -53,8 +55,17 @@ struct Assembled {
     built: Built,
     motion: Arc<dyn Motion>,
     known_until: f64,
-    legs: Option<TelescopicLegs>,
+    followed: Followed,
     ranges: Vec<Option<[f64; 2]>>,
+}
+
+/// Where the commands of drives come from that carry a body or a point.
+#[derive(Default)]
+struct Followed {
+    /// Their closed form, of telescopic legs.
+    legs: Option<TelescopicLegs>,
+    /// The error of their table otherwise, see [`Machine::table_error`].
+    table_error: Option<f64>,
 }
 
 /// Makes the machine that a scenario describes.
@@ -64,7 +75,9 @@ struct Assembled {
 pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     let scenario = &expand(scenario)?;
     let motion = motion::path(scenario)?;
-    let Assembled { built, motion, known_until, legs, ranges } = put_together(scenario, motion)?;
+    let Assembled { built, motion, known_until, followed, ranges } =
+        put_together(scenario, motion)?;
+    let Followed { legs, table_error } = followed;
     let Built { mut mechanism, layout, laws, .. } = built;
     let simulation = &scenario.simulation;
     let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
@@ -84,6 +97,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
         known_until,
         ideal,
         drives,
+        table_error,
         layout,
         schedule,
         control,
@@ -156,15 +170,15 @@ fn put_together(scenario: &Scenario, path: Arc<dyn Motion>) -> Result<Assembled,
     let described = described(scenario);
     let mut built = build(scenario, described);
     fixed_parts(scenario, described, &built.parts)?;
-    let mut legs = None;
+    let mut followed = Followed::default();
     let known_until = match &scenario.target {
         Some(target) => {
-            legs = follow(scenario, &mut built, target, &path)?;
+            followed = follow(scenario, &mut built, target, &path)?;
             path.known_until()
         }
         None => command(scenario, &mut built, described)?,
     };
-    match &legs {
+    match &followed.legs {
         Some(legs) => {
             for (body, state) in built.mechanism.bodies.iter_mut().zip(legs.states(0.0)) {
                 body.angle = angle_near(state.rotation, body.angle);
@@ -182,7 +196,7 @@ fn put_together(scenario: &Scenario, path: Arc<dyn Motion>) -> Result<Assembled,
         }
     }
     let ranges = ranges(&built.mechanism, described);
-    Ok(Assembled { built, motion: path, known_until, legs, ranges })
+    Ok(Assembled { built, motion: path, known_until, followed, ranges })
 }
 
 /// Distance (m) and angle (rad) to which fixed joints of the same bodies agree.
@@ -242,7 +256,7 @@ fn follow(
     built: &mut Built,
     target: &Target,
     path: &Arc<dyn Motion>,
-) -> Result<Option<TelescopicLegs>, Problem> {
+) -> Result<Followed, Problem> {
     let (Target::Body(name) | Target::Point(name)) = target;
     let whole = matches!(target, Target::Body(_));
     let (point, angle) = located(&built.parts, name);
@@ -266,7 +280,7 @@ fn follow(
         let legs = TelescopicLegs::of(mechanism, body, point.point, Arc::clone(path));
         if let Some(legs) = legs {
             mechanism.commands = Arc::new(legs.clone());
-            return Ok(Some(legs));
+            return Ok(Followed { legs: Some(legs), table_error: None });
         }
     }
     let imposed =
@@ -281,12 +295,13 @@ fn follow(
             );
             scenario.problem("motion", message, "a smaller motion, or one elsewhere")
         })?;
+    let table_error = Some(table.error);
     mechanism.commands = Arc::new(table);
     for (body, state) in mechanism.bodies.iter_mut().zip(starts) {
         body.angle = angle_near(state.rotation, body.angle);
         body.start = state;
     }
-    Ok(None)
+    Ok(Followed { legs: None, table_error })
 }
 
 /// Commands joint by joint: motions, tables, forces, and the coordinate of the start for drives of which

@@ -4,6 +4,7 @@
 mod cli_common;
 mod commands;
 mod files;
+mod long;
 mod mixed;
 mod odd;
 mod refusals;

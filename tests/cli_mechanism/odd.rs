@@ -130,3 +130,16 @@ fn machines_that_nothing_holds_to_the_ground_are_told() {
     let csv = place.read("rope/timeseries.csv");
     assert!(csv.lines().count() > 10 && !csv.contains("NaN"), "{csv}");
 }
+
+/// What is looked at beforehand has an end, and says where.
+#[test]
+fn a_motion_of_too_many_turns_is_told() {
+    let place = Place::new();
+    let drive = "[[joint]]\nname = \"O\"\nkind = \"revolute\"\nring = \"ground.O\"\njournal = \"bar.O\"\n\
+                 [motion]\njoint = \"O\"\nkind = \"line\"\nvelocity = 2e6\n";
+    place.write("fast.toml", &bar(drive));
+    let done = place.freeplay("check fast.toml");
+    // A million poses 0.02 rad apart, at 2e6 rad/s.
+    let told = "motion: is looked at up to t = 0.0100 s";
+    assert!(done.code == 0 && done.err.contains(told), "{}", done.err);
+}
