@@ -70,6 +70,9 @@ fn path(text: &mut Text, m: &CheckedMachine) {
         }
         text.entry(&format!("drive {}", drive.joint), &value);
     }
+    if let Some(error) = m.table_error {
+        text.entry("inverse kinematics", &format!("to {error:.0e} m or rad, tabulated"));
+    }
 }
 
 /// The travel of the legs of a machine that has some.

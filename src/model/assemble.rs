@@ -1,7 +1,7 @@
 //! The only way from a scenario to a machine.
 
 use super::build::{Built, build, kind_of_drives};
-use super::drives::{command, follow};
+use super::drives::{Followed, command, follow};
 use super::ideal::{Ideal, States};
 use super::layout::Layout;
 use super::parts::Parts;
@@ -35,6 +35,8 @@ pub struct Machine {
     pub ideal: Ideal,
     /// Kind of its drives as declared; "none" without any, "mixed" where they differ.
     pub drives: &'static str,
+    /// Largest error (m, rad) of the drives' commands where they come from a table of the inverse kinematics.
+    pub table_error: Option<f64>,
     /// Which columns its results have.
     pub layout: Layout,
     /// Which instants are wanted.
@@ -52,7 +54,7 @@ struct Assembled {
     built: Built,
     motion: Arc<dyn Motion>,
     known_until: f64,
-    legs: Option<TelescopicLegs>,
+    followed: Followed,
     ranges: Vec<Option<[f64; 2]>>,
 }
 
@@ -63,7 +65,9 @@ struct Assembled {
 pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     let scenario = &expand(scenario)?;
     let motion = motion::path(scenario)?;
-    let Assembled { built, motion, known_until, legs, ranges } = put_together(scenario, motion)?;
+    let Assembled { built, motion, known_until, followed, ranges } =
+        put_together(scenario, motion)?;
+    let Followed { legs, table_error } = followed;
     let Built { mut mechanism, layout, laws, .. } = built;
     let simulation = &scenario.simulation;
     let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
@@ -83,6 +87,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
         known_until,
         ideal,
         drives,
+        table_error,
         layout,
         schedule,
         control,
@@ -155,15 +160,15 @@ fn put_together(scenario: &Scenario, path: Arc<dyn Motion>) -> Result<Assembled,
     let described = described(scenario);
     let mut built = build(scenario, described);
     fixed_parts(scenario, described, &built.parts)?;
-    let mut legs = None;
+    let mut followed = Followed::default();
     let known_until = match &scenario.target {
         Some(target) => {
-            legs = follow(scenario, &mut built, target, &path)?;
+            followed = follow(scenario, &mut built, target, &path)?;
             path.known_until()
         }
         None => command(scenario, &mut built, described)?,
     };
-    match &legs {
+    match &followed.legs {
         Some(legs) => {
             for (body, state) in built.mechanism.bodies.iter_mut().zip(legs.states(0.0)) {
                 body.angle = angle_near(state.rotation, body.angle);
@@ -181,7 +186,7 @@ fn put_together(scenario: &Scenario, path: Arc<dyn Motion>) -> Result<Assembled,
         }
     }
     let ranges = ranges(&built.mechanism, described);
-    Ok(Assembled { built, motion: path, known_until, legs, ranges })
+    Ok(Assembled { built, motion: path, known_until, followed, ranges })
 }
 
 /// Distance (m) and angle (rad) to which fixed joints of the same bodies agree.

@@ -78,13 +78,30 @@ impl Commands for Each {
 pub(super) struct Tabulated {
     /// Interval in s.
     pub interval: f64,
+    /// Number of drives.
+    pub drives: usize,
     /// Commands of all drives at each sample, one sample after another.
-    pub samples: Vec<Vec<Command>>,
+    pub samples: Vec<Command>,
+    /// Largest error in m or rad that was found halfway between two samples.
+    pub error: f64,
+}
+
+impl Tabulated {
+    /// Commands of all drives at a sample.
+    fn sample(&self, index: usize) -> &[Command] {
+        &self.samples[index * self.drives..(index + 1) * self.drives]
+    }
+
+    /// Command of a drive at the share `s` of the way from a sample to the next.
+    pub fn between(&self, index: usize, drive: usize, s: f64) -> Command {
+        let [a, b] = [index, index + 1].map(|index| &self.sample(index)[drive]);
+        quintic(a, b, s, self.interval)
+    }
 }
 
 impl Commands for Tabulated {
     fn at(&self, t: f64, commands: &mut [Command]) {
-        let last = self.samples.len() - 1;
+        let last = self.samples.len() / self.drives - 1;
         let place = t / self.interval;
         let resting =
             |command: &Command| Command { position: command.position, ..Command::default() };
@@ -92,16 +109,15 @@ impl Commands for Tabulated {
             // At either end itself the motion goes on; beyond, it rests.
             let (end, at_end) =
                 if place <= 0.0 { (0, place == 0.0) } else { (last, place == last as f64) };
-            for (command, sample) in commands.iter_mut().zip(&self.samples[end]) {
+            for (command, sample) in commands.iter_mut().zip(self.sample(end)) {
                 *command = if at_end { *sample } else { resting(sample) };
             }
             return;
         }
         let i = (place as usize).min(last - 1);
         let s = place - i as f64;
-        let ends = self.samples[i].iter().zip(&self.samples[i + 1]);
-        for (command, (a, b)) in commands.iter_mut().zip(ends) {
-            *command = quintic(a, b, s, self.interval);
+        for (drive, command) in commands.iter_mut().enumerate() {
+            *command = self.between(i, drive, s);
         }
     }
 }
@@ -129,9 +145,10 @@ mod tests {
     fn derivatives_belong_to_the_value() {
         let samples = (0..20).map(|k| {
             let (sin, cos) = (3.0 * f64::from(k) * 0.05).sin_cos();
-            vec![Command { position: sin, rate: 3.0 * cos, acceleration: -9.0 * sin }]
+            Command { position: sin, rate: 3.0 * cos, acceleration: -9.0 * sin }
         });
-        let table = Tabulated { interval: 0.05, samples: samples.collect() };
+        let samples = samples.collect();
+        let table = Tabulated { interval: 0.05, drives: 1, samples, error: 2e-9 };
         let mut command = [Command::default()];
         for t in [0.0, 0.012, 0.3333, 0.61] {
             table.at(t, &mut command);

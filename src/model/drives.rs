@@ -8,6 +8,15 @@ use crate::mechanism::{Attachment, Drive, Imposed, Mechanism, TelescopicLegs, an
 use crate::scenario::{self, JointDrive, Problem, Scenario, Target};
 use std::sync::Arc;
 
+/// Where the commands of drives come from that carry a body or a point.
+#[derive(Default)]
+pub(super) struct Followed {
+    /// Their closed form, of telescopic legs.
+    pub legs: Option<TelescopicLegs>,
+    /// The error of their table otherwise, see [`Machine::table_error`](super::Machine::table_error).
+    pub table_error: Option<f64>,
+}
+
 /// Commands that carry a body or a point along a path: by the closed form of telescopic legs, else by a
 /// table of the inverse kinematics, which Newton's method solves along the way.
 pub(super) fn follow(
@@ -15,7 +24,7 @@ pub(super) fn follow(
     built: &mut Built,
     target: &Target,
     path: &Arc<dyn Motion>,
-) -> Result<Option<TelescopicLegs>, Problem> {
+) -> Result<Followed, Problem> {
     let (Target::Body(name) | Target::Point(name)) = target;
     let whole = matches!(target, Target::Body(_));
     let (point, angle) = located(&built.parts, name);
@@ -39,7 +48,7 @@ pub(super) fn follow(
         let legs = TelescopicLegs::of(mechanism, body, point.point, Arc::clone(path));
         if let Some(legs) = legs {
             mechanism.commands = Arc::new(legs.clone());
-            return Ok(Some(legs));
+            return Ok(Followed { legs: Some(legs), table_error: None });
         }
     }
     let imposed =
@@ -54,12 +63,13 @@ pub(super) fn follow(
             );
             scenario.problem("motion", message, "a smaller motion, or one elsewhere")
         })?;
+    let table_error = Some(table.error);
     mechanism.commands = Arc::new(table);
     for (body, state) in mechanism.bodies.iter_mut().zip(starts) {
         body.angle = angle_near(state.rotation, body.angle);
         body.start = state;
     }
-    Ok(None)
+    Ok(Followed { legs: None, table_error })
 }
 
 /// Commands joint by joint: motions, tables, forces, and the coordinate of the start for drives of which

@@ -4,8 +4,8 @@
 use super::commands::Tabulated;
 use super::ideal::Ideal;
 use crate::mechanism::{
-    BodyState, Command, Commands, Drive, Hold, Imposed, JointIndex, Loop, Mechanism, OpenJoint,
-    Stuck, Tracker, angle_near,
+    BodyState, Command, Drive, Hold, Imposed, JointIndex, Loop, Mechanism, OpenJoint, Stuck,
+    Tracker, angle_near,
 };
 use crate::scenario::{Problem, Scenario};
 
@@ -13,11 +13,15 @@ use crate::scenario::{Problem, Scenario};
 /// looked at: a toggle of a loop is broader than this.
 const STRIDE: f64 = 0.02;
 
-/// Most poses that are looked at.
-const MOST: usize = 20_000;
+/// Most poses that are looked at: some half a minute, and an hour of a crank that turns once a second.
+const MOST: usize = 1_000_000;
 
 /// Fewest poses that are looked at, for motions that nothing is known of beforehand.
 const FEWEST: usize = 400;
+
+/// Instants in a second of the motion at which commands are read to choose the poses: a move that begins and
+/// ends between two of them goes unseen.
+const READS: f64 = 1000.0;
 
 /// What the machine without clearance goes through.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +36,10 @@ pub struct DrivenPath {
     pub singular: Option<Singular>,
     /// Loops whose signed area changes sign, and when (s).
     pub turned: Vec<(Loop, f64)>,
+    /// When (s) it was looked at.
+    pub instants: Vec<f64>,
+    /// Time (s) beyond which it was not looked at, because its poses are too many.
+    pub unseen: Option<f64>,
     /// Time (s) beyond which the drives cannot go on, and the coordinate of each there.
     pub stuck: Option<(f64, Vec<f64>)>,
 }
@@ -58,6 +66,8 @@ impl DrivenPath {
             breaches: Vec::new(),
             singular: None,
             turned: Vec::new(),
+            instants: Vec::new(),
+            unseen: None,
             stuck: None,
         };
         let mut loops: Vec<Loop> = mechanism.loops();
@@ -66,34 +76,41 @@ impl DrivenPath {
         let mut before: Option<Hold> = None;
         let mut worst: Vec<Option<(f64, f64, f64)>> = vec![None; drives];
         let mut last = Vec::new();
-        for t in instants(&mechanism, duration) {
-            let Some(states) = ideal.states(t) else {
-                found.stuck = Some((t, last));
-                break;
-            };
-            let commands = commands_at(&mechanism, t);
-            for (i, command) in commands.iter().enumerate() {
-                if mechanism.actuators[i].drive == Drive::Effort {
-                    continue;
+        let mut reads = Reads::new(&mechanism, duration);
+        'path: while reads.advance() {
+            for (i, command) in reads.commands.iter().enumerate() {
+                if mechanism.actuators[i].drive != Drive::Effort {
+                    let range = ranges.get(i).copied().flatten();
+                    found.reached(i, reads.t, command, range, &mut worst[i]);
                 }
-                found.reached(i, t, command, ranges.get(i).copied().flatten(), &mut worst[i]);
             }
-            last = commands.iter().map(|command| command.position).collect();
-            if let Some(hold) = mechanism.hold(&states) {
-                found.held(t, hold, before);
-                before = Some(hold);
-            }
-            for (i, of) in loops.iter().enumerate() {
-                let area = mechanism.signed_area(of, &states);
-                match areas.get(i) {
-                    None => areas.push(area),
-                    Some(first)
-                        if first * area < 0.0
-                            && !found.turned.iter().any(|(turned, _)| turned == of) =>
-                    {
-                        found.turned.push((of.clone(), t));
+            for t in reads.poses() {
+                if found.instants.len() == MOST {
+                    found.unseen = found.instants.last().copied();
+                    break 'path;
+                }
+                let Some(states) = ideal.states(t) else {
+                    found.stuck = Some((t, last));
+                    break 'path;
+                };
+                found.instants.push(t);
+                last = commands_at(&mechanism, t).iter().map(|command| command.position).collect();
+                if let Some(hold) = mechanism.hold(&states) {
+                    found.held(t, hold, before);
+                    before = Some(hold);
+                }
+                for (i, of) in loops.iter().enumerate() {
+                    let area = mechanism.signed_area(of, &states);
+                    match areas.get(i) {
+                        None => areas.push(area),
+                        Some(first)
+                            if first * area < 0.0
+                                && !found.turned.iter().any(|(turned, _)| turned == of) =>
+                        {
+                            found.turned.push((of.clone(), t));
+                        }
+                        Some(_) => {}
                     }
-                    Some(_) => {}
                 }
             }
         }
@@ -139,68 +156,135 @@ fn commands_at(mechanism: &Mechanism, t: f64) -> Vec<Command> {
     commands
 }
 
-/// Instants from 0 to `duration` between which no drive goes farther than a stride.
-fn instants(mechanism: &Mechanism, duration: f64) -> Vec<f64> {
-    let size = mechanism.size();
-    let mut way = 0.0;
-    let samples = 10 * FEWEST;
-    for k in 0..samples {
-        let commands = commands_at(mechanism, duration * (k as f64 + 0.5) / samples as f64);
-        let fastest = commands.iter().zip(&mechanism.actuators).fold(0.0f64, |most, (c, a)| {
-            let scale = match a.joint {
-                JointIndex::Revolute(_) => 1.0,
-                JointIndex::Prismatic(_) => size,
-            };
-            if a.drive == Drive::Effort { most } else { most.max(c.rate.abs() / scale) }
-        });
-        way += fastest * duration / samples as f64;
-    }
-    let count = ((way / STRIDE).ceil() as usize).clamp(FEWEST, MOST);
-    (0..=count).map(|k| duration * k as f64 / count as f64).collect()
+/// Commands read at equal intervals from 0 to the end, which choose poses between which no drive goes farther
+/// than a stride, however long and uneven the motion is.
+struct Reads<'a> {
+    mechanism: &'a Mechanism,
+    size: f64,
+    /// Time of the last read and time between two, s.
+    t: f64,
+    interval: f64,
+    /// Number of the next read, and of the last one.
+    next: usize,
+    last: usize,
+    /// Commands at the last read.
+    commands: Vec<Command>,
+    /// Strides of the drive that went farthest, and reads, since the last pose.
+    way: f64,
+    rests: usize,
+    /// Strides between the last two reads.
+    step: f64,
 }
+
+impl<'a> Reads<'a> {
+    fn new(mechanism: &'a Mechanism, duration: f64) -> Self {
+        let last = (READS * duration).ceil().max(10.0 * FEWEST as f64);
+        Self {
+            mechanism,
+            size: mechanism.size(),
+            t: 0.0,
+            interval: duration / last,
+            next: 0,
+            last: last as usize,
+            commands: commands_at(mechanism, 0.0),
+            way: 0.0,
+            rests: 0,
+            step: 0.0,
+        }
+    }
+
+    /// Reads the commands once more; false after the last read.
+    fn advance(&mut self) -> bool {
+        if self.next > self.last {
+            return false;
+        }
+        self.t = self.interval * self.next as f64;
+        let commands = commands_at(self.mechanism, self.t);
+        let ends = self.mechanism.actuators.iter().zip(self.commands.iter().zip(&commands));
+        self.step = ends.fold(0.0f64, |most, (actuator, (a, b))| {
+            let scale = match actuator.joint {
+                JointIndex::Revolute(_) => STRIDE,
+                JointIndex::Prismatic(_) => STRIDE * self.size,
+            };
+            let way = (b.position - a.position).abs() / scale;
+            if actuator.drive == Drive::Effort { most } else { most.max(way) }
+        });
+        self.way += self.step;
+        self.rests += 1;
+        self.next += 1;
+        self.commands = commands;
+        true
+    }
+
+    /// The poses to look at since the read before: none yet, one, or several where commands are faster than
+    /// they are read.
+    fn poses(&mut self) -> impl Iterator<Item = f64> + use<> {
+        // Before the next read they would have gone farther than a stride.
+        let due = self.way + self.step > 1.0
+            || self.rests * FEWEST >= self.last
+            || self.next == 1
+            || self.next > self.last;
+        let pieces = if due { self.step.ceil().max(1.0) as usize } else { 0 };
+        if due {
+            (self.way, self.rests) = (0.0, 0);
+        }
+        let (t, part) = (self.t, self.interval / pieces.max(1) as f64);
+        (0..pieces).rev().map(move |i| t - part * i as f64)
+    }
+}
+
+/// Error in m or rad of a table of the inverse kinematics that is aimed at.
+const FINE: f64 = 1e-11;
+
+/// Error below which a finer table that is no better is as good as rounding lets it be.
+const ROUNDED: f64 = 1e-8;
+
+/// Most samples of a table in a second of the motion, and most in any case that is shorter than 1024 s.
+const SAMPLES: [f64; 2] = [1024.0, 1_048_576.0];
 
 /// Commands that carry a target along its path for `duration` s and a little longer, and the states at the
 /// start. Samples are taken ever closer until the polynomials between them miss the exact commands by less
-/// than 1e-11 m or rad.
+/// than 1e-11 m or rad, or by no less than before; the table says what is left.
 pub(super) fn inverse_kinematics(
     mechanism: &Mechanism,
     imposed: Imposed,
     duration: f64,
 ) -> Result<(Tabulated, Vec<BodyState>), Stuck> {
-    const FINE: f64 = 1e-11;
     let ideal = mechanism.without_clearance();
     let starts: Vec<BodyState> = ideal.bodies.iter().map(|body| body.start).collect();
     // Steps look a little beyond the end of a run.
     let until = duration * 1.001 + 1e-3;
-    let mut count = 64;
+    let drives = ideal.actuators.len();
+    let most = (SAMPLES[0] * until).max(SAMPLES[1]);
+    let (mut count, mut before) = (64, f64::INFINITY);
     loop {
         let mut tracker = Tracker::new(ideal.clone(), imposed.clone(), starts.clone(), 0.0)?;
         let first = tracker.states().to_vec();
-        let mut near: Vec<f64> = (0..ideal.actuators.len())
-            .map(|i| ideal.start_coordinate(ideal.actuators[i].joint))
-            .collect();
+        let mut near: Vec<f64> =
+            (0..drives).map(|i| ideal.start_coordinate(ideal.actuators[i].joint)).collect();
         let interval = until / count as f64;
-        let mut samples = vec![sample(&tracker, &mut near)];
-        let mut missed = 0.0f64;
+        let mut table =
+            Tabulated { interval, drives, samples: sample(&tracker, &mut near), error: 0.0 };
         for k in 1..=count {
             let half = interval * (k as f64 - 0.5);
             tracker.advance(half)?;
-            let between = sample(&tracker, &mut near);
+            let exact = sample(&tracker, &mut near);
             tracker.advance(interval * k as f64)?;
-            samples.push(sample(&tracker, &mut near));
-            let table = Tabulated { interval, samples: samples[k - 1..].to_vec() };
-            let mut commands = between.clone();
-            table.at(0.5 * interval, &mut commands);
-            for (found, exact) in commands.iter().zip(&between) {
-                missed = missed.max((found.position - exact.position).abs());
+            table.samples.extend(sample(&tracker, &mut near));
+            for (drive, exact) in exact.iter().enumerate() {
+                let found = table.between(k - 1, drive, 0.5);
+                table.error = table.error.max((found.position - exact.position).abs());
             }
         }
-        if missed < FINE || count >= 1 << 16 {
-            return Ok((Tabulated { interval, samples }, first));
+        let error = table.error;
+        let rounded = error < ROUNDED && error > 0.5 * before;
+        if error < FINE || rounded || count as f64 >= most {
+            return Ok((table, first));
         }
+        before = error;
         // The error falls with the sixth power of the interval.
-        let finer = (missed / FINE).powf(1.0 / 6.0).clamp(1.5, 16.0);
-        count = (count as f64 * finer).ceil() as usize;
+        let finer = (error / FINE).powf(1.0 / 6.0).clamp(1.5, 16.0);
+        count = (count as f64 * finer).ceil().min(most.ceil()) as usize;
     }
 }
 

@@ -8,6 +8,7 @@
 //!
 //! SI units throughout: m, kg, s, N, rad.
 
+mod connected;
 mod document;
 mod problem;
 mod read;
@@ -17,6 +18,7 @@ mod sections;
 mod tests;
 mod validate;
 mod validate_described;
+mod validate_shape;
 mod write;
 
 use std::path::{Path, PathBuf};

@@ -1,9 +1,9 @@
 //! What is surely wrong with a described machine by itself: names that nothing has, numbers that no body,
 //! joint or drive can have.
 
+use super::connected::body_of;
 use super::{
-    Body, Described, GROUND, Joint, JointDrive, JointPath, Motion, Problem, Quantity, Scenario,
-    Shape, Target,
+    Described, GROUND, Joint, JointDrive, JointPath, Motion, Problem, Quantity, Scenario, Target,
 };
 use crate::measure::spelling::nearest;
 use std::collections::BTreeSet;
@@ -23,7 +23,7 @@ pub(super) fn problems(scenario: &Scenario, described: &Described) -> Vec<Proble
     checks.problems
 }
 
-struct Checks<'a> {
+pub(super) struct Checks<'a> {
     scenario: &'a Scenario,
     described: &'a Described,
     problems: Vec<Problem>,
@@ -39,89 +39,6 @@ impl Checks<'_> {
             let path = format!("body.{i}");
             self.name(&format!("{path}.name"), &body.name, "body", &mut seen);
             self.mass(&path, body);
-        }
-    }
-
-    fn mass(&mut self, path: &str, body: &Body) {
-        let given = [("mass", body.mass, "kg"), ("inertia", body.inertia, "kg m²")];
-        for (key, value, unit) in given {
-            let path = format!("{path}.{key}");
-            match (value, &body.shape) {
-                (Some(_), Some(_)) => {
-                    let message = "stands beside `shape`".to_owned();
-                    self.complain(&path, message, "keep one: a shape has a mass and an inertia");
-                }
-                (None, None) => {
-                    let message = format!("is missing for the body \"{}\"", body.name);
-                    self.complain(&path, message, &format!("write {key} = … ({unit}), or a shape"));
-                }
-                (Some(value), None) if value <= 0.0 => {
-                    let message = format!("is {value} for the body \"{}\"", body.name);
-                    let help = format!(
-                        "expected above 0 {unit}: a body that moves has both, however small"
-                    );
-                    self.complain(&path, message, &help);
-                }
-                _ => {}
-            }
-        }
-        let Some(shape) = &body.shape else { return };
-        let (points, sizes): (Vec<&String>, &[(&str, f64, &str)]) = match shape {
-            Shape::Bar { from, to, diameter, density } => {
-                (vec![from, to], &[("diameter", *diameter, "m"), ("density", *density, "kg/m³")])
-            }
-            Shape::Disc { center, radius, thickness, density } => (
-                vec![center],
-                &[
-                    ("radius", *radius, "m"),
-                    ("thickness", *thickness, "m"),
-                    ("density", *density, "kg/m³"),
-                ],
-            ),
-            Shape::Polygon { corners, thickness, density } => (
-                corners.iter().collect(),
-                &[("thickness", *thickness, "m"), ("density", *density, "kg/m³")],
-            ),
-        };
-        for (key, value, unit) in sizes {
-            if *value <= 0.0 {
-                let help = format!("expected above 0 {unit}");
-                self.complain(&format!("{path}.shape.{key}"), format!("is {value}"), &help);
-            }
-        }
-        let known = points.iter().all(|point| body.points.contains_key(*point));
-        for point in points {
-            if !body.points.contains_key(point) {
-                let message = format!("the body \"{}\" has no point \"{point}\"", body.name);
-                let known: Vec<&str> = body.points.keys().map(String::as_str).collect();
-                self.complain(&format!("{path}.shape"), message, &suggest(point, &known));
-            }
-        }
-        let place = |name: &String| body.points.get(name).copied().unwrap_or_default();
-        let flat = match shape {
-            Shape::Bar { from, to, .. } => place(from) == place(to),
-            Shape::Disc { .. } => false,
-            Shape::Polygon { corners, .. } => {
-                let next = corners.iter().cycle().skip(1);
-                let double: f64 = corners
-                    .iter()
-                    .zip(next)
-                    .map(|(a, b)| (place(a), place(b)))
-                    .map(|([ax, ay], [bx, by])| ax * by - ay * bx)
-                    .sum();
-                double == 0.0
-            }
-        };
-        if flat && known {
-            let message = format!("of the body \"{}\" has no extent, and so no mass", body.name);
-            let help = "a bar between two places, or a polygon with an area";
-            self.complain(&format!("{path}.shape"), message, help);
-        }
-        if let Shape::Polygon { corners, .. } = shape
-            && corners.len() < 3
-        {
-            let message = format!("has {} corners", corners.len());
-            self.complain(&format!("{path}.shape.corners"), message, "expected 3 or more");
         }
     }
 
@@ -209,12 +126,22 @@ impl Checks<'_> {
 
     fn drives(&mut self) {
         let mut seen = BTreeSet::new();
+        let mut labels = BTreeSet::new();
+        if let Motion::Joints(motions) = &self.scenario.motion {
+            let driven = |name: &str| self.described.drives.iter().any(|d| d.joint() == name);
+            // Joints that are moved without a drive have its columns too.
+            let moved = motions.iter().filter(|motion| !driven(&motion.joint));
+            labels.extend(moved.map(|motion| format!("_{}", motion.joint)));
+        }
         for (i, drive) in self.described.drives.iter().enumerate() {
             let path = format!("drive.{i}");
             self.movable(&format!("{path}.joint"), drive.joint());
             if !seen.insert(drive.joint()) {
                 let message = format!("\"{}\" is driven twice", drive.joint());
                 self.complain(&format!("{path}.joint"), message, "keep one drive of each joint");
+            } else if !labels.insert(drive.label()) {
+                let message = format!("names the columns q{} twice", drive.label());
+                self.complain(&path, message, "give one of them another label");
             }
             match drive {
                 JointDrive::Servo(servo) => {
@@ -253,6 +180,13 @@ impl Checks<'_> {
                     for (k, point) in points.iter().enumerate() {
                         self.point(&format!("{path}.between.{k}"), point);
                     }
+                    let [first, second] = points.each_ref().map(|point| body_of(point));
+                    if self.described.rigid_with(first).contains(second) {
+                        let message =
+                            format!("\"{}\" and \"{}\" move as one", points[0], points[1]);
+                        let help = "a spring acts between two bodies, or a body and the ground";
+                        self.complain(&format!("{path}.between"), message, help);
+                    }
                     if spring.free_angle.is_some() {
                         let message = "belongs to a revolute joint".to_owned();
                         self.complain(&format!("{path}.free_angle"), message, "write free_length");
@@ -265,8 +199,15 @@ impl Checks<'_> {
                     "write between = [\"body.point\", \"body.point\"], or joint = \"…\"",
                 ),
             }
-            self.not_negative(&format!("{path}.stiffness"), spring.stiffness);
-            self.not_negative(&format!("{path}.damping"), spring.damping);
+            let [stiffness, damping] = ["stiffness", "damping"].map(|key| format!("{path}.{key}"));
+            // A zero that is written may be one of many in a sweep.
+            if ![&stiffness, &damping].into_iter().any(|key| self.scenario.origins.has(key)) {
+                let message = "has neither stiffness nor damping".to_owned();
+                let help = "write stiffness = … (N/m, in a revolute joint N m/rad)";
+                self.complain(&path, message, help);
+            }
+            self.not_negative(&stiffness, spring.stiffness);
+            self.not_negative(&damping, spring.damping);
         }
     }
 
@@ -299,6 +240,7 @@ impl Checks<'_> {
 
     fn outputs(&mut self) {
         let mut seen = BTreeSet::new();
+        let still = self.described.rigid_with(GROUND);
         for (i, output) in self.described.outputs.iter().enumerate() {
             let path = format!("output.{i}");
             match (&output.body, &output.point) {
@@ -308,6 +250,11 @@ impl Checks<'_> {
                     let help = "write body = \"…\" or point = \"body.point\"";
                     self.complain(&path, "does not say of what".to_owned(), help);
                 }
+            }
+            // There is no body called ground.
+            if still.contains(body_of(output.of())) && output.of() != GROUND {
+                let message = format!("is of \"{}\", which does not move", output.of());
+                self.complain(&path, message, "name a body that joints let move, or its point");
             }
             if !seen.insert(output.label()) {
                 let message = format!("names the columns x{} twice", output.label());
@@ -397,16 +344,25 @@ impl Checks<'_> {
         }
     }
 
-    /// Bodies that no joint holds.
+    /// Bodies that nothing holds, and machines of which nothing moves.
     fn held(&mut self) {
         for (i, body) in self.described.bodies.iter().enumerate() {
-            let on = |point: &str| point.split_once('.').is_some_and(|(of, _)| of == body.name);
-            let held =
-                self.described.joints.iter().any(|joint| joint.points().iter().any(|(_, p)| on(p)));
-            if !held {
-                let message = format!("\"{}\" is free: no joint holds it", body.name);
+            if !self.described.is_held(&body.name) {
+                let message = format!("\"{}\" is free: no joint and no spring holds it", body.name);
                 self.complain(&format!("body.{i}"), message, "give it a joint, or take it out");
             }
+        }
+        let still = self.described.rigid_with(GROUND);
+        let all = self.described.bodies.iter().all(|body| still.contains(body.name.as_str()));
+        let joints = self.described.joints.iter().enumerate();
+        let mut fixed = joints.filter(|(_, joint)| matches!(joint, Joint::Fixed(_)));
+        if all && let Some((i, joint)) = fixed.next() {
+            let message = format!(
+                "\"{}\" leaves nothing that moves: fixed joints hold every body to the ground",
+                joint.name()
+            );
+            let help = "make one of them revolute or prismatic, or add a body that moves";
+            self.complain(&format!("joint.{i}"), message, help);
         }
     }
 
@@ -495,13 +451,13 @@ impl Checks<'_> {
         }
     }
 
-    fn complain(&mut self, path: &str, message: String, help: &str) {
+    pub(super) fn complain(&mut self, path: &str, message: String, help: &str) {
         self.problems.push(self.scenario.problem(path, message, help));
     }
 }
 
 /// The nearest of the known names, or all of them.
-fn suggest(name: &str, known: &[&str]) -> String {
+pub(super) fn suggest(name: &str, known: &[&str]) -> String {
     match nearest(name, known) {
         Some(near) => format!("did you mean \"{near}\"?"),
         None if known.is_empty() => "there are none".to_owned(),

@@ -64,6 +64,10 @@ const DOUBTFUL_GAIN: f64 = 50.0;
 /// reach five times as far as the machine.
 const LARGEST_GYRATION: f64 = 5.0;
 
+/// Error in m or rad of a table of the inverse kinematics beyond which it is told: a thousandth of the smallest
+/// clearance that is common.
+const LARGEST_TABLE_ERROR: f64 = 1e-9;
+
 /// Everything wrong or doubtful about a machine and its motion.
 pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {
     let mut found: Vec<Finding> = scenario.unused().into_iter().map(Finding::warning).collect();
@@ -76,6 +80,8 @@ pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {
             None => driven_path(scenario, machine, &mut found),
         },
     }
+    found.extend(floating(scenario));
+    found.extend(table_error(scenario, machine));
     found.extend(inertias(scenario, machine));
     found.extend(redundant(scenario, machine));
     found.extend(step(scenario, machine));
@@ -165,6 +171,13 @@ fn driven_path(scenario: &Scenario, machine: &mut Machine, found: &mut Vec<Findi
         found.push(Finding::error(scenario.problem("motion", message, help)));
         return;
     }
+    if let Some(t) = path.unseen {
+        let message = format!(
+            "is looked at up to t = {t:.4} s: its drives go too far for more, and what is wrong later goes unseen"
+        );
+        let help = "make sure that the motion only repeats itself from there on";
+        found.push(Finding::warning(scenario.problem("motion", message, help)));
+    }
     found.extend(path.singular.and_then(|singular| singular_pose(scenario, mechanism, singular)));
     for (of, t) in &path.turned {
         let names: Vec<&str> = of.joints.iter().map(|&joint| mechanism.joint_name(joint)).collect();
@@ -201,6 +214,29 @@ fn singular_pose(
         let help = "keep the motion farther from there: forces grow alike";
         Finding::warning(scenario.problem("motion", message, help))
     })
+}
+
+/// Bodies that hang together and that nothing connects to the ground.
+fn floating(scenario: &Scenario) -> Option<Finding> {
+    let described = scenario.mechanism.described()?;
+    let floating = described.floating();
+    let first = floating.first()?;
+    let place = described.bodies.iter().position(|body| body.name == first.name)?;
+    let names: Vec<String> = floating.iter().map(|body| format!("\"{}\"", body.name)).collect();
+    let message =
+        format!("{} float: no joint and no spring connects them to the ground", names.join(", "));
+    let help = "join one to a point of the ground, or leave it so if the machine is to fly free";
+    Some(Finding::warning(scenario.problem(&format!("body.{place}"), message, help)))
+}
+
+/// A table of the inverse kinematics that is coarser than any clearance allows.
+fn table_error(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
+    let error = machine.table_error.filter(|error| *error > LARGEST_TABLE_ERROR)?;
+    let message = format!(
+        "moves the drives by a table of the inverse kinematics that is wrong by up to {error:.1e} m or rad"
+    );
+    let help = "a shorter run, or a smoother motion";
+    Some(Finding::warning(scenario.problem("motion", message, help)))
 }
 
 /// Inertias that no body of this machine can have.

@@ -7,7 +7,7 @@ use crate::scenario::{self, Law, Problem, Scenario};
 use crate::simulate::{Finding, Machine, Severity, findings, leg_use, radial_clearance};
 use serde::Serialize;
 
-/// Instants at which the ideal machine's forces are looked at.
+/// Fewest instants at which the ideal machine's forces are looked at.
 const INSTANTS: usize = 1000;
 
 /// Distance from singularity in m that is none but for rounding: there the forces have no bound.
@@ -90,6 +90,9 @@ pub struct CheckedMachine {
     pub drive: &'static str,
     /// The driven joints.
     pub drives: Vec<CheckedDrive>,
+    /// Largest error (m, rad) of the drives' commands where they come from a table of the inverse kinematics.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub table_error: Option<f64>,
     /// How the machine without clearance can move.
     pub freedoms: CheckedFreedoms,
     /// Closed loops of revolute joints, and the area that each runs around: its sign is the branch on which the
@@ -222,7 +225,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
     let regular = reach.as_ref().is_none_or(|reach| reach.singularity_distance > NO_DISTANCE)
         && path.as_ref().is_none_or(|path| path.stuck.is_none())
         && machine.ideal.is_kinematic();
-    let ideal = regular.then(|| ideal(machine));
+    let ideal = regular.then(|| ideal(machine, path.as_ref()));
     let mechanism = &machine.mechanism;
     let bodies = mechanism.bodies.iter().map(|body| CheckedBody {
         name: body.name.clone(),
@@ -271,6 +274,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         tolerance_m_s,
         drive: machine.drives,
         drives: drives(mechanism, path.as_ref()),
+        table_error: machine.table_error,
         freedoms: freedoms(mechanism),
         loops: loops(mechanism),
         servo_stiffness: gains.map(|[stiffness, _]| stiffness),
@@ -325,13 +329,17 @@ fn loops(mechanism: &Mechanism) -> Vec<CheckedLoop> {
     mechanism.loops().into_iter().filter(|of| mechanism.has_branches(of)).map(checked).collect()
 }
 
-/// Extremes of the ideal machine over the motion.
-fn ideal(machine: &mut Machine) -> Ideal {
+/// Extremes of the ideal machine over the motion, at the poses of its path where these are more.
+fn ideal(machine: &mut Machine, path: Option<&DrivenPath>) -> Ideal {
     let drives = machine.mechanism.actuators.len();
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; drives];
     let mut peak = 0.0f64;
-    for k in 0..=INSTANTS {
-        let t = machine.schedule.duration * k as f64 / INSTANTS as f64;
+    let even = |k: usize| machine.schedule.duration * k as f64 / INSTANTS as f64;
+    let instants: Vec<f64> = match path {
+        Some(path) if path.instants.len() > INSTANTS => path.instants.clone(),
+        _ => (0..=INSTANTS).map(even).collect(),
+    };
+    for t in instants {
         let ideal = machine.ideal.at(t);
         for ([low, high], force) in ranges.iter_mut().zip(ideal.drive_forces) {
             *low = low.min(*force);

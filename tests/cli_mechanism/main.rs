@@ -4,5 +4,8 @@
 mod cli_common;
 mod commands;
 mod files;
+mod long;
+mod mixed;
+mod odd;
 mod refusals;
 mod templates;

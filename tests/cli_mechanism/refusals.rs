@@ -4,7 +4,7 @@ use crate::cli_common::{Done, Place};
 use crate::files::{FOUR_BAR, SLIDER_CRANK, line, with};
 
 /// A file with one mistake.
-struct Wrong {
+pub struct Wrong {
     text: String,
     /// The mistake stands on the line of this passage.
     at: &'static str,
@@ -14,7 +14,7 @@ struct Wrong {
     and: &'static [&'static str],
 }
 
-fn wrong(
+pub fn wrong(
     text: String,
     at: &'static str,
     says: &'static str,
@@ -34,7 +34,7 @@ fn moved(motion: &str) -> String {
 }
 
 /// All of them must be refused by `check` and by `run`, which leaves nothing behind.
-fn refuse(cases: Vec<Wrong>) {
+pub fn refuse(cases: Vec<Wrong>) {
     let place = Place::new();
     let mut missed = String::new();
     for Wrong { text, at, says, and } in cases {
@@ -322,7 +322,7 @@ fn joints_that_do_not_close_and_bodies_that_nothing_holds() {
         wrong(
             four_bar("[[joint]]\nname = \"O\"", free),
             "[[body]]\nname = \"loose\"",
-            "body.3: \"loose\" is free: no joint holds it",
+            "body.3: \"loose\" is free: no joint and no spring holds it",
             &["give it a joint, or take it out"],
         ),
     ]);
