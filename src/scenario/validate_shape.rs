@@ -1,6 +1,7 @@
 //! Masses and shapes that no body can have.
 
-use super::validate_described::{Checks, suggest};
+use super::validate_described::Checks;
+use super::validate_names::suggest;
 use super::{Body, Shape};
 
 impl Checks<'_> {
