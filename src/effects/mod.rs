@@ -30,12 +30,14 @@ mod servo_gain;
 mod servo_lag;
 mod setting;
 mod stribeck_friction;
+mod target;
 mod tether;
 mod unbalance;
 mod unnamed;
 
-pub use kind::{Joints, Kind, Parameter, Range, Scan};
+pub use kind::{Joints, Kind, Parameter, Range, Scan, Senses, Targets};
 pub use setting::{Setting, Wrong};
+pub use target::Target;
 pub use unnamed::{DependsOn, Map, Motion, UNNAMED};
 
 /// Every effect there is, in the order in which they are listed.

@@ -1,23 +1,23 @@
-//! A mass on the platform that nobody declared.
+//! A mass on a body that nobody declared.
 
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::Mechanism;
 use nalgebra::Vector2;
 
 pub(super) const KIND: Kind = Kind {
     name: "payload",
-    summary: "a point mass on the platform",
-    equation: "mass and centre of mass of the platform become those of both; \
+    summary: "a point mass on a body: the platform, where none is named",
+    equation: "mass and centre of mass of the body become those of both; \
                I += m M/(M + m) |r|^2 about the common centre",
     source: "parallel axis theorem",
     trace: "actuator forces: with acceleration, and with gravity where there is any",
-    joints: Joints::None,
+    targets: Targets::Body,
     parameters: &[
         Parameter::size("mass_kg", "kg", "mass m", 20.0, 2e-3),
         Parameter {
             name: "com_x_m",
             unit: "m",
-            about: "where it sits, along the platform's x axis from its centre",
+            about: "where it sits, along the x axis of the body's own axes, from their origin",
             bounds: [-0.3, 0.3],
             step: 2e-3,
             default: Some(0.0),
@@ -25,7 +25,7 @@ pub(super) const KIND: Kind = Kind {
         Parameter {
             name: "com_y_m",
             unit: "m",
-            about: "where it sits, along the platform's y axis from its centre",
+            about: "where it sits, along the y axis of the body's own axes, from their origin",
             bounds: [-0.3, 0.3],
             step: 2e-3,
             default: Some(0.0),
@@ -40,6 +40,8 @@ pub(super) const KIND: Kind = Kind {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let point = Vector2::new(setting.number("com_x_m"), setting.number("com_y_m"));
-    mechanism.add_point_mass(mechanism.output, setting.number("mass_kg"), point);
+    let (body, axes) = setting.body(mechanism)?;
+    let point = axes.origin.point + axes.turned(point);
+    mechanism.add_point_mass(body, setting.number("mass_kg"), point);
     Ok(())
 }

@@ -64,7 +64,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     let scenario = &expand(scenario)?;
     let motion = motion::path(scenario)?;
     let Assembled { built, motion, known_until, legs, ranges } = put_together(scenario, motion)?;
-    let Built { mut mechanism, layout, laws, .. } = built;
+    let Built { mut mechanism, mut layout, laws, .. } = built;
     let simulation = &scenario.simulation;
     let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
     let control = scenario.step_control();
@@ -76,6 +76,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     add_effects(scenario, &mut mechanism)?;
     if !scenario.effects.is_empty() {
         close(scenario, &mut mechanism)?;
+        layout.follow(&mechanism.names);
     }
     Ok(Machine {
         mechanism,
