@@ -50,3 +50,20 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     mechanism.loads.push(Arc::new(Drag { centre, force, torque }));
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::effects::rigs::{WHEEL_AND_SLIDE, ended};
+
+    /// Inertia 0.02 kg m², mass 2 kg; 5 rad/s, 0.5 m/s before.
+    #[test]
+    fn each_body_is_slowed_by_its_own_drag() {
+        let drag = |body: &str, keys: &str| {
+            format!("[[effect]]\nkind = \"drag\"\nbody = \"{body}\"\n{keys}\n")
+        };
+        let drags = drag("wheel", "torque_Nms = 0.05") + &drag("slide", "force_Ns_m = 3.0");
+        let [wheel, slide] = ended(&format!("{WHEEL_AND_SLIDE}{drags}"), 0.1);
+        assert!((wheel.twist.z - 5.0 * (-0.05f64 / 0.02 * 0.1).exp()).abs() < 1e-6);
+        assert!((slide.twist.x - 0.5 * (-3.0f64 / 2.0 * 0.1).exp()).abs() < 1e-6);
+    }
+}

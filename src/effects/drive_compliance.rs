@@ -88,3 +88,23 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::effects::rigs::{TURNTABLE, closed};
+    use crate::mechanism::Drive;
+
+    /// A coupling of 1/k behind a servo k_p: together k k_p/(k + k_p).
+    #[test]
+    fn a_coupling_of_a_revolute_drive_gives_in_series_with_its_servo() {
+        let keys = "joint = \"O\"\ncompliance_rad_Nm = 1e-3\n";
+        let mut rig =
+            closed(&format!("{TURNTABLE}[[effect]]\nkind = \"drive-compliance\"\n{keys}"));
+        assert!(matches!(rig.mechanism.actuators[0].drive, Drive::Servo { .. }));
+        rig.turn(0, 0.01);
+        let expected = -0.01 * 400.0 * 1000.0 / 1400.0;
+        assert!((rig.effort(0) - expected).abs() < 1e-9, "{} {expected}", rig.effort(0));
+        // The encoder sits at the drive's end.
+        assert!((rig.reads("q_O") - (0.51 + 1e-3 * expected)).abs() < 1e-9);
+    }
+}

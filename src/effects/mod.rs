@@ -1,5 +1,6 @@
 //! Physical effects that a declared machine may lack: a payload nobody mentioned, a worn joint, a
-//! servo that lags. One file each, all of them in [`ALL`]; an effect changes a
+//! servo that lags. One file each, all of them in [`ALL`]; a [`Kind`] says what it can act on and lists
+//! its targets on a machine ([`Kind::targets_of`], [`Kind::candidates`]); an effect changes a
 //! [`Mechanism`](crate::mechanism::Mechanism) after it was built, so that whatever simulates or
 //! inverts mechanisms knows it already.
 
@@ -14,17 +15,30 @@ mod contact_damping;
 mod drag;
 mod drive_backlash;
 mod drive_compliance;
+mod encoder;
+mod encoder_eccentricity;
+mod encoder_scale;
+mod encoder_zero;
 mod film_friction;
+mod force_offset;
+mod force_scale;
 mod gravity;
+mod impulse;
+mod joint_friction;
 mod joint_wear;
 mod journal_friction;
 mod kind;
 mod leg_density;
+mod load_change;
 mod lubricant_film;
 mod out_of_round;
 mod payload;
 mod pivot_friction;
+mod point_offset;
+#[cfg(test)]
+mod rigs;
 mod screw_ripple;
+mod sensor_latency;
 mod sensor_offset;
 mod servo_gain;
 mod servo_lag;
@@ -32,6 +46,8 @@ mod setting;
 mod stribeck_friction;
 mod target;
 mod tether;
+mod torque_ripple;
+mod tracker_frame;
 mod unbalance;
 mod unnamed;
 
@@ -70,6 +86,18 @@ pub const ALL: &[&Kind] = &[
     &pivot_friction::KIND,
     &bristle_friction::KIND,
     &air_drag::KIND,
+    &point_offset::KIND,
+    &joint_friction::KIND,
+    &torque_ripple::KIND,
+    &encoder_zero::KIND,
+    &encoder_scale::KIND,
+    &encoder_eccentricity::KIND,
+    &sensor_latency::KIND,
+    &force_scale::KIND,
+    &force_offset::KIND,
+    &tracker_frame::KIND,
+    &impulse::KIND,
+    &load_change::KIND,
 ];
 
 /// Effects of machines that a search is for which imitate a commoner one: an encoder's wrong zero looks

@@ -61,8 +61,8 @@ pub struct Sensor {
     /// What it adds, in its unit.
     pub offset: f64,
     /// Waves in what it reads of a joint: amplitude (the joint's unit) and phase (rad) of
-    /// `amplitude · sin(q + phase)`, as of an encoder's disk beside its axis. Encoders of drives are not among
-    /// them: the drive sees their errors, too ([`ReadingError`](super::ReadingError)).
+    /// `amplitude · sin(q + phase)`, as of an encoder's disk beside its axis. Errors of an encoder that a
+    /// drive follows are not among them: the drive sees those, too ([`ReadingError`](super::ReadingError)).
     pub waves: Vec<[f64; 2]>,
     /// The frames, one in the other, in which it shows x, y or an angle.
     pub frames: Vec<TrackerFrame>,
@@ -119,7 +119,7 @@ impl Sensor {
             Reads::Position(joint) => {
                 let driven = mechanism.actuators.iter().position(|drive| drive.joint == joint);
                 match (driven, joint) {
-                    (Some(drive), _) => mechanism.encoder(drive, now),
+                    (Some(drive), _) => waves(mechanism.encoder(drive, now)),
                     (None, JointIndex::Prismatic(i)) => waves(now.lengths[i]),
                     (None, JointIndex::Revolute(i)) => {
                         let [ring, journal] = mechanism.revolutes[i]
