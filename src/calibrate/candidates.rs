@@ -219,3 +219,27 @@ fn highest(mut power: Vec<(f64, f64)>, apart: f64) -> Vec<f64> {
     }
     kept
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Scenario;
+    use crate::simulate::assemble;
+
+    /// The search's thresholds were found with this many ways to explain a residual; more of them would
+    /// explain more noise.
+    #[test]
+    fn on_three_legs_the_lens_is_asked_about_the_effects_that_it_sees() {
+        let text = "mechanism = { kind = \"3rpr\" }\n";
+        let machine = assemble(&Scenario::from_text(text, "test.toml", &[]).unwrap()).unwrap();
+        let found = all(&machine.mechanism, &[]);
+        assert_eq!(found.len(), 96);
+        let of = |kind: &str| found.iter().filter(|setting| setting.kind.name == kind).count();
+        for (kind, count) in [("payload", 1), ("drive-compliance", 4), ("actuator-friction", 15)] {
+            assert_eq!(of(kind), count, "{kind}");
+        }
+        for kind in ["joint-friction", "point-offset", "impulse", "encoder-zero", "torque-ripple"] {
+            assert_eq!(of(kind), 0, "{kind}");
+        }
+    }
+}

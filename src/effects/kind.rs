@@ -272,7 +272,7 @@ impl Kind {
             let sort = self.parameter(name).and_then(Parameter::of_prismatic);
             self.targets.joints() != Some(Joints::Driven) || sort.is_none_or(of)
         };
-        self.variants.iter().copied().filter(|variant| variant.iter().all(|n| fits(n))).collect()
+        self.variants.iter().copied().filter(|variant| variant.iter().all(fits)).collect()
     }
 
     /// Every variant of the effect on everything that it can act on, at its neutral values.

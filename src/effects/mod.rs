@@ -128,3 +128,44 @@ pub const CONTAINS: &[(&Kind, &Kind)] =
 pub fn named(name: &str) -> Option<&'static Kind> {
     ALL.iter().find(|kind| kind.name == name).copied()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::rigs::{SLIDER_CRANK, closed};
+    use super::*;
+
+    /// A search needs the catalogue alone: every target of a mechanism, every variant, values that change
+    /// nothing.
+    #[test]
+    fn every_candidate_on_a_mechanism_can_be_applied_and_is_neutral() {
+        let machine = closed(SLIDER_CRANK);
+        let mut targets = 0;
+        for setting in ALL.iter().flat_map(|kind| kind.candidates(&machine.mechanism)) {
+            targets += 1;
+            let mut mechanism = machine.mechanism.clone();
+            setting.apply(&mut mechanism).unwrap_or_else(|wrong| panic!("{setting}: {wrong:?}"));
+            mechanism.close(0.0).unwrap();
+            for (before, after) in machine.mechanism.bodies.iter().zip(&mechanism.bodies) {
+                let moved = (after.start.position - before.start.position).norm();
+                assert!(moved < 1e-9, "{setting}: {moved:e}");
+            }
+        }
+        assert!(targets > 60, "{targets}");
+        let of = |kind: &str| {
+            let targets = named(kind).unwrap().targets_of(&machine.mechanism);
+            targets.iter().map(Target::to_string).collect::<Vec<_>>().join("; ")
+        };
+        assert_eq!(of("payload"), "crank; rod; piston");
+        assert_eq!(of("torque-ripple"), "O");
+        assert_eq!(of("joint-friction"), "O; A; B; S");
+        // Its joints are ideal: nothing wears.
+        assert_eq!(of("joint-wear"), "");
+        assert_eq!(of("encoder-eccentricity"), "q_O; q_A; q_O, q_A");
+        assert_eq!(of("force-scale"), "T_O");
+        let points = "crank.A; crank.O; ground.O; ground.S; piston.P; rod.A; rod.B";
+        assert_eq!(of("point-offset"), points);
+        let groups =
+            "q_O; q_A; T_O; x_A; y_A; phi_rod; x_B; x_P; q_O, q_A; x_A, y_A, phi_rod, x_B, x_P";
+        assert_eq!(of("sensor-latency"), groups);
+    }
+}
