@@ -5,7 +5,7 @@ use super::model::{Case, SearchError};
 use super::screen::{Scored, screen, share};
 use super::settle::{GAIN_PER_VALUE, Question, Settled, compared};
 use super::way::{Round, Way, names};
-use crate::effects::{CALMING, Kind, Setting};
+use crate::effects::{CALMING, Kind, Setting, Target as On};
 
 /// Gain through the lens from which a candidate is worth simulating, with loaded joints and with joints
 /// that rattle: there a lens shows little, in units of a noise that contains what is missing.
@@ -222,7 +222,7 @@ fn calming(way: &Way, ranking: &[(Scored, Vec<Setting>)]) -> Vec<usize> {
     let best = |kind: &&Kind| {
         let own = |i: &usize| {
             let effect = &ranking[*i].0.effect;
-            effect.kind.name == kind.name && effect.joint.is_none()
+            effect.kind.name == kind.name && effect.target == On::Machine
         };
         let fitted = |i: &usize| ranking[*i].0.fitted;
         (0..ranking.len()).filter(own).max_by(|a, b| fitted(a).total_cmp(&fitted(b)))

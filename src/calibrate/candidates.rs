@@ -2,7 +2,7 @@
 //! for its values.
 
 use super::fit::{self, Fit, Target};
-use crate::effects::{ALL, CONTAINS, Joints, Kind, Range, Scan, Setting};
+use crate::effects::{ALL, CONTAINS, Joints, Kind, Range, Scan, Setting, Target as On, Targets};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -17,21 +17,29 @@ pub fn all(mechanism: &Mechanism, without: &[&str]) -> Vec<Setting> {
         inner.map(|(_, inner)| *inner).chain([kind]).any(|kind| without.contains(&kind.name))
     };
     for kind in ALL.iter().filter(|kind| !ruled_out(kind)) {
-        let mut joints: Vec<Option<String>> =
-            kind.joints_of(mechanism).into_iter().map(Some).collect();
-        if matches!(kind.joints, Joints::None | Joints::RevoluteOrAll | Joints::PrismaticOrAll) {
-            joints.push(None);
-        }
-        for joint in joints {
-            for variant in kind.variants {
-                let zero: Vec<(&'static str, f64)> = variant.iter().map(|n| (*n, 0.0)).collect();
-                let setting = Setting::new(kind, joint.as_deref(), &zero);
-                let neutral = (kind.neutral)(mechanism, &setting);
-                found.push(setting.with(&neutral));
+        for on in targets(kind, mechanism) {
+            for variant in kind.variants_of(mechanism, &on) {
+                found.push(Setting::neutral(kind, on.clone(), variant, mechanism));
             }
         }
     }
     found
+}
+
+/// What a kind may act on here: the platform, the whole machine, joints of one kind. The lens sees no other body,
+/// no point beside the anchors and no instrument by itself, and takes what acts all the time.
+fn targets(kind: &Kind, mechanism: &Mechanism) -> Vec<On> {
+    if !kind.lasts() {
+        return Vec::new();
+    }
+    let each = || kind.joints_of(mechanism).into_iter().map(|name| On::Joints(vec![name]));
+    match kind.targets {
+        Targets::Machine | Targets::Body => vec![On::Machine],
+        Targets::Joint(Joints::Any) => Vec::new(),
+        Targets::Joint(_) => each().collect(),
+        Targets::JointOrAll(_) => each().chain([On::Machine]).collect(),
+        Targets::Point | Targets::Sensor(_) | Targets::Tracker => Vec::new(),
+    }
 }
 
 /// The best values of a candidate on a target: first what is linear, then Gauss–Newton from the most
@@ -95,6 +103,9 @@ fn scanned(
     let tried = match scan.range {
         Range::WaveNumbers(range) => waves(target, candidate, range),
         Range::Peaks => peaks(target, model),
+        Range::Orders([from, to, step]) => {
+            (0..).map(|i| from + step * f64::from(i)).take_while(|order| *order <= to).collect()
+        }
     };
     let scored = tried.into_iter().filter_map(|value| {
         let mut columns = Vec::new();
@@ -160,9 +171,7 @@ fn waves(target: &Target, candidate: &Setting, [from, to, step]: [f64; 3]) -> Ve
         return Vec::new();
     };
     let legs: Vec<usize> = (0..3)
-        .filter(|leg| {
-            candidate.joint.as_ref().is_none_or(|joint| *joint == format!("P{}", leg + 1))
-        })
+        .filter(|leg| candidate.joint().is_none_or(|joint| joint == format!("P{}", leg + 1)))
         .collect();
     let flat: Vec<Vec<f64>> = legs
         .iter()
@@ -209,4 +218,28 @@ fn highest(mut power: Vec<(f64, f64)>, apart: f64) -> Vec<f64> {
         }
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Scenario;
+    use crate::simulate::assemble;
+
+    /// The search's thresholds were found with this many ways to explain a residual; more of them would
+    /// explain more noise.
+    #[test]
+    fn on_three_legs_the_lens_is_asked_about_the_effects_that_it_sees() {
+        let text = "mechanism = { kind = \"3rpr\" }\n";
+        let machine = assemble(&Scenario::from_text(text, "test.toml", &[]).unwrap()).unwrap();
+        let found = all(&machine.mechanism, &[]);
+        assert_eq!(found.len(), 96);
+        let of = |kind: &str| found.iter().filter(|setting| setting.kind.name == kind).count();
+        for (kind, count) in [("payload", 1), ("drive-compliance", 4), ("actuator-friction", 15)] {
+            assert_eq!(of(kind), count, "{kind}");
+        }
+        for kind in ["joint-friction", "point-offset", "impulse", "encoder-zero", "torque-ripple"] {
+            assert_eq!(of(kind), 0, "{kind}");
+        }
+    }
 }

@@ -62,7 +62,7 @@ fn lesser(effects: &[Setting], which: usize) -> Vec<Vec<Setting>> {
         let values: Vec<(&'static str, f64)> =
             names.iter().map(|name| (*name, effect.value(name).unwrap_or(0.0))).collect();
         let mut with = effects.to_vec();
-        with[which] = Setting::new(inner, effect.joint.as_deref(), &values);
+        with[which] = Setting::on(inner, effect.target.clone(), &values);
         lesser.push(with);
     }
     lesser
@@ -71,7 +71,7 @@ fn lesser(effects: &[Setting], which: usize) -> Vec<Vec<Setting>> {
 /// Whether an effect is another one, of the same joint, at some of its values.
 pub fn contains(outer: &Setting, inner: &Setting) -> bool {
     let kinds = (outer.kind.name, inner.kind.name);
-    outer.joint == inner.joint
+    outer.target == inner.target
         && CONTAINS.iter().any(|(outer, inner)| (outer.name, inner.name) == kinds)
 }
 

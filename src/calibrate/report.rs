@@ -221,7 +221,7 @@ fn effect_report(outcome: &Outcome, effect: &Setting) -> EffectReport {
     });
     EffectReport {
         kind: effect.kind.name,
-        joint: effect.joint.clone(),
+        joint: effect.joint().map(str::to_owned),
         depends_on: effect.map().map(|map| map.depends_on),
         params: params.collect(),
         evidence: evidence(outcome, effect),
@@ -244,7 +244,7 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
             let added = round.added.as_ref().is_some_and(|added| added.is(&scored.effect));
             all.push(Ranked {
                 kind: scored.effect.kind.name,
-                joint: scored.effect.joint.clone(),
+                joint: scored.effect.joint().map(str::to_owned),
                 validation_score: scored.share,
                 kept: in_model && added,
                 round: i + 1,

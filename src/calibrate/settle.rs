@@ -183,7 +183,7 @@ pub fn simplified(case: &Case, question: &Question, model: Settled) -> Settled {
         for names in variants.iter().filter(|names| names.len() < effect.values().count()) {
             let values: Vec<(&'static str, f64)> =
                 names.iter().map(|name| (*name, effect.value(name).unwrap_or(0.0))).collect();
-            let simpler = Setting::new(effect.kind, effect.joint.as_deref(), &values);
+            let simpler = Setting::on(effect.kind, effect.target.clone(), &values);
             let mut effects = best.fit.effects.clone();
             effects[i] = simpler;
             let baseline = best.baseline.clone();

@@ -64,10 +64,7 @@ impl Way {
 
 /// An effect in words: `joint-wear at A2`.
 pub fn name(effect: &Setting) -> String {
-    match &effect.joint {
-        Some(joint) => format!("{} at {joint}", effect.kind.name),
-        None => effect.kind.name.to_owned(),
-    }
+    effect.to_string()
 }
 
 /// Effects in words.

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::output;
-use crate::effects::{ALL, Joints, Kind, Parameter, named};
+use crate::effects::{ALL, Joints, Kind, Parameter, Senses, Targets, named};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde_json::{Value, json};
@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 ///
 /// An effect is something that acts on a machine although its declaration does not say so: a payload,
 /// a worn joint, a servo that lags. For each: what it is, its equation and where that comes from, where
-/// its trace shows in measured data, which joints it can be given, and its parameters with unit, bounds,
+/// its trace shows in measured data, what it can act on, and its parameters with unit, bounds,
 /// default and meaning. With a NAME, that one alone, with an example.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -65,7 +65,7 @@ fn explained(kind: &Kind) -> String {
         ("equation", kind.equation),
         ("source", kind.source),
         ("trace", kind.trace),
-        ("joint", joint_rule(kind.joints)),
+        (kind.targets.key().unwrap_or("acts on"), rule(kind.targets)),
     ] {
         text += &paragraph(&format!("    {label:<10}"), &" ".repeat(14), content);
     }
@@ -117,17 +117,24 @@ fn paragraph(first: &str, next: &str, words: &str) -> String {
 /// An `[[effect]]` that can be pasted into a scenario for the built-in machine.
 fn example(kind: &Kind) -> String {
     let mut text = format!("Example:\n\n    [[effect]]\n    kind = \"{}\"\n", kind.name);
-    text += match kind.joints {
-        Joints::None => "",
-        Joints::Prismatic => "    joint = \"P1\"\n",
-        Joints::PrismaticOrAll => {
-            "    joint = \"P1\"              # without this line: all of them\n"
-        }
-        Joints::Anchor => "    joint = \"A1\"\n",
-        Joints::Revolute => "    joint = \"C1\"\n",
-        Joints::RevoluteOrAll => {
-            "    joint = \"C1\"              # without this line: all of them\n"
-        }
+    text += match kind.targets {
+        Targets::Machine | Targets::Tracker => "",
+        Targets::Joint(joints) => match joints {
+            Joints::Prismatic | Joints::DrivenPrismatic | Joints::Driven => "    joint = \"P1\"\n",
+            Joints::Anchor | Joints::Any => "    joint = \"A1\"\n",
+            Joints::Revolute | Joints::Bearing => "    joint = \"C1\"\n",
+            Joints::DrivenRevolute => "    joint = \"O\"\n",
+        },
+        Targets::JointOrAll(joints) => match joints {
+            Joints::Prismatic | Joints::DrivenPrismatic | Joints::Driven => {
+                "    joint = \"P1\"              # without this line: all of them\n"
+            }
+            _ => "    joint = \"C1\"              # without this line: all of them\n",
+        },
+        Targets::Body => "    body = \"platform\"         # without this line: the output body\n",
+        Targets::Point => "    point = \"platform.C1\"\n",
+        Targets::Sensor(Senses::Effort) => "    sensor = \"T_O\"\n",
+        Targets::Sensor(_) => "    sensor = \"q_O\"\n",
     };
     let names = kind.variants.first().copied().unwrap_or_default();
     for parameter in names.iter().filter_map(|name| kind.parameter(name)) {
@@ -156,31 +163,90 @@ fn number(value: f64) -> String {
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
-fn joint_rule(joints: Joints) -> &'static str {
-    match joints {
-        Joints::None => "none: it acts on the whole machine",
-        Joints::Prismatic => "one prismatic joint, such as \"P1\"",
-        Joints::PrismaticOrAll => {
-            "one prismatic joint, such as \"P1\", or all of them when none is named"
+fn rule(targets: Targets) -> &'static str {
+    match targets {
+        Targets::Machine => "none: it acts on the whole machine",
+        Targets::Joint(joints) => match joints {
+            Joints::Prismatic => {
+                "a prismatic joint, such as \"P1\", or a list of some with a common cause"
+            }
+            Joints::DrivenPrismatic => {
+                "a prismatic joint with a drive, such as \"P1\", or a list of some with a common cause"
+            }
+            Joints::Driven => {
+                "a joint with a drive, such as \"P1\", or a list of some with a common cause"
+            }
+            Joints::Revolute | Joints::Bearing => {
+                "a revolute joint, such as \"A1\" or \"C1\", or a list of some with a common cause"
+            }
+            Joints::DrivenRevolute => {
+                "a revolute joint with a drive, such as \"O\" of a four-bar, or a list of some with a common \
+                 cause"
+            }
+            Joints::Anchor => {
+                "a revolute joint whose bearing is on the base, such as \"A1\", or a list of some with a \
+                 common cause"
+            }
+            Joints::Any => {
+                "a joint, prismatic or revolute, such as \"P1\" or \"A1\", or a list of some with a common \
+                 cause"
+            }
+        },
+        Targets::JointOrAll(joints) => match joints {
+            Joints::Prismatic | Joints::DrivenPrismatic => {
+                "a prismatic joint with a drive, such as \"P1\", or a list of some; all of them when none is \
+                 named"
+            }
+            Joints::Driven => {
+                "a joint with a drive, such as \"P1\", or a list of some; all of them when none is named"
+            }
+            _ => {
+                "a revolute joint, such as \"A1\" or \"C1\", or a list of some; all of them when none is named"
+            }
+        },
+        Targets::Body => {
+            "a moving body, such as \"platform\"; the output body, whose motion is the machine's result, when \
+             none is named"
         }
-        Joints::Anchor => "one revolute joint whose bearing is on the base, such as \"A1\"",
-        Joints::Revolute => "one revolute joint, such as \"A1\" or \"C1\"",
-        Joints::RevoluteOrAll => {
-            "one revolute joint, such as \"A1\" or \"C1\", or all of them when none is named"
+        Targets::Point => {
+            "a named point of a body or of the ground, such as \"rocker.B\" or \"ground.S\""
         }
+        Targets::Sensor(senses) => match senses {
+            Senses::Any => {
+                "the column of a sensor, or a list of some that share a clock; commands are not measured"
+            }
+            Senses::Coordinate => "the column of a sensor of a joint's position",
+            Senses::Angle => "the column of a sensor of a revolute joint's position",
+            Senses::Effort => "the column of a sensor of a drive's force or torque",
+        },
+        Targets::Tracker => "none: it acts on every sensor of x, y or angle",
     }
 }
 
 /// An effect for programs.
 fn described(kind: &Kind) -> Value {
-    let (joints, required) = match kind.joints {
-        Joints::None => ("none", false),
-        Joints::Prismatic => ("prismatic", true),
-        Joints::PrismaticOrAll => ("prismatic", false),
-        Joints::Anchor => ("anchor", true),
-        Joints::Revolute => ("revolute", true),
-        Joints::RevoluteOrAll => ("revolute", false),
+    let joints = match kind.targets.joints() {
+        None => "none",
+        Some(Joints::Prismatic | Joints::DrivenPrismatic) => "prismatic",
+        Some(Joints::Driven) => "driven",
+        Some(Joints::Revolute | Joints::Bearing) => "revolute",
+        Some(Joints::DrivenRevolute) => "driven-revolute",
+        Some(Joints::Anchor) => "anchor",
+        Some(Joints::Any) => "any",
     };
+    let target = match kind.targets {
+        Targets::Machine => "machine",
+        Targets::Tracker => "tracker",
+        of_one => of_one.key().unwrap_or_default(),
+    };
+    let sensors = match kind.targets {
+        Targets::Sensor(Senses::Any) => Some("any"),
+        Targets::Sensor(Senses::Coordinate) => Some("position"),
+        Targets::Sensor(Senses::Angle) => Some("angle"),
+        Targets::Sensor(Senses::Effort) => Some("force"),
+        _ => None,
+    };
+    let required = kind.targets.required();
     let parameters = kind.parameters.iter().map(|p| {
         json!({
             "name": p.name, "unit": p.unit, "bounds": p.bounds, "default": p.default, "about": p.about,
@@ -192,8 +258,11 @@ fn described(kind: &Kind) -> Value {
         "equation": kind.equation,
         "source": kind.source,
         "trace": kind.trace,
+        "target": target,
+        "target_required": required,
         "joints": joints,
-        "joint_required": required,
+        "joint_required": required && kind.targets.joints().is_some(),
+        "sensors": sensors,
         "parameters": parameters.collect::<Vec<_>>(),
     })
 }

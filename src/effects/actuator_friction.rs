@@ -1,7 +1,7 @@
 //! Friction between rod and cylinder.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub(super) const KIND: Kind = Kind {
     source: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083-1138; tanh as a \
              smooth sign",
     trace: "the force of one actuator: with the direction and the speed of its own motion",
-    joints: Joints::Prismatic,
+    targets: Targets::Joint(Joints::Prismatic),
     parameters: &[
         coulomb("coulomb_N", "Coulomb friction F_c in both directions", Some(0.0)),
         viscous("viscous_Ns_m", "viscous friction F_v in both directions", Some(0.0)),

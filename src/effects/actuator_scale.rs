@@ -1,7 +1,7 @@
 //! An encoder with a wrong scale.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Mechanism, ReadingError};
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "true length = read length + relative (read length - 0.32 m); encoder and servo see the read length",
     source: "definition",
     trace: "measured pose against measured lengths: with the length itself",
-    joints: Joints::Prismatic,
+    targets: Targets::Joint(Joints::DrivenPrismatic),
     parameters: &[Parameter {
         name: "relative",
         unit: "",
@@ -42,7 +42,7 @@ impl ReadingError for Scale {
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    for index in setting.slide_drives(mechanism)? {
+    for index in setting.drives(mechanism)? {
         let relative = setting.number("relative");
         mechanism.actuators[index].reading_errors.push(Arc::new(Scale { relative }));
     }

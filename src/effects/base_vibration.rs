@@ -1,7 +1,7 @@
 //! A base that shakes.
 
 use super::kind::{Range, Scan, defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
@@ -24,7 +24,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "the base accelerates with a sin(2 pi f t + phase): force -m a sin(...) on every body",
     source: "inertial force in an accelerated frame",
     trace: "actuator forces: one frequency, on the legs as on the platform, in proportion to mass",
-    joints: Joints::None,
+    targets: Targets::Machine,
     parameters: &[
         component("ax_m_s2", "amplitude along x"),
         component("ay_m_s2", "amplitude along y"),

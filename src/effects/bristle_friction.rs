@@ -1,7 +1,7 @@
 //! Dry friction in a pivot that holds: before it slides it gives way like bristles.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Memory, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub(super) const KIND: Kind = Kind {
              its fading: Olsson et al., European J. of Control 4 (1998) 176-195",
     trace: "free swings: the amplitude falls by the same angle each time, and the arm comes to rest; the \
             smallest swings are a little fast",
-    joints: Joints::RevoluteOrAll,
+    targets: Targets::JointOrAll(Joints::Revolute),
     parameters: &[
         Parameter::size("coulomb_Nm", "N m", "dry friction torque T_c", 1e3, 1e-4),
         Parameter {

@@ -1,7 +1,7 @@
 //! Commands that reach the drives late.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Command, Commands, Mechanism};
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "the drives follow q_cmd(t - delay); the sensors are not late",
     source: "definition",
     trace: "measured forces against the servo's own law: with the commanded speed",
-    joints: Joints::None,
+    targets: Targets::Machine,
     parameters: &[Parameter::size("delay_s", "s", "delay", 0.5, 1e-5)],
     variants: &[&["delay_s"]],
     neutral: defaults,

@@ -1,7 +1,7 @@
 //! Hits that lose more or less than declared.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Bearing, Mechanism};
 
 pub(super) const KIND: Kind = Kind {
@@ -10,7 +10,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "damping of the contact law = declared damping (1 + relative)",
     source: "definition",
     trace: "rattle: how fast it dies, how hard the hits are; nothing where a joint's load keeps it shut",
-    joints: Joints::RevoluteOrAll,
+    targets: Targets::JointOrAll(Joints::Bearing),
     parameters: &[Parameter {
         name: "relative",
         unit: "",

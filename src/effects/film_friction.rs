@@ -1,7 +1,7 @@
 //! Friction between rod and cylinder that builds up with speed.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "force on the rod -F sign(v) (1 - exp(-|v|/v_f)), v the rod's speed: viscous F/v_f near rest",
     source: "a smooth curve from nothing to F; measured on the drive of the EMPS recordings (freeplay study emps)",
     trace: "the force of one actuator: less than its dry friction says where its motion is slow",
-    joints: Joints::Prismatic,
+    targets: Targets::Joint(Joints::Prismatic),
     parameters: &[
         Parameter::size("force_N", "N", "force F at speed", 1e4, 0.05),
         Parameter {

@@ -1,7 +1,7 @@
 //! Gravity other than declared: a table out of level.
 
 use super::kind::linear;
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::Mechanism;
 use nalgebra::Vector2;
 
@@ -15,7 +15,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "force m g on every body",
     source: "Newton",
     trace: "actuator forces: constant directions, changing with the pose only",
-    joints: Joints::None,
+    targets: Targets::Machine,
     parameters: &[
         component("gx_m_s2", "along x; where not given, as declared"),
         component("gy_m_s2", "along y; where not given, as declared"),

@@ -1,7 +1,7 @@
 //! A joint with another clearance than declared.
 
 use super::kind::linear;
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Bearing, Mechanism};
 
 pub(super) const KIND: Kind = Kind {
@@ -10,7 +10,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "journal radius = bearing radius - clearance_m; the bearing keeps its radius",
     source: "geometry",
     trace: "measured pose against measured lengths: the change of clearance, in the direction of the joint's force",
-    joints: Joints::Revolute,
+    targets: Targets::Joint(Joints::Bearing),
     parameters: &[Parameter {
         name: "clearance_m",
         unit: "m",
@@ -21,7 +21,7 @@ pub(super) const KIND: Kind = Kind {
     }],
     variants: &[&["clearance_m"]],
     neutral: |mechanism, setting| {
-        let joint = mechanism.revolutes.iter().find(|j| Some(&j.name) == setting.joint.as_ref());
+        let joint = mechanism.revolutes.iter().find(|j| setting.joint() == Some(j.name.as_str()));
         vec![match joint.map(|joint| &joint.bearing) {
             Some(Bearing::Clearance(clearance)) => clearance.radial(),
             Some(Bearing::Native { bearing_radius, journal_radius, .. }) => {

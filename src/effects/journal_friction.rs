@@ -1,7 +1,7 @@
 //! Dry friction between journal and bearing.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::contact::CoulombFriction;
 use crate::mechanism::{Bearing, Mechanism};
 
@@ -15,7 +15,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "mu F_N tanh(v_t/v_s) at the contact point, against the sliding v_t, on both bodies",
     source: "Coulomb; tanh as a smooth sign",
     trace: "with load: torques that follow the directions in which the joints turn; without: quieter rattle",
-    joints: Joints::RevoluteOrAll,
+    targets: Targets::JointOrAll(Joints::Bearing),
     parameters: &[Parameter::size(
         "mu",
         "",

@@ -1,7 +1,7 @@
 //! What is said of an effect once, whatever machine it acts on.
 
-use super::{Setting, Wrong};
-use crate::mechanism::Mechanism;
+use super::{Setting, Target, Wrong};
+use crate::mechanism::{Bearing, JointIndex, Mechanism, Reads, Sensor};
 
 /// One number of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,21 +35,112 @@ impl Parameter {
     }
 }
 
-/// Which joints an effect can be given.
+/// What an effect acts on: a property of its kind. [`Kind::targets_of`] lists the targets that a machine has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Targets {
+    /// The whole machine.
+    Machine,
+    /// One joint, or several with a common cause (key `joint`).
+    Joint(Joints),
+    /// The same, or all of them where none is named.
+    JointOrAll(Joints),
+    /// One moving body (key `body`); the output body where none is named.
+    Body,
+    /// One named point of a body or of the ground (key `point`).
+    Point,
+    /// One sensor, or several with a common cause (key `sensor`: columns).
+    Sensor(Senses),
+    /// All sensors of x, y and angle together.
+    Tracker,
+}
+
+/// Joints that an effect can be given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Joints {
-    /// None: it acts on the whole machine.
-    None,
-    /// One prismatic joint.
+    /// Prismatic ones.
     Prismatic,
-    /// One prismatic joint, or all of them when none is named.
-    PrismaticOrAll,
-    /// One revolute joint whose ring is on the ground.
-    Anchor,
-    /// One revolute joint.
+    /// Prismatic ones with a drive.
+    DrivenPrismatic,
+    /// All with a drive.
+    Driven,
+    /// Revolute ones.
     Revolute,
-    /// One revolute joint, or all of them when none is named.
-    RevoluteOrAll,
+    /// Revolute ones with a drive.
+    DrivenRevolute,
+    /// Revolute ones, for what lies between ring and journal: ideal joints are left as they are.
+    Bearing,
+    /// Revolute ones whose ring is on the ground.
+    Anchor,
+    /// All of them.
+    Any,
+}
+
+/// Sensors that an effect can be given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Senses {
+    /// All that look at the machine; commands are no measurements.
+    Any,
+    /// Those of joints' coordinates.
+    Coordinate,
+    /// Those of revolute joints' angles.
+    Angle,
+    /// Those of drives' forces and torques.
+    Effort,
+}
+
+impl Targets {
+    /// The key that names what the effect acts on, if it takes one.
+    pub fn key(self) -> Option<&'static str> {
+        match self {
+            Targets::Machine | Targets::Tracker => None,
+            Targets::Joint(_) | Targets::JointOrAll(_) => Some("joint"),
+            Targets::Body => Some("body"),
+            Targets::Point => Some("point"),
+            Targets::Sensor(_) => Some("sensor"),
+        }
+    }
+
+    /// Whether that key must be given.
+    pub fn required(self) -> bool {
+        matches!(self, Targets::Joint(_) | Targets::Point | Targets::Sensor(_))
+    }
+
+    /// Which joints it takes, if it takes any.
+    pub fn joints(self) -> Option<Joints> {
+        match self {
+            Targets::Joint(joints) | Targets::JointOrAll(joints) => Some(joints),
+            _ => None,
+        }
+    }
+}
+
+impl Joints {
+    /// Whether a joint of `mechanism` is one of them.
+    pub fn include(self, mechanism: &Mechanism, joint: JointIndex) -> bool {
+        let driven = || mechanism.actuators.iter().any(|drive| drive.joint == joint);
+        match (self, joint) {
+            (Joints::Any, _)
+            | (Joints::Prismatic, JointIndex::Prismatic(_))
+            | (Joints::Revolute | Joints::Bearing, JointIndex::Revolute(_)) => true,
+            (Joints::Driven, _)
+            | (Joints::DrivenPrismatic, JointIndex::Prismatic(_))
+            | (Joints::DrivenRevolute, JointIndex::Revolute(_)) => driven(),
+            (Joints::Anchor, JointIndex::Revolute(i)) => mechanism.revolutes[i].ring.body.is_none(),
+            _ => false,
+        }
+    }
+}
+
+impl Senses {
+    /// Whether a sensor is one of them.
+    pub fn include(self, sensor: &Sensor) -> bool {
+        match self {
+            Senses::Any => !matches!(sensor.reads, Reads::Command(_)),
+            Senses::Coordinate => matches!(sensor.reads, Reads::Position(_)),
+            Senses::Angle => matches!(sensor.reads, Reads::Position(JointIndex::Revolute(_))),
+            Senses::Effort => matches!(sensor.reads, Reads::Effort(_)),
+        }
+    }
 }
 
 /// How a repeating effect is found: over which period or frequency, and by which phase. At each
@@ -71,6 +162,8 @@ pub enum Range {
     Peaks,
     /// Periods `1/k` for wave numbers k from the first to the second by steps of the third.
     WaveNumbers([f64; 3]),
+    /// From the first to the second by steps of the third: waves in a turn.
+    Orders([f64; 3]),
 }
 
 /// An effect by name, with everything that a user and a search need to know of it.
@@ -86,8 +179,8 @@ pub struct Kind {
     pub source: &'static str,
     /// Where its trace shows in measured data.
     pub trace: &'static str,
-    /// Which joints it can be given.
-    pub joints: Joints,
+    /// What it acts on.
+    pub targets: Targets,
     /// Its numbers.
     pub parameters: &'static [Parameter],
     /// Sets of parameters that a search leaves free together, from the simplest on; the others keep
@@ -110,24 +203,114 @@ impl Kind {
         self.parameters.iter().find(|parameter| parameter.name == name)
     }
 
+    /// Whether the effect lasts, rather than begins at an instant (`at_s`).
+    pub fn lasts(&self) -> bool {
+        self.parameter("at_s").is_none()
+    }
+
     /// Names of the joints of `mechanism` that this effect can be given one of.
     pub fn joints_of(&self, mechanism: &Mechanism) -> Vec<String> {
-        match self.joints {
-            Joints::None => Vec::new(),
-            Joints::Prismatic | Joints::PrismaticOrAll => {
-                mechanism.prismatics.iter().map(|joint| joint.name.clone()).collect()
+        let Some(joints) = self.targets.joints() else { return Vec::new() };
+        let of = mechanism.joints().filter(|(_, joint)| joints.include(mechanism, *joint));
+        of.map(|(name, _)| name.to_owned()).collect()
+    }
+
+    /// Everything on `mechanism` that the effect can act on, one at a time, then all of them at once where
+    /// it may be given none. Common causes of some of the joints are not listed; of sensors those are that
+    /// read the same quantity, for they may share an instrument. Joints without clearance are left out
+    /// where the effect would leave them as they are.
+    pub fn targets_of(&self, mechanism: &Mechanism) -> Vec<Target> {
+        let worn = |name: &String| {
+            let mut joints = mechanism.revolutes.iter();
+            let joint = joints.find(|joint| joint.name == *name);
+            joint.is_none_or(|joint| !matches!(joint.bearing, Bearing::Ideal))
+        };
+        match self.targets {
+            Targets::Machine => vec![Target::Machine],
+            Targets::Joint(joints) | Targets::JointOrAll(joints) => {
+                let mut names = self.joints_of(mechanism);
+                names.retain(|name| joints != Joints::Bearing || worn(name));
+                let all = matches!(self.targets, Targets::JointOrAll(_)) && names.len() > 1;
+                let each = names.into_iter().map(|name| Target::Joints(vec![name]));
+                each.chain(all.then_some(Target::Machine)).collect()
             }
-            Joints::Anchor => mechanism
-                .revolutes
-                .iter()
-                .filter(|joint| joint.ring.body.is_none())
-                .map(|joint| joint.name.clone())
-                .collect(),
-            Joints::Revolute | Joints::RevoluteOrAll => {
-                mechanism.revolutes.iter().map(|joint| joint.name.clone()).collect()
+            // Parts of one moving body are one target.
+            Targets::Body if mechanism.names.bodies.is_empty() => vec![Target::Machine],
+            Targets::Body => {
+                let bodies = mechanism.bodies.iter();
+                bodies.map(|body| Target::Body(body.name.clone())).collect()
+            }
+            Targets::Point => {
+                let points = mechanism.names.points.iter();
+                let used = points.filter(|(_, point)| point.holds_a_joint());
+                used.map(|(name, _)| Target::Point(name.clone())).collect()
+            }
+            Targets::Sensor(senses) => sensors_of(mechanism, senses),
+            Targets::Tracker => {
+                let tracked = mechanism.sensors.iter().any(Sensor::tracks);
+                tracked.then_some(Target::Machine).into_iter().collect()
             }
         }
     }
+
+    /// The variants that make sense on a target: where an effect has numbers for prismatic and for revolute
+    /// joints, those that fit.
+    pub fn variants_of(
+        &self,
+        mechanism: &Mechanism,
+        target: &Target,
+    ) -> Vec<&'static [&'static str]> {
+        let names = match target {
+            Target::Joints(names) => names.clone(),
+            _ => self.joints_of(mechanism),
+        };
+        let of = |prismatic: bool| {
+            let mut joints = mechanism.joints().filter(|(name, _)| names.iter().any(|n| n == name));
+            joints.any(|(_, joint)| matches!(joint, JointIndex::Prismatic(_)) == prismatic)
+        };
+        let fits = |name: &&str| {
+            let sort = self.parameter(name).and_then(Parameter::of_prismatic);
+            self.targets.joints() != Some(Joints::Driven) || sort.is_none_or(of)
+        };
+        self.variants.iter().copied().filter(|variant| variant.iter().all(fits)).collect()
+    }
+
+    /// Every variant of the effect on everything that it can act on, at its neutral values.
+    pub fn candidates(&'static self, mechanism: &Mechanism) -> Vec<Setting> {
+        let targets = self.targets_of(mechanism);
+        let each = |target: Target| {
+            let variants = self.variants_of(mechanism, &target);
+            variants.into_iter().map(move |v| Setting::neutral(self, target.clone(), v, mechanism))
+        };
+        targets.into_iter().flat_map(each).collect()
+    }
+}
+
+impl Parameter {
+    /// Whether it is a number of prismatic joints, or of revolute ones; none where it is of both.
+    fn of_prismatic(&self) -> Option<bool> {
+        let both = self.unit.is_empty() || self.unit.contains(" or ");
+        (!both).then(|| !self.unit.contains("rad") && !self.unit.contains("N m"))
+    }
+}
+
+/// Each sensor by itself, and those of one quantity together.
+fn sensors_of(mechanism: &Mechanism, senses: Senses) -> Vec<Target> {
+    let fitting: Vec<&Sensor> =
+        mechanism.sensors.iter().filter(|sensor| senses.include(sensor)).collect();
+    let columns = |of: &dyn Fn(&Sensor) -> bool| -> Vec<String> {
+        let of = fitting.iter().filter(|sensor| of(sensor));
+        of.map(|sensor| sensor.column.clone()).collect()
+    };
+    let each = columns(&|_| true).into_iter().map(|column| vec![column]);
+    let groups = [
+        columns(&|sensor| matches!(sensor.reads, Reads::Position(_))),
+        columns(&|sensor| matches!(sensor.reads, Reads::Effort(_))),
+        columns(&Sensor::tracks),
+        columns(&|sensor| matches!(sensor.reads, Reads::Acceleration(..))),
+    ];
+    let groups = groups.into_iter().filter(|group| group.len() > 1);
+    each.chain(groups).map(Target::Sensors).collect()
 }
 
 /// The neutral point of effects that vanish where all their numbers have their defaults; a number

@@ -1,7 +1,7 @@
 //! Links heavier or lighter than declared.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::Mechanism;
 
 pub(super) const KIND: Kind = Kind {
@@ -10,7 +10,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "m = declared m (1 + relative), I = declared I (1 + relative) of every body but the platform",
     source: "definition",
     trace: "actuator forces: as a payload, but with the motion of the legs; not at all in the pose",
-    joints: Joints::None,
+    targets: Targets::Machine,
     parameters: &[Parameter {
         name: "relative",
         unit: "",

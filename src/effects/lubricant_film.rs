@@ -1,7 +1,7 @@
 //! Oil in the gap between journal and bearing.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Bearing, Load, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
@@ -15,7 +15,7 @@ pub(super) const KIND: Kind = Kind {
                C = pi mu R L^3/c^3 for viscosity mu, radius R, width L, clearance c",
     source: "short bearing, full film: Ocvirk, NACA TN 2808 (1952); Booker, J. Basic Eng. 87 (1965) 537-546",
     trace: "rattle: slower and softer hits; forces of the joints with the speed of their journals",
-    joints: Joints::RevoluteOrAll,
+    targets: Targets::JointOrAll(Joints::Bearing),
     parameters: &[
         Parameter::size(
             "damping_Ns_m",

@@ -1,5 +1,6 @@
 //! Physical effects that a declared machine may lack: a payload nobody mentioned, a worn joint, a
-//! servo that lags. One file each, all of them in [`ALL`]; an effect changes a
+//! servo that lags. One file each, all of them in [`ALL`]; a [`Kind`] says what it can act on and lists
+//! its targets on a machine ([`Kind::targets_of`], [`Kind::candidates`]); an effect changes a
 //! [`Mechanism`](crate::mechanism::Mechanism) after it was built, so that whatever simulates or
 //! inverts mechanisms knows it already.
 
@@ -14,28 +15,45 @@ mod contact_damping;
 mod drag;
 mod drive_backlash;
 mod drive_compliance;
+mod encoder;
+mod encoder_eccentricity;
+mod encoder_scale;
+mod encoder_zero;
 mod film_friction;
+mod force_offset;
+mod force_scale;
 mod gravity;
+mod impulse;
+mod joint_friction;
 mod joint_wear;
 mod journal_friction;
 mod kind;
 mod leg_density;
+mod load_change;
 mod lubricant_film;
 mod out_of_round;
 mod payload;
 mod pivot_friction;
+mod point_offset;
+#[cfg(test)]
+mod rigs;
 mod screw_ripple;
+mod sensor_latency;
 mod sensor_offset;
 mod servo_gain;
 mod servo_lag;
 mod setting;
 mod stribeck_friction;
+mod target;
 mod tether;
+mod torque_ripple;
+mod tracker_frame;
 mod unbalance;
 mod unnamed;
 
-pub use kind::{Joints, Kind, Parameter, Range, Scan};
+pub use kind::{Joints, Kind, Parameter, Range, Scan, Senses, Targets};
 pub use setting::{Setting, Wrong};
+pub use target::Target;
 pub use unnamed::{DependsOn, Map, Motion, UNNAMED};
 
 /// Every effect there is, in the order in which they are listed.
@@ -68,6 +86,18 @@ pub const ALL: &[&Kind] = &[
     &pivot_friction::KIND,
     &bristle_friction::KIND,
     &air_drag::KIND,
+    &point_offset::KIND,
+    &joint_friction::KIND,
+    &torque_ripple::KIND,
+    &encoder_zero::KIND,
+    &encoder_scale::KIND,
+    &encoder_eccentricity::KIND,
+    &sensor_latency::KIND,
+    &force_scale::KIND,
+    &force_offset::KIND,
+    &tracker_frame::KIND,
+    &impulse::KIND,
+    &load_change::KIND,
 ];
 
 /// Effects of machines that a search is for which imitate a commoner one: an encoder's wrong zero looks
@@ -97,4 +127,45 @@ pub const CONTAINS: &[(&Kind, &Kind)] =
 /// The effect called `name`.
 pub fn named(name: &str) -> Option<&'static Kind> {
     ALL.iter().find(|kind| kind.name == name).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rigs::{SLIDER_CRANK, closed};
+    use super::*;
+
+    /// A search needs the catalogue alone: every target of a mechanism, every variant, values that change
+    /// nothing.
+    #[test]
+    fn every_candidate_on_a_mechanism_can_be_applied_and_is_neutral() {
+        let machine = closed(SLIDER_CRANK);
+        let mut targets = 0;
+        for setting in ALL.iter().flat_map(|kind| kind.candidates(&machine.mechanism)) {
+            targets += 1;
+            let mut mechanism = machine.mechanism.clone();
+            setting.apply(&mut mechanism).unwrap_or_else(|wrong| panic!("{setting}: {wrong:?}"));
+            mechanism.close(0.0).unwrap();
+            for (before, after) in machine.mechanism.bodies.iter().zip(&mechanism.bodies) {
+                let moved = (after.start.position - before.start.position).norm();
+                assert!(moved < 1e-9, "{setting}: {moved:e}");
+            }
+        }
+        assert!(targets > 60, "{targets}");
+        let of = |kind: &str| {
+            let targets = named(kind).unwrap().targets_of(&machine.mechanism);
+            targets.iter().map(Target::to_string).collect::<Vec<_>>().join("; ")
+        };
+        assert_eq!(of("payload"), "crank; rod; piston");
+        assert_eq!(of("torque-ripple"), "O");
+        assert_eq!(of("joint-friction"), "O; A; B; S");
+        // Its joints are ideal: nothing wears.
+        assert_eq!(of("joint-wear"), "");
+        assert_eq!(of("encoder-eccentricity"), "q_O; q_A; q_O, q_A");
+        assert_eq!(of("force-scale"), "T_O");
+        let points = "crank.A; crank.O; ground.O; ground.S; piston.P; rod.A; rod.B";
+        assert_eq!(of("point-offset"), points);
+        let groups =
+            "q_O; q_A; T_O; x_A; y_A; phi_rod; x_B; x_P; q_O, q_A; x_A, y_A, phi_rod, x_B, x_P";
+        assert_eq!(of("sensor-latency"), groups);
+    }
 }

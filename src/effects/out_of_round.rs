@@ -1,7 +1,7 @@
 //! A bearing ring that is not a circle.
 
 use super::kind::defaults;
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::contact::OutOfRound;
 use crate::mechanism::{Bearing, Mechanism};
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ pub(super) const KIND: Kind = Kind {
                the normal force acts along the gradient of the penetration",
     source: "roundness as a Fourier series, ISO 12181-1",
     trace: "measured pose against measured lengths: with the direction of the joint's force, lobes times a turn",
-    joints: Joints::Revolute,
+    targets: Targets::Joint(Joints::Bearing),
     parameters: &[
         Parameter::size(
             "amplitude_m",

@@ -1,7 +1,7 @@
 //! Friction torque in a pivot.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "torque -(T_c tanh(w/w_s) + k w) between the two bodies, w the rate at which the joint turns",
     source: "Coulomb, with tanh as a smooth sign; viscous friction",
     trace: "free swings: the amplitude falls by the same angle each time (T_c) or by the same share (k)",
-    joints: Joints::RevoluteOrAll,
+    targets: Targets::JointOrAll(Joints::Revolute),
     parameters: &[
         Parameter::size("coulomb_Nm", "N m", "dry friction torque T_c", 1e3, 1e-4),
         Parameter::size("viscous_Nms", "N m s", "viscous friction k", 1e3, 1e-5),

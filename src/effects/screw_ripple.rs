@@ -1,7 +1,7 @@
 //! A screw that is not quite even: an error, or a force, that repeats with each turn.
 
 use super::kind::{Range, Scan, defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{JointIndex, Load, Mechanism, ReadingError, Situation};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -14,7 +14,7 @@ pub(super) const KIND: Kind = Kind {
                amplitude_N sin(2 pi read/pitch + phase) on the rod",
     source: "definition",
     trace: "measured pose against measured lengths (or the actuator's force): with the length, periodic",
-    joints: Joints::PrismaticOrAll,
+    targets: Targets::JointOrAll(Joints::DrivenPrismatic),
     parameters: &[
         Parameter::size("amplitude_m", "m", "amplitude of the error of the length", 5e-3, 2e-6),
         Parameter::size("amplitude_N", "N", "amplitude of the force", 1e3, 0.05),
@@ -81,7 +81,7 @@ impl Load for Ripple {
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let [length, force, pitch, phase] =
         ["amplitude_m", "amplitude_N", "pitch_m", "phase_rad"].map(|name| setting.number(name));
-    for drive in setting.slide_drives(mechanism)? {
+    for drive in setting.drives(mechanism)? {
         let JointIndex::Prismatic(joint) = mechanism.actuators[drive].joint else { continue };
         let ripple = |amplitude| Ripple { joint, amplitude, pitch, phase };
         if length != 0.0 {

@@ -1,7 +1,7 @@
 //! An encoder with a wrong zero.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Mechanism, ReadingError};
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "true length = read length + offset; encoder and servo see the read length",
     source: "definition",
     trace: "measured pose against measured lengths: the same at all lengths and times",
-    joints: Joints::Prismatic,
+    targets: Targets::Joint(Joints::DrivenPrismatic),
     parameters: &[Parameter {
         name: "offset_m",
         unit: "m",
@@ -37,7 +37,7 @@ impl ReadingError for Offset {
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    for index in setting.slide_drives(mechanism)? {
+    for index in setting.drives(mechanism)? {
         let error = Arc::new(Offset(setting.number("offset_m")));
         mechanism.actuators[index].reading_errors.push(error);
     }

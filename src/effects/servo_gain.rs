@@ -1,7 +1,7 @@
 //! Servos whose gains are not the declared ones.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Drive, Mechanism};
 
 const fn relative(name: &'static str, about: &'static str) -> Parameter {
@@ -14,7 +14,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "k_p = declared k_p (1 + stiffness_relative), k_d = declared k_d (1 + damping_relative)",
     source: "definition",
     trace: "measured forces against the servo's own law: with the error of the length, and with its rate",
-    joints: Joints::PrismaticOrAll,
+    targets: Targets::JointOrAll(Joints::Driven),
     parameters: &[
         relative("stiffness_relative", "relative error of the stiffness k_p"),
         relative("damping_relative", "relative error of the damping k_d"),
@@ -27,7 +27,7 @@ pub(super) const KIND: Kind = Kind {
 };
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    for index in setting.slide_drives(mechanism)? {
+    for index in setting.drives(mechanism)? {
         if let Drive::Servo { stiffness, damping } = &mut mechanism.actuators[index].drive {
             *stiffness *= 1.0 + setting.number("stiffness_relative");
             *damping *= 1.0 + setting.number("damping_relative");

@@ -1,7 +1,7 @@
 //! Commands that pass a first-order filter before the servo follows them.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Command, Commands, Mechanism};
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "tau dq_f/dt = q_cmd - q_f; the servo follows q_f",
     source: "definition",
     trace: "measured forces against the servo's own law: with the commanded speed, less acceleration times tau",
-    joints: Joints::None,
+    targets: Targets::Machine,
     parameters: &[Parameter::size(
         "time_constant_s",
         "s",

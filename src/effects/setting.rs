@@ -1,8 +1,11 @@
 //! An effect with its numbers.
 
-use super::{Joints, Kind, Map, Parameter, named};
-use crate::mechanism::{Actuator, JointIndex, Mechanism};
+use super::{Kind, Map, Parameter, Target, Targets, named};
+use crate::measure::spelling::nearest;
+use crate::mechanism::{Axes, JointIndex, Mark, Mechanism};
+use nalgebra::Vector2;
 use serde::ser::{Serialize, SerializeMap, Serializer};
+use std::fmt;
 use std::sync::Arc;
 
 /// What is wrong with a [`Setting`]: the key, what it is, what would be right.
@@ -16,13 +19,13 @@ pub struct Wrong {
     pub help: String,
 }
 
-/// An effect, the joint it is given, and its numbers: one `[[effect]]` of a scenario.
+/// An effect, what it acts on, and its numbers: one `[[effect]]` of a scenario.
 #[derive(Clone, Debug)]
 pub struct Setting {
     /// Which effect.
     pub kind: &'static Kind,
-    /// The joint it is given; none where it acts on the whole machine or on all joints.
-    pub joint: Option<String>,
+    /// What it acts on.
+    pub target: Target,
     values: Vec<(&'static str, f64)>,
     /// What an effect without a name does.
     pub(super) map: Option<Arc<Map>>,
@@ -30,23 +33,56 @@ pub struct Setting {
 
 impl PartialEq for Setting {
     fn eq(&self, other: &Self) -> bool {
-        self.kind.name == other.kind.name
-            && self.joint == other.joint
-            && self.values == other.values
-            && self.map == other.map
+        self.is(other) && self.values == other.values && self.map == other.map
+    }
+}
+
+/// The effect and what it acts on, as in `joint-wear at A2`.
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.target {
+            Target::Machine => f.write_str(self.kind.name),
+            _ => write!(f, "{} at {}", self.kind.name, self.target),
+        }
     }
 }
 
 impl Setting {
     /// The effect `kind` of a joint, if it is given one, with these values of its parameters.
     pub fn new(kind: &'static Kind, joint: Option<&str>, values: &[(&'static str, f64)]) -> Self {
-        Self { kind, joint: joint.map(str::to_owned), values: values.to_vec(), map: None }
+        let joints = |joint: &str| Target::Joints(vec![joint.to_owned()]);
+        Self::on(kind, joint.map_or(Target::Machine, joints), values)
+    }
+
+    /// The effect `kind` of a target, with these values of its parameters.
+    pub fn on(kind: &'static Kind, target: Target, values: &[(&'static str, f64)]) -> Self {
+        Self { kind, target, values: values.to_vec(), map: None }
+    }
+
+    /// The effect `kind` of a target of `mechanism`, where a variant's values change nothing.
+    pub fn neutral(
+        kind: &'static Kind,
+        target: Target,
+        variant: &[&'static str],
+        mechanism: &Mechanism,
+    ) -> Self {
+        let zero: Vec<(&'static str, f64)> = variant.iter().map(|name| (*name, 0.0)).collect();
+        let setting = Self::on(kind, target, &zero);
+        setting.with(&(kind.neutral)(mechanism, &setting))
+    }
+
+    /// The joint that it is given, if it is given one alone.
+    pub fn joint(&self) -> Option<&str> {
+        match &self.target {
+            Target::Joints(names) if names.len() == 1 => Some(&names[0]),
+            _ => None,
+        }
     }
 
     /// A fitted map of forces that have no name.
     pub fn unnamed(map: Map) -> Self {
         let kind = &super::unnamed::KIND;
-        Self { kind, joint: None, values: Vec::new(), map: Some(Arc::new(map)) }
+        Self { map: Some(Arc::new(map)), ..Self::on(kind, Target::Machine, &[]) }
     }
 
     /// The map of an effect without a name.
@@ -69,27 +105,29 @@ impl Setting {
                 format!("known: {} (`freeplay effects` explains them)", names.join(", ")),
             ));
         };
-        let mut setting = Self { kind, joint: None, values: Vec::new(), map: None };
+        let mut setting = Self::on(kind, Target::Machine, &[]);
         if kind.name == super::unnamed::KIND.name {
             setting.map = Some(Arc::new(Map::from_table(table)?));
             return Ok(setting);
         }
         for (key, value) in table {
-            if key == "joint" && kind.joints != Joints::None {
-                let Some(joint) = value.as_str() else {
-                    let help = "expected the name of a joint, in quotes".to_owned();
-                    return Err(wrong(key, format!("found {value}"), help));
-                };
-                setting.joint = Some(joint.to_owned());
+            if kind.targets.key() == Some(key.as_str()) {
+                setting.target = target(kind.targets, value)
+                    .ok_or_else(|| wrong(key, format!("found {value}"), expected(kind.targets)))?;
                 continue;
             }
             let Some(parameter) = kind.parameter(key) else {
-                let known: Vec<&str> = kind.parameters.iter().map(|p| p.name).collect();
-                let joint = if kind.joints == Joints::None { "" } else { "joint, " };
+                let known = kind.parameters.iter().map(|p| p.name);
+                let known: Vec<&str> = known.chain(kind.targets.key()).collect();
                 return Err(wrong(
                     key,
                     format!("`{key}` is not a key of the effect {name}"),
-                    format!("known here: {joint}{}", known.join(", ")),
+                    match nearest(key, &known) {
+                        Some(near) => {
+                            format!("did you mean `{near}`? known here: {}", known.join(", "))
+                        }
+                        None => format!("known here: {}", known.join(", ")),
+                    },
                 ));
             };
             let number = value.as_float().or(value.as_integer().map(|i| i as f64));
@@ -103,11 +141,12 @@ impl Setting {
             }
             setting.values.push((parameter.name, number));
         }
-        let joint_needed =
-            matches!(kind.joints, Joints::Prismatic | Joints::Anchor | Joints::Revolute);
-        if joint_needed && setting.joint.is_none() {
-            let help = "write joint = \"…\": the joint that it acts on".to_owned();
-            return Err(wrong("joint", format!("is missing for the effect {name}"), help));
+        if let Some(key) = kind.targets.key()
+            && kind.targets.required()
+            && setting.target == Target::Machine
+        {
+            let help = format!("write {key} = \"…\": the {key} that it acts on");
+            return Err(wrong(key, format!("is missing for the effect {name}"), help));
         }
         Ok(setting)
     }
@@ -134,9 +173,9 @@ impl Setting {
         Self { values: self.kind.parameters.iter().filter_map(value).collect(), ..self.clone() }
     }
 
-    /// Whether this is the same effect at the same joint, whatever the values.
+    /// Whether this is the same effect of the same target, whatever the values.
     pub fn is(&self, other: &Self) -> bool {
-        self.kind.name == other.kind.name && self.joint == other.joint
+        self.kind.name == other.kind.name && self.target == other.target
     }
 
     /// The same effect with other values of the parameters that were given.
@@ -153,49 +192,154 @@ impl Setting {
         (self.kind.apply)(self, mechanism)
     }
 
-    /// Indices of the joints that the effect is given, out of `names`.
-    pub(super) fn chosen<'a>(
-        &self,
-        names: impl Iterator<Item = &'a str>,
-    ) -> Result<Vec<usize>, Wrong> {
-        let names: Vec<&str> = names.collect();
-        let Some(joint) = &self.joint else { return Ok((0..names.len()).collect()) };
-        match names.iter().position(|name| name == joint) {
-            Some(index) => Ok(vec![index]),
-            None => Err(Wrong {
-                key: "joint".to_owned(),
-                message: format!("\"{joint}\" is not a joint that {} can be given", self.kind.name),
-                help: format!("this machine has {}", names.join(", ")),
-            }),
+    /// What is wrong with a name of its target: `known` are the names of such `things` that the machine has.
+    fn stranger(&self, name: &str, things: &str, known: &[&str]) -> Wrong {
+        let all = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        let article = if things.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        Wrong {
+            key: self.target.key().unwrap_or("kind").to_owned(),
+            message: format!(
+                "\"{name}\" is not {article} {things} that {} can be given",
+                self.kind.name
+            ),
+            help: match nearest(name, known) {
+                Some(near) => format!("did you mean \"{near}\"? this machine has {all}"),
+                None => format!("this machine has {all}"),
+            },
         }
+    }
+
+    /// Indices of what the effect is given, out of `known` names; all of them where none is named.
+    fn chosen<'a>(
+        &self,
+        things: &str,
+        known: impl Iterator<Item = &'a str>,
+    ) -> Result<Vec<usize>, Wrong> {
+        let known: Vec<&str> = known.collect();
+        if self.target == Target::Machine {
+            return Ok((0..known.len()).collect());
+        }
+        let place = |name: &String| {
+            let found = known.iter().position(|known| known == name);
+            found.ok_or_else(|| self.stranger(name, things, &known))
+        };
+        self.target.names().iter().map(place).collect()
+    }
+
+    /// The joints that the effect is given.
+    pub(super) fn joints(&self, mechanism: &Mechanism) -> Result<Vec<JointIndex>, Wrong> {
+        let Some(joints) = self.kind.targets.joints() else { return Ok(Vec::new()) };
+        let taken: Vec<(&str, JointIndex)> =
+            mechanism.joints().filter(|(_, joint)| joints.include(mechanism, *joint)).collect();
+        let chosen = self.chosen("joint", taken.iter().map(|(name, _)| *name))?;
+        Ok(chosen.into_iter().map(|i| taken[i].1).collect())
     }
 
     /// Indices of the prismatic joints that the effect is given.
     pub(super) fn prismatics(&self, mechanism: &Mechanism) -> Result<Vec<usize>, Wrong> {
-        self.chosen(mechanism.prismatics.iter().map(|joint| joint.name.as_str()))
+        self.chosen("joint", mechanism.prismatics.iter().map(|joint| joint.name.as_str()))
     }
 
-    /// Indices of the drives of the prismatic joints that the effect is given.
-    pub(super) fn slide_drives(&self, mechanism: &Mechanism) -> Result<Vec<usize>, Wrong> {
-        let slides = |actuator: &Actuator| matches!(actuator.joint, JointIndex::Prismatic(_));
-        let drives = mechanism.actuators.iter().enumerate();
-        let drives: Vec<_> = drives.filter(|(_, actuator)| slides(actuator)).collect();
-        let chosen = self.chosen(drives.iter().map(|(_, actuator)| actuator.name.as_str()))?;
-        Ok(chosen.into_iter().map(|i| drives[i].0).collect())
+    /// Indices of the drives of the joints that the effect is given.
+    pub(super) fn drives(&self, mechanism: &Mechanism) -> Result<Vec<usize>, Wrong> {
+        let joints = self.joints(mechanism)?;
+        let of = |joint| mechanism.actuators.iter().position(|drive| drive.joint == joint);
+        Ok(joints.into_iter().filter_map(of).collect())
     }
 
     /// Indices of the revolute joints that the effect is given.
     pub(super) fn revolutes(&self, mechanism: &Mechanism) -> Result<Vec<usize>, Wrong> {
-        self.chosen(mechanism.revolutes.iter().map(|joint| joint.name.as_str()))
+        self.chosen("joint", mechanism.revolutes.iter().map(|joint| joint.name.as_str()))
     }
+
+    /// Indices of the sensors that the effect is given.
+    pub(super) fn sensors(&self, mechanism: &Mechanism) -> Result<Vec<usize>, Wrong> {
+        let Targets::Sensor(senses) = self.kind.targets else { return Ok(Vec::new()) };
+        let sensors = mechanism.sensors.iter().enumerate();
+        let taken: Vec<(usize, &str)> = sensors
+            .filter(|(_, sensor)| senses.include(sensor))
+            .map(|(i, sensor)| (i, sensor.column.as_str()))
+            .collect();
+        let chosen = self.chosen("sensor", taken.iter().map(|(_, column)| *column))?;
+        Ok(chosen.into_iter().map(|i| taken[i].0).collect())
+    }
+
+    /// The body that the effect is given, else the output body, and the axes that it is described in: of a
+    /// machine without names the body's own, at its reference point.
+    pub(super) fn body(&self, mechanism: &Mechanism) -> Result<(usize, Axes), Wrong> {
+        let bodies = &mechanism.names.bodies;
+        let moving = || -> Vec<&str> {
+            let moving = bodies.iter().filter(|(_, axes)| axes.origin.body.is_some());
+            moving.map(|(name, _)| name.as_str()).collect()
+        };
+        let name = match &self.target {
+            Target::Body(name) => Some(name),
+            _ => mechanism.names.output.as_ref(),
+        };
+        let named = name.and_then(|name| bodies.get(name));
+        match (named.and_then(|axes| Some((axes.origin.body?, *axes))), &self.target) {
+            (Some(found), _) => Ok(found),
+            (None, Target::Body(name)) => Err(self.stranger(name, "moving body", &moving())),
+            (None, _) => {
+                let origin = Mark { body: Some(mechanism.output), point: Vector2::zeros() };
+                Ok((mechanism.output, Axes { origin, angle: 0.0, centre: origin }))
+            }
+        }
+    }
+
+    /// The name of the point that the effect is given.
+    pub(super) fn point<'a>(&'a self, mechanism: &Mechanism) -> Result<&'a str, Wrong> {
+        let known: Vec<&str> = mechanism.names.points.keys().map(String::as_str).collect();
+        match self.target.names() {
+            [name] if known.contains(&name.as_str()) => Ok(name),
+            names => {
+                let name = names.first().map_or("", String::as_str);
+                Err(self.stranger(name, "point", &known))
+            }
+        }
+    }
+}
+
+/// The target that a key's value names, if it does.
+fn target(targets: Targets, value: &toml::Value) -> Option<Target> {
+    let one = || value.as_str().map(str::to_owned);
+    let several = || match value {
+        toml::Value::Array(names) => {
+            let names: Option<Vec<_>> =
+                names.iter().map(|n| n.as_str().map(str::to_owned)).collect();
+            names.filter(|names| !names.is_empty())
+        }
+        _ => one().map(|name| vec![name]),
+    };
+    match targets {
+        Targets::Machine | Targets::Tracker => None,
+        Targets::Joint(_) | Targets::JointOrAll(_) => several().map(Target::Joints),
+        Targets::Sensor(_) => several().map(Target::Sensors),
+        Targets::Body => one().map(Target::Body),
+        Targets::Point => one().map(Target::Point),
+    }
+}
+
+/// What such a value is.
+fn expected(targets: Targets) -> String {
+    match targets {
+        Targets::Body => "expected the name of a body, in quotes",
+        Targets::Point => "expected a point of a body or of the ground, \"body.point\"",
+        Targets::Sensor(_) => "expected the column of a sensor, in quotes, or a list of some",
+        _ => "expected the name of a joint, in quotes, or a list of some",
+    }
+    .to_owned()
 }
 
 impl Serialize for Setting {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("kind", self.kind.name)?;
-        if let Some(joint) = &self.joint {
-            map.serialize_entry("joint", joint)?;
+        if let Some(key) = self.target.key() {
+            match self.target.names() {
+                [name] => map.serialize_entry(key, name)?,
+                names => map.serialize_entry(key, names)?,
+            }
         }
         for (name, value) in &self.values {
             map.serialize_entry(name, value)?;

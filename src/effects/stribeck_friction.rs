@@ -1,7 +1,7 @@
 //! Friction between rod and cylinder that is larger near rest.
 
 use super::kind::defaults;
-use super::{Joints, Kind, Parameter, Setting, Wrong};
+use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub(super) const KIND: Kind = Kind {
     source: "Stribeck; Bo and Pavelescu, Wear 82 (1982) 277-289; Armstrong-Helouvry, Dupont, Canudas de \
              Wit, Automatica 30 (1994) 1083-1138",
     trace: "the force of one actuator: with the direction of its own motion, most where it turns round",
-    joints: Joints::Prismatic,
+    targets: Targets::Joint(Joints::Prismatic),
     parameters: &[
         Parameter::size("coulomb_N", "N", "friction F_c in motion", 1e4, 0.05),
         Parameter {

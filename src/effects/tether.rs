@@ -1,8 +1,8 @@
-//! A cable or hose that pulls at the platform.
+//! A cable or hose that pulls at a body.
 
 use super::kind::defaults;
-use super::{Joints, Kind, Parameter, Setting, Wrong};
-use crate::mechanism::{Load, Mechanism, Situation};
+use super::{Kind, Parameter, Setting, Targets, Wrong};
+use crate::mechanism::{Axes, Load, Mark, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -13,11 +13,12 @@ const fn anchor(name: &'static str, about: &'static str) -> Parameter {
 
 pub(super) const KIND: Kind = Kind {
     name: "tether",
-    summary: "a spring from a fixed anchor to the platform's centre that only pulls: a cable, a hose",
-    equation: "k max(0, |a - C| - rest length) towards the anchor a",
+    summary: "a spring that only pulls, from a fixed anchor to the centre of mass of a body (the platform, where none \
+              is named): a cable, a hose",
+    equation: "k max(0, |a - C| - rest length) towards the anchor a, C the centre of mass as declared",
     source: "Hooke",
     trace: "actuator forces: a pull that grows with the distance from one point",
-    joints: Joints::None,
+    targets: Targets::Body,
     parameters: &[
         Parameter::size("stiffness_N_m", "N/m", "stiffness k", 1e5, 0.2),
         anchor("anchor_x_m", "anchor along x"),
@@ -42,6 +43,7 @@ pub(super) const KIND: Kind = Kind {
 
 #[derive(Debug)]
 struct Tether {
+    centre: Mark,
     stiffness: f64,
     anchor: Vector2<f64>,
     rest_length: f64,
@@ -49,18 +51,20 @@ struct Tether {
 
 impl Load for Tether {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
-        let pull = self.anchor - at.mechanism.output_state(at.states).position;
+        let pull = self.anchor - at.point(self.centre).position;
         let length = pull.norm();
         if length > self.rest_length {
             let force = pull * (self.stiffness * (length - self.rest_length) / length);
-            at.push_output(force, 0.0, wrenches);
+            at.push_point(self.centre, force, 0.0, wrenches);
         }
     }
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let anchor = Vector2::new(setting.number("anchor_x_m"), setting.number("anchor_y_m"));
+    let (_, Axes { centre, .. }) = setting.body(mechanism)?;
     mechanism.loads.push(Arc::new(Tether {
+        centre,
         stiffness: setting.number("stiffness_N_m"),
         anchor,
         rest_length: setting.number("rest_length_m"),

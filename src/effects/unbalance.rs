@@ -1,19 +1,20 @@
-//! A rotor out of balance on the platform.
+//! A rotor out of balance on a body.
 
 use super::kind::{Range, Scan, defaults, linear};
-use super::{Joints, Kind, Parameter, Setting, Wrong};
-use crate::mechanism::{Load, Mechanism, Situation};
+use super::{Kind, Parameter, Setting, Targets, Wrong};
+use crate::mechanism::{Axes, Load, Mark, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 pub(super) const KIND: Kind = Kind {
     name: "unbalance",
-    summary: "a rotor out of balance at the platform's centre: a spindle, a fan",
-    equation: "force m r w^2 [cos, sin](w t + phase) at the platform's centre, w = 2 pi f",
+    summary: "a rotor out of balance at the centre of mass of a body (the platform, where none is named): a spindle, \
+              a fan",
+    equation: "force m r w^2 [cos, sin](w t + phase) at the centre of mass as declared, w = 2 pi f",
     source: "centrifugal force",
-    trace: "actuator forces: one frequency, a force on the platform that goes round",
-    joints: Joints::None,
+    trace: "actuator forces: one frequency, a force on the body that goes round",
+    targets: Targets::Body,
     parameters: &[
         Parameter::size(
             "mass_radius_kg_m",
@@ -48,6 +49,7 @@ pub(super) const KIND: Kind = Kind {
 
 #[derive(Debug)]
 struct Rotor {
+    centre: Mark,
     mass_radius: f64,
     omega: f64,
     phase: f64,
@@ -57,12 +59,14 @@ impl Load for Rotor {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let (sin, cos) = (self.omega * at.t + self.phase).sin_cos();
         let force = Vector2::new(cos, sin) * (self.mass_radius * self.omega * self.omega);
-        at.push_output(force, 0.0, wrenches);
+        at.push_point(self.centre, force, 0.0, wrenches);
     }
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let (_, Axes { centre, .. }) = setting.body(mechanism)?;
     mechanism.loads.push(Arc::new(Rotor {
+        centre,
         mass_radius: setting.number("mass_radius_kg_m"),
         omega: TAU * setting.number("frequency_Hz"),
         phase: setting.number("phase_rad"),

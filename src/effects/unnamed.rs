@@ -1,7 +1,7 @@
 //! What a model lacks and nobody can name: forces as a fitted map of what they depend on.
 
 use super::kind::{defaults, linear};
-use super::{Joints, Kind, Setting, Wrong};
+use super::{Kind, Setting, Targets, Wrong};
 use crate::mechanism::{Command, Load, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub(super) const KIND: Kind = Kind {
                at the platform's centre, or the force on each rod",
     source: "none: a description, not an explanation",
     trace: "wherever it was found",
-    joints: Joints::None,
+    targets: Targets::Machine,
     parameters: &[],
     // Nothing to search for by this way: it is what remains when the search is over.
     variants: &[],

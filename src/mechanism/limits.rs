@@ -58,6 +58,24 @@ impl Mechanism {
         }
     }
 
+    /// What 1 N or 1 N·m in a joint accelerates it by, in m/s² or rad/s².
+    pub fn lightness(&self, joint: JointIndex) -> f64 {
+        match joint {
+            JointIndex::Prismatic(i) => 1.0 / self.stroke_mass(i),
+            JointIndex::Revolute(i) => self.joint_lightness(i),
+        }
+    }
+
+    /// The longest step in s that a damper of at most `damping` N·s/m or N·m·s/rad in a joint stands, or
+    /// `None` where there is none; a prescribed coordinate does not heed it.
+    pub fn joint_damper_step(&self, joint: JointIndex, damping: f64) -> Option<f64> {
+        let prescribed =
+            |actuator: &Actuator| actuator.joint == joint && actuator.drive == Drive::Prescribed;
+        let rate = damping * self.lightness(joint);
+        let felt = !self.actuators.iter().any(prescribed) && rate > 0.0;
+        felt.then(|| 1.0 / rate)
+    }
+
     /// Mass in kg that the two bodies of prismatic joint `index` oppose to a force along it.
     pub fn stroke_mass(&self, index: usize) -> f64 {
         let joint = &self.prismatics[index];

@@ -1,8 +1,9 @@
 //! What acts on a mechanism beside gravity, contacts and drives.
 
-use super::{BodyState, JointIndex, Mechanism};
+use super::{BodyState, JointIndex, Mark, Mechanism, angle_near};
 use nalgebra::{Vector2, Vector3};
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// A mechanism at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,12 @@ pub trait Load: Debug + Send + Sync {
         self.add(at, wrenches);
     }
 
+    /// The same load with one of its two ends moved by a vector (m) in the axes of the body there, if it has
+    /// ends.
+    fn with_end_moved(&self, _end: usize, _by: Vector2<f64>) -> Option<Arc<dyn Load>> {
+        None
+    }
+
     /// The longest step in s (fixed step, explicit) that the load stands on this mechanism, or `None`
     /// where it sets no limit: a damper c on a mass m needs `h c/m ≤ 1` (unstable from 2).
     fn longest_step(&self, _mechanism: &Mechanism) -> Option<f64> {
@@ -54,6 +61,44 @@ pub trait Load: Debug + Send + Sync {
 }
 
 impl Situation<'_> {
+    /// Position and velocity of a point.
+    pub fn point(self, mark: Mark) -> BodyState {
+        let body = mark.body.map_or_else(BodyState::ground, |body| self.states[body]);
+        body.at(mark.attachment(self.mechanism).point)
+    }
+
+    /// Adds a force (N) at a point, and a torque (N·m) on its body.
+    pub fn push_point(
+        self,
+        mark: Mark,
+        force: Vector2<f64>,
+        torque: f64,
+        wrenches: &mut [Vector3<f64>],
+    ) {
+        let Some(body) = mark.body else { return };
+        let arm = self.states[body].rotation * mark.attachment(self.mechanism).point;
+        wrenches[body] += Vector3::new(force.x, force.y, torque + arm.perp(&force));
+    }
+
+    /// Coordinate (m or rad) and rate of a joint, of angles the one nearest to `near`.
+    pub fn coordinate(self, joint: JointIndex, near: f64) -> [f64; 2] {
+        match joint {
+            JointIndex::Prismatic(i) => self.length(i),
+            JointIndex::Revolute(i) => [
+                angle_near(self.mechanism.revolutes[i].rotation(self.states), near),
+                self.turning(i),
+            ],
+        }
+    }
+
+    /// Adds an effort (N or N·m) on the slider or the journal's body of a joint, against the other body.
+    pub fn push_joint(self, joint: JointIndex, effort: f64, wrenches: &mut [Vector3<f64>]) {
+        match joint {
+            JointIndex::Prismatic(i) => self.push_rod(i, effort, wrenches),
+            JointIndex::Revolute(i) => self.push_turn(i, effort, wrenches),
+        }
+    }
+
     /// Adds a force (N) at the reference point of the output body, and a torque (N·m).
     pub fn push_output(self, force: Vector2<f64>, torque: f64, wrenches: &mut [Vector3<f64>]) {
         let output = self.mechanism.output;

@@ -24,6 +24,7 @@ mod legs;
 mod limits;
 mod load;
 mod loops;
+mod names;
 mod reading;
 mod rows;
 mod sensor;
@@ -44,8 +45,9 @@ pub use joint::{Bearing, JointIndex, NativeContacts, Prismatic, Revolute, angle_
 pub use legs::TelescopicLegs;
 pub use load::{Load, Memory, Situation};
 pub use loops::Loop;
+pub use names::{Axes, NamedPoint, Names, Use};
 pub use reading::ReadingError;
-pub use sensor::{Reads, Sensor};
+pub use sensor::{Reads, Sensor, TrackerFrame};
 pub use spring::{JointSpring, Mark, PointSpring, Stop};
 pub use tracker::{Imposed, Stuck, Tracker};
 pub use transmission::Transmission;
@@ -77,6 +79,8 @@ pub struct Mechanism {
     pub native: NativeContacts,
     /// What measures it.
     pub sensors: Vec<Sensor>,
+    /// How its bodies and points are called.
+    pub names: Names,
     /// Index of the body whose reference point and angle are the mechanism's output.
     pub output: usize,
 }
@@ -96,6 +100,7 @@ impl Mechanism {
             loads: Vec::new(),
             native: NativeContacts::default(),
             sensors: Vec::new(),
+            names: Names::default(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! What measures a mechanism: what each sensor reads, in which column of a recording, and how exactly.
 
 use super::{BodyState, Evaluation, JointIndex, Mark, Mechanism};
-use nalgebra::Vector2;
+use nalgebra::{UnitComplex, Vector2};
 
 /// What a sensor reads.
 #[derive(Clone, Copy, Debug)]
@@ -22,8 +22,26 @@ pub enum Reads {
     Acceleration(Mark, Vector2<f64>),
 }
 
-/// A sensor. What it shows at time t is `scale · y(t − delay) + offset`, y being what it reads, through a
-/// low-pass, with white noise, rounded.
+/// How the frame of a tracker lies in the world: it shows the point p at `shift + scale · R(rotation) p`, and
+/// angles with the rotation added.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrackerFrame {
+    /// What it shows for the world's origin, in m.
+    pub shift: Vector2<f64>,
+    /// In rad.
+    pub rotation: f64,
+    /// What it multiplies lengths by.
+    pub scale: f64,
+}
+
+impl TrackerFrame {
+    fn of_point(&self, point: Vector2<f64>) -> Vector2<f64> {
+        self.shift + UnitComplex::new(self.rotation) * point * self.scale
+    }
+}
+
+/// A sensor. What it shows at time t is `scale · y(t − delay) + offset`, through a low-pass, with white noise,
+/// rounded; y is what [`reading`](Self::reading) says.
 #[derive(Clone, Debug)]
 pub struct Sensor {
     /// Its column in recordings.
@@ -42,6 +60,12 @@ pub struct Sensor {
     pub scale: f64,
     /// What it adds, in its unit.
     pub offset: f64,
+    /// Waves in what it reads of a joint: amplitude (the joint's unit) and phase (rad) of
+    /// `amplitude · sin(q + phase)`, as of an encoder's disk beside its axis. Errors of an encoder that a
+    /// drive follows are not among them: the drive sees those, too ([`ReadingError`](super::ReadingError)).
+    pub waves: Vec<[f64; 2]>,
+    /// The frames, one in the other, in which it shows x, y or an angle.
+    pub frames: Vec<TrackerFrame>,
 }
 
 impl Sensor {
@@ -61,7 +85,20 @@ impl Sensor {
         }
     }
 
-    /// What it reads at an instant, before its own errors; `angles` are those of the bodies with whole turns
+    /// Whether it is a tracker's: of x, y or an angle.
+    pub fn tracks(&self) -> bool {
+        matches!(self.reads, Reads::X(_) | Reads::Y(_) | Reads::Angle(..))
+    }
+
+    /// The point that it looks at, if it looks at one.
+    pub(super) fn mark_mut(&mut self) -> Option<&mut Mark> {
+        match &mut self.reads {
+            Reads::X(mark) | Reads::Y(mark) | Reads::Acceleration(mark, _) => Some(mark),
+            _ => None,
+        }
+    }
+
+    /// What it reads at an instant, waves and frames included, before scale, delay and offset; `angles` are those of the bodies with whole turns
     /// counted (rad).
     pub fn reading(
         &self,
@@ -70,26 +107,35 @@ impl Sensor {
         angles: &[f64],
         now: &Evaluation,
     ) -> f64 {
-        let place = |mark: Mark| mark.attachment(mechanism).frame(states).centre;
+        let place = |mark: Mark| {
+            let centre = mark.attachment(mechanism).frame(states).centre;
+            self.frames.iter().fold(centre, |point, frame| frame.of_point(point))
+        };
+        let waves = |q: f64| {
+            self.waves.iter().fold(q, |sum, [amplitude, phase]| sum + amplitude * (q + phase).sin())
+        };
         match self.reads {
             Reads::Command(drive) => now.commands[drive].position,
             Reads::Position(joint) => {
                 let driven = mechanism.actuators.iter().position(|drive| drive.joint == joint);
                 match (driven, joint) {
-                    (Some(drive), _) => mechanism.encoder(drive, now),
-                    (None, JointIndex::Prismatic(i)) => now.lengths[i],
+                    (Some(drive), _) => waves(mechanism.encoder(drive, now)),
+                    (None, JointIndex::Prismatic(i)) => waves(now.lengths[i]),
                     (None, JointIndex::Revolute(i)) => {
                         let [ring, journal] = mechanism.revolutes[i]
                             .bodies()
                             .map(|body| body.map_or(0.0, |body| angles[body]));
-                        journal - ring
+                        waves(journal - ring)
                     }
                 }
             }
             Reads::Effort(drive) => now.drive_forces[drive],
             Reads::X(mark) => place(mark).x,
             Reads::Y(mark) => place(mark).y,
-            Reads::Angle(body, angle) => body.map_or(0.0, |body| angles[body]) + angle,
+            Reads::Angle(body, angle) => {
+                let turned: f64 = self.frames.iter().map(|frame| frame.rotation).sum();
+                body.map_or(0.0, |body| angles[body]) + angle + turned
+            }
             Reads::Acceleration(mark, direction) => {
                 let point = mark.attachment(mechanism);
                 point.body.map_or(0.0, |body| {

@@ -1,8 +1,9 @@
 //! Springs with dampers between points and in joints, and the end stops of joints.
 
-use super::{Attachment, JointIndex, Load, Mechanism, Situation, angle_near};
+use super::{Attachment, JointIndex, Load, Mechanism, Situation};
 use crate::contact::{ForceLaw, HertzStep};
 use nalgebra::{Vector2, Vector3};
+use std::sync::Arc;
 
 /// A point of a body that stays where it is in the body, whatever mass is put on it: from the body's
 /// reference point in its own axes, in m; of the ground in the world.
@@ -59,6 +60,12 @@ impl Load for PointSpring {
         }
     }
 
+    fn with_end_moved(&self, end: usize, by: Vector2<f64>) -> Option<Arc<dyn Load>> {
+        let mut moved = *self;
+        moved.ends[end].point += by;
+        Some(Arc::new(moved))
+    }
+
     fn longest_step(&self, mechanism: &Mechanism) -> Option<f64> {
         let lightness: f64 =
             self.ends.iter().map(|end| mechanism.point_lightness(&end.attachment(mechanism))).sum();
@@ -98,34 +105,10 @@ pub struct Stop {
     pub law: HertzStep,
 }
 
-/// Coordinate and rate of a joint in m or rad, of angles the one nearest to `near`.
-fn coordinate(at: Situation, joint: JointIndex, near: f64) -> [f64; 2] {
-    match joint {
-        JointIndex::Prismatic(i) => at.length(i),
-        JointIndex::Revolute(i) => {
-            [angle_near(at.mechanism.revolutes[i].rotation(at.states), near), at.turning(i)]
-        }
-    }
-}
-
-fn push(at: Situation, joint: JointIndex, effort: f64, wrenches: &mut [Vector3<f64>]) {
-    match joint {
-        JointIndex::Prismatic(i) => at.push_rod(i, effort, wrenches),
-        JointIndex::Revolute(i) => at.push_turn(i, effort, wrenches),
-    }
-}
-
 fn start(at: Situation, joint: JointIndex) -> f64 {
     match joint {
         JointIndex::Prismatic(_) => 0.0,
         JointIndex::Revolute(i) => at.mechanism.start_angle(i),
-    }
-}
-
-fn lightness(mechanism: &Mechanism, joint: JointIndex) -> f64 {
-    match joint {
-        JointIndex::Prismatic(i) => 1.0 / mechanism.stroke_mass(i),
-        JointIndex::Revolute(i) => mechanism.joint_lightness(i),
     }
 }
 
@@ -185,17 +168,17 @@ macro_rules! joint_load {
             }
 
             fn remember(&self, at: Situation, memory: [f64; 2]) -> [f64; 2] {
-                [coordinate(at, self.joint(), memory[0])[0], 0.0]
+                [at.coordinate(self.joint(), memory[0])[0], 0.0]
             }
 
             fn add_after(&self, at: Situation, memory: [f64; 2], wrenches: &mut [Vector3<f64>]) {
-                let [position, rate] = coordinate(at, self.joint(), memory[0]);
-                push(at, self.joint(), self.effort(position, rate), wrenches);
+                let [position, rate] = at.coordinate(self.joint(), memory[0]);
+                at.push_joint(self.joint(), self.effort(position, rate), wrenches);
             }
 
             fn longest_step(&self, mechanism: &Mechanism) -> Option<f64> {
                 let [stiffness, damping] = self.slopes();
-                explicit_limit(lightness(mechanism, self.joint()), stiffness, damping)
+                explicit_limit(mechanism.lightness(self.joint()), stiffness, damping)
             }
         }
     };

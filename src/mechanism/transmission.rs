@@ -1,4 +1,5 @@
-//! What stands between the drive of a prismatic joint and its rod, where that is not rigid.
+//! What stands between the drive of a joint and its rod or link, where that is not rigid. Units are those of a
+//! prismatic joint; of a revolute one angles in rad stand for lengths, torques in N·m for forces.
 
 /// A link without mass between a drive and its rod: play, then give. Both are zero in a rigid one.
 ///

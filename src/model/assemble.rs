@@ -68,7 +68,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     let Assembled { built, motion, known_until, followed, ranges } =
         put_together(scenario, motion)?;
     let Followed { legs, table_error } = followed;
-    let Built { mut mechanism, layout, laws, .. } = built;
+    let Built { mut mechanism, mut layout, laws, .. } = built;
     let simulation = &scenario.simulation;
     let schedule = Schedule { duration: simulation.duration, interval: simulation.output_interval };
     let control = scenario.step_control();
@@ -80,6 +80,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
     add_effects(scenario, &mut mechanism)?;
     if !scenario.effects.is_empty() {
         close(scenario, &mut mechanism)?;
+        layout.follow(&mechanism.names);
     }
     Ok(Machine {
         mechanism,
@@ -115,6 +116,38 @@ pub fn driven(
     mechanism.epoch = epoch;
     add_effects(scenario, &mut mechanism)?;
     Ok(mechanism)
+}
+
+/// The bodies, joints, drives and sensors of a scenario, not yet put together.
+///
+/// # Errors
+/// A template whose machine cannot be put together.
+pub fn parts_of(scenario: &Scenario) -> Result<Mechanism, Problem> {
+    let scenario = &expand(scenario)?;
+    Ok(build(scenario, described(scenario)).mechanism)
+}
+
+/// The machine of a scenario with its effects, under the commands and with the joints held that `begin` gives
+/// it, closed at its epoch.
+///
+/// # Errors
+/// Joints that do not close there, an effect that the machine cannot take.
+pub fn recorded(
+    scenario: &Scenario,
+    begin: &mut dyn FnMut(&mut Mechanism),
+) -> Result<Mechanism, Problem> {
+    let scenario = &expand(scenario)?;
+    let described = described(scenario);
+    let mut built = build(scenario, described);
+    fixed_parts(scenario, described, &built.parts)?;
+    let mechanism = &mut built.mechanism;
+    begin(mechanism);
+    mechanism.assemble(0.0).map_err(|open| super::path::open(scenario, mechanism, open))?;
+    add_effects(scenario, mechanism)?;
+    if !scenario.effects.is_empty() {
+        close(scenario, mechanism)?;
+    }
+    Ok(built.mechanism)
 }
 
 /// A machine of one joint with its effects, somewhere on its way: a drive stage at a length (m) with a

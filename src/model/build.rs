@@ -1,11 +1,12 @@
 //! A description as a [`Mechanism`]: bodies, joints, drives, springs and stops, not yet put together.
 
 use super::layout::{Layout, Written};
+use super::names::{mark, names};
 use super::parts::Parts;
 use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
 use crate::mechanism::{
-    Actuator, Attachment, Bearing, Cascade, Drive, JointIndex, JointSpring, Mark, Mechanism,
-    PointSpring, Prismatic, Reads, Revolute, Sensor, Stop,
+    Actuator, Attachment, Bearing, Cascade, Drive, JointIndex, JointSpring, Mechanism, PointSpring,
+    Prismatic, Reads, Revolute, Sensor, Stop,
 };
 use crate::scenario::{
     self, Described, DriveMode, Joint, JointDrive, Law, Motion, Quantity, Sampled, Scenario,
@@ -67,8 +68,7 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
             Joint::Fixed(_) => {}
         }
     }
-    let mut layout =
-        Layout { outputs: Vec::new(), drives: Vec::new(), marks: Vec::new(), joints: declared };
+    let mut layout = Layout { joints: declared, ..Layout::default() };
     for drive in &described.drives {
         add_drive(&mut mechanism, drive.joint(), joint_drive(drive));
         layout.drives.push(drive.label());
@@ -84,10 +84,17 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
     }
     outputs(scenario, described, &parts, &mut mechanism, &mut layout);
     for body in &described.bodies {
-        let points = body.points.keys().map(|point| format!("{}.{point}", body.name));
-        layout.marks.extend(points.map(|point| mark(&mechanism, &parts, &point)));
+        for point in body.points.keys() {
+            let name = format!("{}.{point}", body.name);
+            layout.marks.push(mark(&mechanism, &parts, &name));
+            layout.mark_names.push(name);
+        }
     }
+    let mut springs = Vec::new();
     for spring in &described.springs {
+        if let Some(points) = &spring.between {
+            springs.push((mechanism.loads.len(), points.clone()));
+        }
         add_spring(&mut mechanism, &parts, spring);
     }
     for stop in &described.stops {
@@ -103,6 +110,7 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
     }
     mechanism.sensors =
         described.sensors.iter().filter_map(|s| sensor(&mechanism, &parts, s)).collect();
+    mechanism.names = names(scenario, described, &parts, &mechanism, &springs);
     Built { mechanism, parts, layout, laws }
 }
 
@@ -265,13 +273,6 @@ pub(super) fn located(parts: &Parts, name: &str) -> (Attachment, f64) {
     (Attachment { body: part.body, point: part.origin }, part.angle)
 }
 
-/// A point `body.point` that stays where it is in its body.
-fn mark(mechanism: &Mechanism, parts: &Parts, name: &str) -> Mark {
-    let Attachment { body, point } = parts.point(name).0;
-    let reference = body.map_or_else(Vector2::zeros, |i: usize| mechanism.bodies[i].reference);
-    Mark { body, point: point - reference }
-}
-
 /// A sensor without errors of its own; none of what the machine has not.
 fn sensor(mechanism: &Mechanism, parts: &Parts, sensor: &scenario::Sensor) -> Option<Sensor> {
     let drive = || mechanism.actuators.iter().position(|drive| drive.name == sensor.of);
@@ -300,6 +301,8 @@ fn sensor(mechanism: &Mechanism, parts: &Parts, sensor: &scenario::Sensor) -> Op
         delay: 0.0,
         scale: 1.0,
         offset: 0.0,
+        waves: Vec::new(),
+        frames: Vec::new(),
     })
 }
 

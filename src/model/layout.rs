@@ -1,10 +1,10 @@
 //! Which columns a machine's results have.
 
-use crate::mechanism::{BodyState, Mark};
+use crate::mechanism::{BodyState, Mark, Names};
 use nalgebra::{Vector2, Vector3};
 
 /// The columns of a machine's time series.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Layout {
     /// Bodies and points whose motion is written.
     pub outputs: Vec<Written>,
@@ -12,6 +12,8 @@ pub struct Layout {
     pub drives: Vec<String>,
     /// Named points of bodies, for pictures.
     pub marks: Vec<Mark>,
+    /// What they are called.
+    pub(super) mark_names: Vec<String>,
     /// Indices of the revolute joints that have columns: those with a declared clearance.
     pub joints: Vec<usize>,
 }
@@ -29,6 +31,22 @@ pub struct Written {
     pub point: Vector2<f64>,
     /// Angle (rad) of the written axes in the body's own.
     pub angle: f64,
+}
+
+impl Layout {
+    /// Puts what is written where the named points are, which an effect may have moved.
+    pub(super) fn follow(&mut self, names: &Names) {
+        for output in &mut self.outputs {
+            if let Some(point) = names.points.get(&output.name) {
+                output.point = point.mark.point;
+            }
+        }
+        for (mark, name) in self.marks.iter_mut().zip(&self.mark_names) {
+            if let Some(point) = names.points.get(name) {
+                *mark = point.mark;
+            }
+        }
+    }
 }
 
 impl Written {

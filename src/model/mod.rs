@@ -11,6 +11,7 @@ mod drives;
 mod ideal;
 mod layout;
 mod motion;
+mod names;
 mod native;
 mod parts;
 mod path;

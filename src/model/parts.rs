@@ -90,7 +90,7 @@ impl Parts {
 
 impl Part {
     /// A point of the described axes (m) in those of the moving body, from its centre of mass.
-    fn place(&self, local: Vector2<f64>) -> Vector2<f64> {
+    pub fn place(&self, local: Vector2<f64>) -> Vector2<f64> {
         self.origin + turned(self.angle, local)
     }
 }

@@ -3,6 +3,7 @@
 #[path = "../cli_common/mod.rs"]
 mod cli_common;
 mod commands;
+mod effects;
 mod files;
 mod long;
 mod mixed;

@@ -1,25 +1,19 @@
 //! What holds for every effect: neutral values change nothing, and what is said of it fits together.
 
 use super::common::{LIVELY, assembled, history};
-use freeplay::effects::{ALL, Joints, Setting};
+use freeplay::effects::{ALL, Setting};
 use freeplay::mechanism::Mechanism;
 
 /// Every effect, each of its variants, on each sort of joint that it can be given.
 fn settings(mechanism: &Mechanism) -> Vec<Setting> {
     let mut settings = Vec::new();
     for &kind in ALL {
-        let mut joints: Vec<Option<String>> =
-            kind.joints_of(mechanism).into_iter().map(Some).collect();
-        if matches!(kind.joints, Joints::None | Joints::PrismaticOrAll | Joints::RevoluteOrAll) {
-            joints.push(None);
-        }
-        for joint in [joints.first(), joints.last()].into_iter().flatten() {
-            for variant in kind.variants {
-                let named: Vec<_> = variant.iter().map(|name| (*name, 0.0)).collect();
-                let empty = Setting::new(kind, joint.as_deref(), &named);
-                let neutral = (kind.neutral)(mechanism, &empty);
-                assert_eq!(neutral.len(), variant.len(), "{}", kind.name);
-                settings.push(empty.with(&neutral));
+        let targets = kind.targets_of(mechanism);
+        for target in [targets.first(), targets.last()].into_iter().flatten() {
+            for variant in kind.variants_of(mechanism, target) {
+                let setting = Setting::neutral(kind, target.clone(), variant, mechanism);
+                assert_eq!(setting.values().count(), variant.len(), "{}", kind.name);
+                settings.push(setting);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::cli_common::Place;
 use super::common::{INSTANTS, LIVELY, effect, ideal};
-use freeplay::effects::{ALL, Kind};
+use freeplay::effects::{ALL, Joints, Kind, Targets};
 
 /// The `[[effect]]` that `freeplay effects NAME` shows.
 fn example(place: &Place, kind: &Kind) -> String {
@@ -14,8 +14,13 @@ fn example(place: &Place, kind: &Kind) -> String {
 #[test]
 fn every_example_runs_and_repeats() {
     let place = Place::new();
-    // What has no name is written by a calibration, not by hand.
-    for kind in ALL.iter().filter(|kind| kind.name != "unnamed") {
+    // What has no name is written by a calibration, not by hand; sensors and drives of revolute joints are
+    // those of other machines (`cli_mechanism`).
+    let of_this_machine = |kind: &Kind| {
+        let driven = kind.targets.joints() != Some(Joints::DrivenRevolute);
+        driven && !matches!(kind.targets, Targets::Sensor(_) | Targets::Tracker)
+    };
+    for kind in ALL.iter().filter(|kind| kind.name != "unnamed" && of_this_machine(kind)) {
         for mode in ["prescribed", "servo"] {
             let text =
                 format!("{LIVELY}drive = {{ mode = \"{mode}\" }}\n{}", example(&place, kind));

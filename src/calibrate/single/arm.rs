@@ -160,7 +160,7 @@ fn report(
     };
     EffectReport {
         kind: setting.kind.name,
-        joint: setting.joint.clone(),
+        joint: setting.joint().map(str::to_owned),
         depends_on: None,
         params: setting.values().map(param).collect(),
         evidence: evidence.to_owned(),

@@ -33,8 +33,8 @@ pub(super) fn expand(scenario: &Scenario, machine: &ThreeRpr) -> Result<Scenario
     let anchors = triangle(machine.base_side);
     let platform = Platform::new(scenario, machine.platform_side)?;
     let mut bodies = Vec::new();
-    for leg in 0..3 {
-        let ([ax, ay], [cx, cy]) = (anchors[leg], platform.corner(leg));
+    for (leg, &[ax, ay]) in anchors.iter().enumerate() {
+        let [cx, cy] = platform.corner(leg);
         let angle = (cy - ay).atan2(cx - ax);
         let (s, c) = angle.sin_cos();
         let half = [0.5 * cylinder[0], 0.5 * rod[0]];

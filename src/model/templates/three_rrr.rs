@@ -9,10 +9,10 @@ pub(super) fn expand(scenario: &Scenario, m: &ThreeRrr) -> Result<Scenario, Prob
     let anchors = triangle(m.base_side);
     let platform = Platform::new(scenario, m.platform_side)?;
     let mut bodies = Vec::new();
-    for leg in 0..3 {
+    for (leg, &anchor) in anchors.iter().enumerate() {
         let c = platform.corner(leg);
-        let a = corner(anchors[leg], c, [m.crank, m.rod], 1.0).ok_or_else(|| {
-            let far = (c[0] - anchors[leg][0]).hypot(c[1] - anchors[leg][1]);
+        let a = corner(anchor, c, [m.crank, m.rod], 1.0).ok_or_else(|| {
+            let far = (c[0] - anchor[0]).hypot(c[1] - anchor[1]);
             let message =
                 format!("begins {far:.4} m from anchor O{}, where its leg does not reach", leg + 1);
             let help =
@@ -24,7 +24,7 @@ pub(super) fn expand(scenario: &Scenario, m: &ThreeRrr) -> Result<Scenario, Prob
             let name = format!("{name} {}", leg + 1);
             bar(&name, m.linear_density * length, length, ends, start)
         };
-        bodies.push(link("crank", m.crank, ["O", "A"], anchors[leg], a));
+        bodies.push(link("crank", m.crank, ["O", "A"], anchor, a));
         bodies.push(link("rod", m.rod, ["A", "C"], a, c));
     }
     let inertia = m.platform_mass * m.platform_side.powi(2) / 12.0;

@@ -39,7 +39,7 @@ pub(super) fn found(
             params.map(|(name, value)| (name, Fitted::new(value, std_of(name, model, &std))));
         EffectReport {
             kind: setting.kind.name,
-            joint: setting.joint.clone(),
+            joint: setting.joint().map(str::to_owned),
             depends_on: None,
             params: params.collect(),
             evidence,
