@@ -30,6 +30,7 @@ pub mod result;
 pub mod screen;
 pub mod search;
 pub mod self_test;
+pub mod sensed;
 pub mod settle;
 pub mod single;
 pub mod spectrum;

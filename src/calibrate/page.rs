@@ -155,7 +155,7 @@ fn equations(report: &Report) -> Vec<String> {
 
 /// What an effect is and what it rests on, in whole sentences.
 fn why(effect: &EffectReport) -> String {
-    let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
+    let joint = effect.on.words();
     // Evidence of an effect with a name says what it does, that of a map names what does it.
     let evidence = match (effect.evidence.as_str(), effect.depends_on) {
         ("", _) => String::new(),
@@ -357,7 +357,7 @@ mod tests {
     fn evidence_of_either_kind_makes_a_sentence() {
         let effect = |depends_on, evidence: &str| EffectReport {
             kind: "kind",
-            joint: None,
+            on: super::super::report::ActsOn::machine(),
             depends_on,
             params: Vec::new(),
             evidence: evidence.to_owned(),

@@ -7,7 +7,7 @@ use super::model::Case;
 use super::outcome::{MET, Outcome, Verdict};
 use super::rattle::Rattle;
 use super::way::name;
-use crate::effects::{DependsOn, Setting};
+use crate::effects::{DependsOn, Setting, Target};
 use crate::engine::StepControl;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -49,13 +49,52 @@ pub struct Report {
     pub files: Vec<String>,
 }
 
+/// What an effect acts on, by the key that names it in a file; `joint` is null where it is no joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ActsOn(Target);
+
+impl ActsOn {
+    /// The whole machine.
+    pub fn machine() -> Self {
+        Self(Target::Machine)
+    }
+
+    /// Of an effect.
+    pub fn of(effect: &Setting) -> Self {
+        Self(effect.target.clone())
+    }
+
+    /// In words, as in " at A1"; empty of the whole machine.
+    pub fn words(&self) -> String {
+        match self.0 {
+            Target::Machine => String::new(),
+            _ => format!(" at {}", self.0),
+        }
+    }
+}
+
+impl Serialize for ActsOn {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = Map::from_iter([("joint".to_owned(), Value::Null)]);
+        if let Some(key) = self.0.key() {
+            let names = match self.0.names() {
+                [name] => json!(name),
+                names => json!(names),
+            };
+            map.insert(key.to_owned(), names);
+        }
+        map.serialize(serializer)
+    }
+}
+
 /// An effect that was found.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffectReport {
     /// Its name.
     pub kind: &'static str,
-    /// The joint it acts at, if it acts at one.
-    pub joint: Option<String>,
+    /// What it acts on.
+    #[serde(flatten)]
+    pub on: ActsOn,
     /// What it is a function of, if it has no name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depends_on: Option<DependsOn>,
@@ -102,8 +141,9 @@ fn by_name<S: Serializer>(params: &[(&str, Fitted)], serializer: S) -> Result<S:
 pub struct Ranked {
     /// Its name.
     pub kind: &'static str,
-    /// The joint.
-    pub joint: Option<String>,
+    /// What it acts on.
+    #[serde(flatten)]
+    pub on: ActsOn,
     /// Share of the residual's weighted variance above the floor that it removes on data not used for
     /// its fit, 0…1; of what the rounds before left.
     pub validation_score: f64,
@@ -122,7 +162,7 @@ pub struct Ranked {
 #[derive(Clone, Debug, Serialize)]
 pub struct ResidualReport {
     /// Which: servo, closure, dynamics.
-    pub residual: &'static str,
+    pub residual: String,
     /// Mean square in units of noise under the declared model: 1 for noise.
     pub mean_square_before: f64,
     /// Under the named effects.
@@ -221,7 +261,7 @@ fn effect_report(outcome: &Outcome, effect: &Setting) -> EffectReport {
     });
     EffectReport {
         kind: effect.kind.name,
-        joint: effect.joint().map(str::to_owned),
+        on: ActsOn::of(effect),
         depends_on: effect.map().map(|map| map.depends_on),
         params: params.collect(),
         evidence: evidence(outcome, effect),
@@ -244,7 +284,7 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
             let added = round.added.as_ref().is_some_and(|added| added.is(&scored.effect));
             all.push(Ranked {
                 kind: scored.effect.kind.name,
-                joint: scored.effect.joint().map(str::to_owned),
+                on: ActsOn::of(&scored.effect),
                 validation_score: scored.share,
                 kept: in_model && added,
                 round: i + 1,
@@ -256,7 +296,7 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     if let Some(described) = &outcome.described {
         all.push(Ranked {
             kind: described.effect.kind.name,
-            joint: None,
+            on: ActsOn::of(&described.effect),
             validation_score: described.share,
             kept: true,
             round: outcome.rounds.len() + 1,
@@ -269,7 +309,7 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
 
 fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
     let join = |(before, after): (&Left, &Left)| ResidualReport {
-        residual: before.residual,
+        residual: before.residual.to_owned(),
         mean_square_before: before.mean_square,
         mean_square_after: after.mean_square,
         noise_up_to: after.limit,

@@ -9,7 +9,7 @@ use crate::calibrate::outcome::MOST;
 use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare};
 use crate::calibrate::single::{self, Adjusted, Machine};
-use crate::calibrate::{quantity, recording};
+use crate::calibrate::{quantity, recording, sensed};
 use crate::effects::{ALL, named};
 use crate::measure::spelling::nearest;
 use crate::report::{known_to, number};
@@ -88,12 +88,42 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(machine) = Machine::of(&rig) {
         return single_joint(arguments, rig, machine, &paths, &without);
     }
+    if rig.mechanism.described().is_some() {
+        return any_mechanism(arguments, rig, &paths, &without);
+    }
     let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
     let name = rig.name.clone();
     let prepared = prepare(rig, recordings)?;
     let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
     let calibrated = Spinner::during_at_most(MOST, arguments.print.quiet, |tell| {
         into_folder(prepared, &without, folder, tell)
+    })?;
+    let report = &calibrated.report;
+    let shown = Shown {
+        scenario_name: &report.provenance.scenario_name,
+        summary: &report.summary,
+        effects: &report.effects,
+        parameters: &[],
+        errors: &report.errors,
+        simulated: format!("{} simulations in ", report.simulations),
+        seconds: report.wall_s,
+        folder: &calibrated.folder,
+    };
+    Ok(arguments.print.result(&calibrated.json, || text(&shown))?)
+}
+
+/// The same of a mechanism that its file describes, whose recordings have a column for each [[sensor]].
+fn any_mechanism(
+    arguments: &Arguments,
+    rig: Scenario,
+    paths: &[&Path],
+    without: &[&'static str],
+) -> Result<(), Failure> {
+    let name = rig.name.clone();
+    let prepared = sensed::prepare(rig, paths)?;
+    let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
+    let calibrated = Spinner::during(arguments.print.quiet, |tell| {
+        sensed::into_folder(prepared, without, folder, tell)
     })?;
     let report = &calibrated.report;
     let shown = Shown {
@@ -183,7 +213,7 @@ fn text(report: &Shown) -> String {
     let mut text = format!("{}: {}\n", report.scenario_name, report.summary);
     // Writing to a string cannot fail, here and below.
     for effect in report.effects {
-        let joint = effect.joint.as_ref().map_or(String::new(), |joint| format!(" at {joint}"));
+        let joint = effect.on.words();
         let _ = writeln!(text, "\n  {}{joint}", effect.kind);
         for (name, fitted) in &effect.params {
             let [low, high] = fitted.ci95.map(|end| known_to(end, fitted.std));

@@ -322,7 +322,7 @@ fn load(
 }
 
 /// The step of a time column, or the first row that breaks it and how.
-fn constant_step(times: &[f64]) -> Result<f64, (usize, String)> {
+pub(crate) fn constant_step(times: &[f64]) -> Result<f64, (usize, String)> {
     let [first, .., last] = times else {
         return Err((0, format!("the log has {} row(s)", times.len())));
     };

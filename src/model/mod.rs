@@ -18,7 +18,9 @@ mod path;
 mod shape;
 mod templates;
 
-pub use assemble::{Machine, assemble, close, driven, radial_clearance, started};
+pub use assemble::{
+    Machine, assemble, close, driven, parts_of, radial_clearance, recorded, started,
+};
 pub use build::drive;
 pub use ideal::{Ideal, IdealInstant};
 pub use layout::{Layout, Written};

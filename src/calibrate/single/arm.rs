@@ -2,7 +2,7 @@
 //! fitted to.
 
 use super::calibration::{Adjusted, Found, Ranked};
-use crate::calibrate::report::{EffectReport, Fitted};
+use crate::calibrate::report::{ActsOn, EffectReport, Fitted};
 use crate::calibrate::result::CalibrateError;
 use crate::effects::Setting;
 use crate::identify::Recorded;
@@ -160,7 +160,7 @@ fn report(
     };
     EffectReport {
         kind: setting.kind.name,
-        joint: setting.joint().map(str::to_owned),
+        on: ActsOn::of(setting),
         depends_on: None,
         params: setting.values().map(param).collect(),
         evidence: evidence.to_owned(),

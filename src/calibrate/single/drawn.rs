@@ -61,7 +61,7 @@ pub(super) fn calibration(r: &Report, machine: Machine, pictures: &[Picture]) ->
     for effect in &r.effects {
         for (name, fitted) in &effect.params {
             let [low, high] = fitted.ci95.map(|end| known_to(end, fitted.std));
-            let joint = effect.joint.as_ref().map_or(String::new(), |j| format!(" at {j}"));
+            let joint = effect.on.words();
             rows.push(vec![
                 format!("{}{joint}", effect.kind),
                 (*name).to_owned(),

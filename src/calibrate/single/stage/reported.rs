@@ -1,7 +1,7 @@
 //! What a search on a drive stage comes to: effects and numbers of the rig with their intervals.
 
 use super::judge::{BLOCK, CERTAIN, Judge};
-use crate::calibrate::report::{EffectReport, Fitted};
+use crate::calibrate::report::{ActsOn, EffectReport, Fitted};
 use crate::calibrate::single::calibration::{Adjusted, Found, Ranked};
 use crate::identify;
 use crate::identify::inverse::{Model, Term};
@@ -39,7 +39,7 @@ pub(super) fn found(
             params.map(|(name, value)| (name, Fitted::new(value, std_of(name, model, &std))));
         EffectReport {
             kind: setting.kind.name,
-            joint: setting.joint().map(str::to_owned),
+            on: ActsOn::of(&setting),
             depends_on: None,
             params: params.collect(),
             evidence,

@@ -1,0 +1,199 @@
+//! What a right model leaves of its own residuals: their mean, which is the look's own fault, and their spread,
+//! which is noise.
+
+use super::estimate::View;
+use super::problem::{Problem, Segment, Stopped};
+use super::simulate::with_noise;
+use super::start::machine;
+use super::thresholds::{DRAWS, MISSED};
+use crate::calibrate::spectrum::Noise;
+use crate::effects::Setting;
+use crate::scenario::Problem as Wrong;
+use nalgebra::DVector;
+use rayon::prelude::*;
+use std::f64::consts::SQRT_2;
+use std::sync::Arc;
+
+/// Bias and noise on one segment.
+#[derive(Clone, Debug)]
+struct Part {
+    segment: Segment,
+    bias: Vec<Vec<f64>>,
+    noise: Noise,
+    /// What the noise has more of, as a logarithm of its determinant, for a recorded swing that is not the
+    /// model's.
+    lost: f64,
+}
+
+/// What simulations of a model say of its own residuals.
+#[derive(Clone, Debug)]
+pub struct Baseline {
+    parts: Arc<Vec<Part>>,
+    /// Whether replicas differ by more than sensors see.
+    pub rattles: bool,
+}
+
+type Coefficients = Vec<Vec<f64>>;
+
+impl Baseline {
+    /// That of a model with these effects.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn of(
+        problem: &Problem,
+        effects: &[Setting],
+        segments: &[Segment],
+    ) -> Result<Self, Stopped> {
+        let simulated = problem.simulated(effects, problem.replicas)?;
+        let still = problem.still(effects)?;
+        let sensors = &problem.declared.sensors;
+        let singular = || {
+            let message = "makes a machine that cannot move as it was measured".to_owned();
+            Stopped::Model(problem.rig.problem("effect", message, "other values"))
+        };
+        let mut parts = Vec::new();
+        for segment in segments {
+            let run = &problem.runs[segment.run];
+            let machine = machine(&problem.rig, effects, &run.recording)?;
+            let look = |recording: &super::recording::Recording| {
+                let view = View::new(recording, sensors.len());
+                problem.coefficients(&view, &machine, segment)
+            };
+            let clean = &simulated[segment.run];
+            let seen: Vec<Coefficients> =
+                clean.par_iter().map(look).collect::<Option<_>>().ok_or_else(singular)?;
+            let bias = mean(&seen);
+            // A replica stands for the data, the mean of the others for the bias.
+            let draws: Vec<Coefficients> = (0..DRAWS)
+                .into_par_iter()
+                .map(|draw| {
+                    let own = draw % clean.len();
+                    let noisy = look(&with_noise(&clean[own], sensors, draw as u64 + 1000))?;
+                    Some(difference(&noisy, &without(&bias, &seen[own], seen.len())))
+                })
+                .collect::<Option<_>>()
+                .ok_or_else(singular)?;
+            // Where loads keep joints in contact, bodies swing in their play, and nobody knows how they
+            // were let go: what the same machine does without a swing tells where that shows.
+            let still = still[segment.run].as_ref().map(look).unwrap_or(None);
+            let swing = |share: f64| -> Coefficients {
+                let nothing = || bias.iter().map(|c| vec![0.0; c.len()]).collect();
+                let size = |still: &Coefficients| {
+                    let mut swing = difference(&bias, still);
+                    swing.iter_mut().flatten().for_each(|value| *value *= share);
+                    swing
+                };
+                still.as_ref().map_or_else(nothing, size)
+            };
+            let data = problem.coefficients(&run.view, &machine, segment).ok_or_else(singular)?;
+            let left = difference(&data, &bias);
+            let [near, lost] =
+                [MISSED, SQRT_2].map(|share| Noise::from_draws(&draws, &swing(share)));
+            let likelihood = |noise: &Noise| noise.whiten(&left).norm_squared() + noise.swinging();
+            let price = lost.swinging() - near.swinging();
+            let part =
+                |noise, lost| Part { segment: segment.clone(), bias: bias.clone(), noise, lost };
+            parts.push(match likelihood(&lost) < likelihood(&near) {
+                true => part(lost, price),
+                false => part(near, 0.0),
+            });
+        }
+        Ok(Self { parts: Arc::new(parts), rattles: problem.replicas > 1 })
+    }
+
+    /// Residuals of the data under a model in units of noise, of all these segments in a row; none where the
+    /// machine cannot move as it was measured.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take.
+    pub fn white(
+        &self,
+        problem: &Problem,
+        effects: &[Setting],
+        segments: &[Segment],
+    ) -> Result<Option<DVector<f64>>, Wrong> {
+        let mut all = Vec::new();
+        for part in self.parts.iter().filter(|part| segments.contains(&part.segment)) {
+            let run = &problem.runs[part.segment.run];
+            let machine = machine(&problem.rig, effects, &run.recording)?;
+            let seen = problem.coefficients(&run.view, &machine, &part.segment);
+            let Some(seen) = seen else { return Ok(None) };
+            all.extend(part.noise.whiten(&difference(&seen, &part.bias)).iter());
+        }
+        Ok(Some(DVector::from_vec(all)))
+    }
+
+    /// The same with what a simulation of that very model says of it in place of the bias.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn simulated_white(
+        &self,
+        problem: &Problem,
+        effects: &[Setting],
+        segments: &[Segment],
+    ) -> Result<Option<DVector<f64>>, Stopped> {
+        let mut all = Vec::new();
+        let sensors = problem.declared.sensors.len();
+        for part in self.parts.iter().filter(|part| segments.contains(&part.segment)) {
+            let run = &problem.runs[part.segment.run];
+            let machine = machine(&problem.rig, effects, &run.recording)?;
+            let simulated = problem.one(effects, part.segment.run, part.segment.rows.end)?;
+            let pair = [&run.view, &View::new(&simulated, sensors)]
+                .map(|view| problem.coefficients(view, &machine, &part.segment));
+            let [Some(seen), Some(own)] = pair else { return Ok(None) };
+            all.extend(part.noise.whiten(&difference(&seen, &own)).iter());
+        }
+        Ok(Some(DVector::from_vec(all)))
+    }
+
+    /// What a model pays on segments for having lost the recorded swing: its noise is larger.
+    pub fn lost(&self, segments: &[Segment]) -> f64 {
+        let parts = self.parts.iter().filter(|part| segments.contains(&part.segment));
+        parts.map(|part| part.lost).sum()
+    }
+
+    /// Logarithm of the determinant of the noise on segments: what a model pays for being noisy.
+    pub fn log_determinant(&self, segments: &[Segment]) -> f64 {
+        let parts = self.parts.iter().filter(|part| segments.contains(&part.segment));
+        parts.map(|part| part.noise.log_determinant()).sum()
+    }
+
+    /// Residual (by its place among the names) and frequency in Hz of each number of [`white`](Self::white).
+    pub fn places(&self, problem: &Problem, segments: &[Segment]) -> Vec<(usize, f64)> {
+        let parts = self.parts.iter().filter(|part| segments.contains(&part.segment));
+        parts
+            .flat_map(|part| {
+                let interval = problem.runs[part.segment.run].view.interval;
+                let step = 0.5 / (part.segment.rows.len() as f64 * interval);
+                part.noise.places().into_iter().map(move |(c, k)| (c, k as f64 * step))
+            })
+            .collect()
+    }
+}
+
+fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Coefficients {
+    a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
+}
+
+fn mean(draws: &[Coefficients]) -> Coefficients {
+    let mut sum = draws[0].clone();
+    for draw in &draws[1..] {
+        for (sum, value) in sum.iter_mut().flatten().zip(draw.iter().flatten()) {
+            *sum += value;
+        }
+    }
+    sum.iter_mut().flatten().for_each(|value| *value /= draws.len() as f64);
+    sum
+}
+
+/// The mean of `count` draws with one of them left out, if that leaves any.
+fn without(mean: &[Vec<f64>], own: &[Vec<f64>], count: usize) -> Coefficients {
+    if count < 2 {
+        return own.to_vec();
+    }
+    let part = 1.0 / count as f64;
+    let left = |(all, own): (&f64, &f64)| (all - part * own) / (1.0 - part);
+    mean.iter().zip(own).map(|(all, own)| all.iter().zip(own).map(left).collect()).collect()
+}

@@ -1,0 +1,146 @@
+//! Where to start looking for the values of a candidate.
+
+use super::fit::{Fit, Target};
+use super::residual::Kind as Residual;
+use crate::effects::{ALL, CONTAINS, Kind, Range, Scan, Setting};
+use crate::mechanism::Mechanism;
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
+
+/// Every effect on everything that it can act on, at its neutral values; none of the kinds `without`, nor what
+/// contains them.
+pub fn candidates(mechanism: &Mechanism, without: &[&str]) -> Vec<Setting> {
+    let ruled_out = |kind: &Kind| {
+        let inner = CONTAINS.iter().filter(|(outer, _)| outer.name == kind.name);
+        inner.map(|(_, inner)| *inner).chain([kind]).any(|kind| without.contains(&kind.name))
+    };
+    let kinds = ALL.iter().filter(|kind| !ruled_out(kind));
+    kinds.flat_map(|kind| kind.candidates(mechanism)).collect()
+}
+
+/// Starts of a candidate that are fitted.
+const KEPT: usize = 2;
+
+/// Frequencies that are looked at closely.
+const TRIED: usize = 12;
+
+/// A candidate beside the effects of a model, at its most promising values.
+pub fn starts(target: &Target, model: &Fit, candidate: &Setting) -> Vec<Setting> {
+    let change = |values: &[f64]| {
+        let with = [model.effects.as_slice(), &[candidate.with(values)]].concat();
+        target.look(&with).map(|there| there.white - &model.white)
+    };
+    if let Some(scan) = candidate.kind.scan {
+        return scanned(target, model, candidate, scan, &change);
+    }
+    let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
+    let listed = (candidate.kind.starts)(&names);
+    if listed.is_empty() {
+        return vec![candidate.clone()];
+    }
+    // The first value is an amplitude: the best multiple of each start, by least squares.
+    let scored = listed.into_iter().filter_map(|mut start| {
+        let column = change(&start)?;
+        let multiple = -column.dot(&model.white) / column.norm_squared();
+        if multiple <= 0.0 || !multiple.is_finite() {
+            return Some((0.0, candidate.with(&start)));
+        }
+        start[0] *= multiple;
+        Some((multiple.powi(2) * column.norm_squared(), candidate.with(&start)))
+    });
+    best(scored.collect())
+}
+
+/// The starts that promise most.
+fn best(mut scored: Vec<(f64, Setting)>) -> Vec<Setting> {
+    scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+    scored.truncate(KEPT);
+    scored.into_iter().map(|(_, start)| start).collect()
+}
+
+/// Starts of a repeating effect: the frequencies that explain most by least squares.
+fn scanned(
+    target: &Target,
+    model: &Fit,
+    candidate: &Setting,
+    scan: Scan,
+    change: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
+) -> Vec<Setting> {
+    let names: Vec<&'static str> = candidate.values().map(|(name, _)| name).collect();
+    let place = |name: &str| names.iter().position(|n| *n == name);
+    let (Some(over), Some(phase)) = (place(scan.over), place(scan.phase)) else {
+        return Vec::new();
+    };
+    let amplitudes: Vec<usize> = (0..names.len()).filter(|&i| i != over && i != phase).collect();
+    let tried = match scan.range {
+        Range::Peaks => peaks(target, model),
+        Range::Orders([from, to, step]) => {
+            let count = ((to - from) / step) as usize;
+            (0..=count).map(|i| from + i as f64 * step).collect()
+        }
+        Range::WaveNumbers([from, to, step]) => {
+            let count = ((to - from) / step) as usize;
+            let stride = count.div_ceil(TRIED).max(1);
+            (0..=count).step_by(stride).map(|i| 1.0 / (from + i as f64 * step)).collect()
+        }
+    };
+    let scored = tried.into_iter().filter_map(|value| {
+        let mut columns = Vec::new();
+        for &amplitude in &amplitudes {
+            for angle in [0.0, FRAC_PI_2] {
+                let mut values = vec![0.0; names.len()];
+                values[over] = value;
+                values[phase] = angle;
+                values[amplitude] = step(candidate.kind, names[amplitude]);
+                columns.push(change(&values)?);
+            }
+        }
+        let matrix = DMatrix::from_columns(&columns);
+        let normal = matrix.transpose() * &matrix;
+        let rhs = -(matrix.transpose() * &model.white);
+        let weights = normal.cholesky()?.solve(&rhs);
+        // One phase for all amplitudes: that of the largest; the others by their part in it.
+        let pairs = weights.as_slice().chunks(2);
+        let largest = pairs.clone().max_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])))?;
+        let angle = largest[1].atan2(largest[0]);
+        let mut values = vec![0.0; names.len()];
+        values[over] = value;
+        values[phase] = angle;
+        for (&amplitude, pair) in amplitudes.iter().zip(pairs) {
+            let along = pair[0] * angle.cos() + pair[1] * angle.sin();
+            values[amplitude] = along * step(candidate.kind, names[amplitude]);
+        }
+        Some((weights.dot(&rhs), candidate.with(&values)))
+    });
+    best(scored.collect())
+}
+
+fn step(kind: &Kind, name: &str) -> f64 {
+    kind.parameter(name).map_or(1.0, |parameter| parameter.step)
+}
+
+/// Frequencies in Hz at which residuals of forces and accelerations stand out most.
+fn peaks(target: &Target, model: &Fit) -> Vec<f64> {
+    /// So much (Hz) lies between two of them.
+    const APART: f64 = 0.5;
+    let Some(names) = target.problem.names() else { return Vec::new() };
+    let mut power: BTreeMap<u64, f64> = BTreeMap::new();
+    let places = target.baseline.places(target.problem, target.on);
+    for (value, (residual, frequency)) in model.white.iter().zip(places) {
+        let forces = matches!(names[residual].kind, Residual::Dynamics | Residual::Acceleration);
+        if forces && frequency > APART {
+            *power.entry((frequency * 1e6) as u64).or_default() += value * value;
+        }
+    }
+    let mut power: Vec<(f64, f64)> =
+        power.into_iter().map(|(frequency, power)| (frequency as f64 * 1e-6, power)).collect();
+    power.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut kept: Vec<f64> = Vec::new();
+    for (place, _) in power {
+        if kept.len() < TRIED && kept.iter().all(|k| (k - place).abs() > APART) {
+            kept.push(place);
+        }
+    }
+    kept
+}

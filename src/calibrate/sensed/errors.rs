@@ -1,0 +1,82 @@
+//! By how much predictions miss a recording, column by column, and by how much any would.
+
+use super::problem::Problem;
+use super::recording::Recording;
+use super::simulate::with_noise;
+use super::thresholds::{DRAWS, TRIM};
+use crate::calibrate::errors::ChannelError;
+use crate::measure::filter::ZeroPhase;
+use crate::mechanism::Reads;
+
+/// Corner in Hz of the low-pass that errors are looked at through: as agreed on with whoever reads them.
+const CORNER: f64 = 25.0;
+
+/// The mean of noiseless recordings: the best prediction of one whose rattle nobody knows.
+pub fn mean(recordings: &[Recording], sensors: usize) -> Recording {
+    let columns = (0..sensors).map(|i| {
+        let columns: Vec<&[f64]> = recordings.iter().filter_map(|r| r.get(i)).collect();
+        let count = columns.len() as f64;
+        let rows = columns.first().map(|first| 0..first.len())?;
+        Some(rows.map(|row| columns.iter().map(|c| c[row]).sum::<f64>() / count).collect())
+    });
+    recordings[0].with(columns.collect())
+}
+
+/// Root mean square of the low-passed difference of two recordings in a column, ends left out.
+fn rms(a: &Recording, b: &Recording, sensor: usize) -> Option<f64> {
+    let difference: Vec<f64> =
+        a.get(sensor)?.iter().zip(b.get(sensor)?).map(|(a, b)| a - b).collect();
+    let filtered = ZeroPhase::butterworth(4, CORNER, a.interval).apply(&difference);
+    let trim = (TRIM / a.interval).round() as usize;
+    let inner = filtered.get(trim..filtered.len().checked_sub(trim)?)?;
+    let squares: f64 = inner.iter().map(|v| v * v).sum();
+    (!inner.is_empty()).then(|| (squares / inner.len() as f64).sqrt())
+}
+
+/// What sensor noise and rattle leave in a column to a perfect model: a replica with noise against the mean of
+/// the others.
+fn floor(problem: &Problem, clean: &[Recording], sensor: usize) -> Option<f64> {
+    let sensors = &problem.declared.sensors;
+    let mut squares = 0.0;
+    for draw in 0..DRAWS {
+        let own = draw % clean.len();
+        let noisy = with_noise(&clean[own], sensors, 5000 + draw as u64);
+        let others: Vec<Recording> = if clean.len() > 1 {
+            let kept = clean.iter().enumerate().filter(|(i, _)| *i != own);
+            kept.map(|(_, recording)| recording.clone()).collect()
+        } else {
+            clean.to_vec()
+        };
+        squares += rms(&noisy, &mean(&others, sensors.len()), sensor)?.powi(2);
+    }
+    Some((squares / DRAWS as f64).sqrt())
+}
+
+/// Errors of all measured columns of run `index`: `before` and `after` are noiseless recordings of the declared
+/// and of the calibrated model.
+pub fn of_run(
+    problem: &Problem,
+    index: usize,
+    role: &'static str,
+    before: &[Recording],
+    after: &[Recording],
+) -> Vec<ChannelError> {
+    let sensors = &problem.declared.sensors;
+    let recording = &problem.runs[index].recording;
+    let [declared, predicted] = [before, after].map(|logs| mean(logs, sensors.len()));
+    let measured = |i: &usize| !matches!(sensors[*i].reads, Reads::Command(_));
+    (0..sensors.len())
+        .filter(measured)
+        .filter_map(|i| {
+            Some(ChannelError {
+                run: recording.name.clone(),
+                role,
+                channel: sensors[i].column.clone(),
+                unit: sensors[i].unit(&problem.declared),
+                before: rms(recording, &declared, i)?,
+                after: rms(recording, &predicted, i)?,
+                floor: floor(problem, after, i)?,
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,122 @@
+//! The whole way: from a rig and its recordings to a verdict, values with intervals, and errors.
+
+use super::candidates::candidates;
+use super::errors::of_run;
+use super::fit::Fit;
+use super::problem::{Problem, Stopped};
+use super::recording::Recording;
+use super::residual::Name;
+use super::search::{Found, Left, Model, Round, Search, is_noise};
+use super::thresholds::MET;
+use crate::calibrate::errors::{ChannelError, judged};
+use crate::calibrate::outcome::Verdict;
+use crate::calibrate::report::Fitted;
+use crate::effects::Setting;
+
+/// An effect with its estimates by name.
+pub type Estimated = (Setting, Vec<(&'static str, Fitted)>);
+
+/// A calibration.
+#[derive(Debug)]
+pub struct Outcome {
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// The effects that were found; where the verdict is `unexplained` none.
+    pub effects: Vec<Estimated>,
+    /// What the search held for the best, whatever the verdict.
+    pub tried: Vec<Setting>,
+    /// What is left of the residuals under the declared and under the best model.
+    pub before: Vec<Left>,
+    /// See there.
+    pub after: Vec<Left>,
+    /// Round by round.
+    pub rounds: Vec<Round>,
+    /// Errors, run by run and column by column.
+    pub errors: Vec<ChannelError>,
+    /// What the declared and the calibrated model predict, run by run.
+    pub declared: Vec<Recording>,
+    /// See there.
+    pub predicted: Vec<Recording>,
+    /// Largest difference of two replicas of the declared machine in units of noise.
+    pub rattle: f64,
+}
+
+/// Calibrates: fits on the first run, judges on the others; with one run alone, fits on its first half and
+/// judges on the second.
+///
+/// # Errors
+/// A rig that cannot be simulated.
+pub fn calibrate(
+    problem: &mut Problem,
+    without: &[&str],
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<Outcome, Stopped> {
+    tell("finding out whether joints rattle");
+    let rattle = problem.look_for_rattle()?;
+    let problem = &*problem;
+    let split = problem.split();
+    let candidates = candidates(&problem.declared, without);
+    let names: Vec<Name> = problem.names().unwrap_or_default();
+    let search = Search { problem, split: &split, candidates, names, tell };
+    let Found { best, declared, rounds } = search.run()?;
+    let (before, after) = (search.left(&declared), search.left(&best));
+    tell("predicting");
+    let noise = is_noise(&after);
+    let effects = if noise { best.fit.effects.clone() } else { Vec::new() };
+    let [plain, calibrated] = [&[], effects.as_slice()]
+        .map(|effects: &[Setting]| problem.simulated(effects, problem.replicas));
+    let (plain, calibrated) = (plain?, calibrated?);
+    let mut errors = Vec::new();
+    for index in 0..problem.runs.len() {
+        let role = if index == 0 { "calibration" } else { "validation" };
+        errors.extend(of_run(problem, index, role, &plain[index], &calibrated[index]));
+    }
+    let met = judged(&errors).iter().all(|error| error.after <= MET * error.floor);
+    let verdict = match (noise && met, best.fit.effects.is_empty()) {
+        (true, true) => Verdict::NothingMissing,
+        (true, false) => Verdict::Explained,
+        (false, _) => Verdict::Unexplained,
+    };
+    let sensors = problem.declared.sensors.len();
+    let means = |logs: &[Vec<Recording>]| {
+        logs.iter().map(|logs| super::errors::mean(logs, sensors)).collect::<Vec<_>>()
+    };
+    Ok(Outcome {
+        effects: if verdict == Verdict::Explained { estimated(&best) } else { Vec::new() },
+        verdict,
+        tried: best.fit.effects.clone(),
+        before,
+        after,
+        rounds,
+        errors,
+        declared: means(&plain),
+        predicted: means(&calibrated),
+        rattle,
+    })
+}
+
+/// Values with standard deviations: `(JᵀJ)⁻¹`, J in units of noise.
+fn estimated(model: &Model) -> Vec<Estimated> {
+    let Fit { effects, jacobian, .. } = &model.fit;
+    let deviations = jacobian.as_ref().and_then(|jacobian| {
+        let scales: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
+        let mut unit = jacobian.clone();
+        for (mut column, scale) in unit.column_iter_mut().zip(&scales) {
+            column /= scale.max(f64::MIN_POSITIVE);
+        }
+        let inverse = (unit.transpose() * unit).try_inverse()?;
+        Some((0..scales.len()).map(|i| inverse[(i, i)].sqrt() / scales[i]).collect::<Vec<_>>())
+    });
+    let mut next = 0;
+    effects
+        .iter()
+        .map(|effect| {
+            let fitted = effect.values().map(|(name, value)| {
+                let std = deviations.as_ref().map_or(f64::NAN, |all| all[next]);
+                next += 1;
+                (name, Fitted::new(value, std))
+            });
+            (effect.clone(), fitted.collect())
+        })
+        .collect()
+}

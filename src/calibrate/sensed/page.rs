@@ -1,0 +1,164 @@
+//! The page of a calibration and its pictures.
+
+use super::outcome::Outcome;
+use super::problem::Problem;
+use super::report::Report;
+use crate::calibrate::charts::{POINTS, panel, thinned};
+use crate::calibrate::page::{errors_table, verdict};
+use crate::mechanism::Reads;
+use crate::report::{
+    Curve, Part, Picture, ReportError, Style, Table, document, known_to, number, panels_svg,
+};
+
+/// Runs that are drawn, the calibration run first: more would hide what matters.
+const DRAWN: usize = 3;
+
+/// Each measured column of each run as it was recorded and as it is predicted, and what is missed.
+pub(super) fn pictures(problem: &Problem, outcome: &Outcome) -> Result<Vec<Picture>, ReportError> {
+    let mut pictures = Vec::new();
+    for (index, run) in problem.runs.iter().take(DRAWN).enumerate() {
+        let recording = &run.recording;
+        let role = if index == 0 { "calibration" } else { "validation" };
+        let (mut signals, mut missed) = (Vec::new(), Vec::new());
+        for (i, sensor) in problem.declared.sensors.iter().enumerate() {
+            let measured = recording.get(i).filter(|_| !matches!(sensor.reads, Reads::Command(_)));
+            let (Some(measured), Some(declared), Some(predicted)) =
+                (measured, outcome.declared[index].get(i), outcome.predicted[index].get(i))
+            else {
+                continue;
+            };
+            let unit = sensor.unit(&problem.declared);
+            let curve = |name: &str, values: &[f64], style| {
+                let at = |(row, value): (usize, &f64)| {
+                    (recording.start + row as f64 * recording.interval, *value)
+                };
+                let points: Vec<(f64, f64)> = values.iter().enumerate().map(at).collect();
+                Curve { name: name.to_owned(), points: thinned(&points, POINTS), style }
+            };
+            let less = |model: &[f64]| -> Vec<f64> {
+                measured.iter().zip(model).map(|(a, b)| a - b).collect()
+            };
+            signals.push(panel(
+                sensor.column.clone(),
+                unit,
+                [
+                    curve("measured", measured, Style::Solid),
+                    curve("declared", declared, Style::Reference),
+                    curve("calibrated", predicted, Style::Solid),
+                ]
+                .into_iter(),
+            ));
+            missed.push(panel(
+                format!("{}, measured − model", sensor.column),
+                unit,
+                [
+                    curve("declared", &less(declared), Style::Reference),
+                    curve("calibrated", &less(predicted), Style::Solid),
+                ]
+                .into_iter(),
+            ));
+        }
+        for (panels, what, file) in
+            [(&signals, "Measured and predicted", "signals"), (&missed, "What is missed", "missed")]
+        {
+            pictures.push(Picture {
+                file: format!("{file}-{}.svg", index + 1),
+                title: format!("{what}, {} ({role})", recording.name),
+                caption:
+                    "Declared: the rig as its file has it. Calibrated: with the effects found."
+                        .to_owned(),
+                svg: panels_svg(panels)?,
+            });
+        }
+    }
+    Ok(pictures)
+}
+
+const NOTE: &str = "Root mean square of measured less predicted, both through a zero-phase low-pass of \
+                    fourth order at 25 Hz, first and last 60 ms left out. Before: the rig as declared; \
+                    after: calibrated. Floor: what sensor noise and rattle leave to any model.";
+
+/// The page.
+pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
+    let head = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    let mut rows = Vec::new();
+    for effect in &report.effects {
+        for (name, fitted) in &effect.params {
+            let [low, high] = fitted.ci95.map(|end| known_to(end, fitted.std));
+            rows.push(vec![
+                format!("{}{}", effect.kind, effect.on.words()),
+                (*name).to_owned(),
+                known_to(fitted.value, fitted.std),
+                format!("{low} to {high}"),
+            ]);
+        }
+    }
+    let values = Table {
+        id: "effects",
+        title: "What the model was given".into(),
+        header: head(&["effect", "parameter", "value", "95 % interval"]),
+        rows,
+        note: "SI units. calibrated.toml holds the rig with all of this.".into(),
+    };
+    let residuals = Table {
+        id: "residuals",
+        title: "Residuals in units of noise, on data not used for fits".into(),
+        header: head(&["residual", "mean square before", "after", "largest before", "after"]),
+        rows: report
+            .residuals
+            .iter()
+            .map(|r| {
+                let cells =
+                    [r.mean_square_before, r.mean_square_after, r.largest_before, r.largest_after];
+                std::iter::once(r.residual.clone()).chain(cells.map(number)).collect()
+            })
+            .collect(),
+        note:
+            "1 is noise. Law: a drive against its command; dynamics: efforts against the measured \
+               motion; closure: a position against the others."
+                .into(),
+    };
+    let ranking = Table {
+        id: "candidates",
+        title: "Candidates, round by round".into(),
+        header: head(&["round", "candidate", "removes", "gain", ""]),
+        rows: report
+            .ranking
+            .iter()
+            .filter(|ranked| ranked.gain > 0.0)
+            .map(|ranked| {
+                vec![
+                    ranked.round.to_string(),
+                    format!("{}{}", ranked.kind, ranked.on.words()),
+                    format!("{:.1} %", 100.0 * ranked.validation_score),
+                    number(ranked.gain),
+                    if ranked.kept { "kept" } else { "" }.to_owned(),
+                ]
+            })
+            .collect(),
+        note: "Of what stands above noise on data that a candidate was not fitted to.".into(),
+    };
+    let equations: Vec<String> = report
+        .effects
+        .iter()
+        .map(|effect| format!("{}: {}. It {}.", effect.kind, effect.equation, effect.evidence))
+        .collect();
+    let more = [
+        ("Figures", "report.json beside this page".to_owned()),
+        ("Simulations", report.simulations.to_string()),
+        ("Time of computing", format!("{} s", number(report.wall_s))),
+    ];
+    let provenance = report.provenance.lines("rig", None, more);
+    let mut parts = vec![Part::Table(values)];
+    if !equations.is_empty() {
+        parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });
+    }
+    parts.push(Part::Table(errors_table(&report.errors, NOTE)));
+    parts.push(Part::Table(residuals));
+    parts.push(Part::Pictures(pictures));
+    parts.push(Part::Table(ranking));
+    parts.push(Part::Provenance(&provenance));
+    let title =
+        format!("Calibration of {}: {}", report.provenance.scenario_name, verdict(report.verdict));
+    document(&title, &report.summary, &parts)
+}

@@ -1,0 +1,235 @@
+//! A rig and the runs that it is held against.
+
+use super::estimate::{Basis, View};
+use super::recording::Recording;
+use super::residual::{Residuals, residuals};
+use super::start::{StartError, machine, released, still};
+use super::{simulate, thresholds};
+use crate::calibrate::spectrum::transform;
+use crate::effects::Setting;
+use crate::engine::{Halt, StepControl};
+use crate::mechanism::Mechanism;
+use crate::scenario::{Problem as Wrong, Scenario};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A recorded run, ready to be explained.
+#[derive(Debug)]
+pub struct Run {
+    /// What was recorded.
+    pub recording: Recording,
+    /// The same, prepared.
+    pub view: View,
+}
+
+/// A stretch of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Which run.
+    pub run: usize,
+    /// Which of its rows.
+    pub rows: Range<usize>,
+}
+
+/// Which data values are fitted on, and which candidates are judged on.
+#[derive(Clone, Debug)]
+pub struct Split {
+    /// Fitted on.
+    pub on: Vec<Segment>,
+    /// Judged on.
+    pub hold: Vec<Segment>,
+}
+
+/// A rig, its recorded runs, and how to simulate them.
+#[derive(Debug)]
+pub struct Problem {
+    /// What its maker declares.
+    pub rig: Scenario,
+    /// The machine as declared.
+    pub declared: Mechanism,
+    /// What was recorded.
+    pub runs: Vec<Run>,
+    /// The sensors that determine its pose.
+    pub basis: Basis,
+    /// How to step.
+    pub control: StepControl,
+    /// Simulations that a mean is taken of: one, or several where joints rattle.
+    pub replicas: usize,
+    simulations: AtomicUsize,
+}
+
+/// Why a method cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum Stopped {
+    /// The rig cannot be simulated as declared.
+    #[error("{0}")]
+    Model(#[from] Wrong),
+    /// A simulation broke down.
+    #[error("{0}")]
+    Halted(#[from] Halt),
+}
+
+impl From<StartError> for Stopped {
+    fn from(error: StartError) -> Self {
+        match error {
+            StartError::Model(wrong) => wrong.into(),
+            StartError::Halted(halt) => halt.into(),
+        }
+    }
+}
+
+impl Problem {
+    /// A rig and its recordings.
+    ///
+    /// # Errors
+    /// A rig that cannot be put together, or whose sensors do not say how it stands.
+    pub fn new(
+        rig: Scenario,
+        recordings: Vec<Recording>,
+        control: StepControl,
+    ) -> Result<Self, Stopped> {
+        let declared = machine(&rig, &[], &recordings[0])?;
+        let basis = Basis::of(&declared, &recordings[0]).ok_or_else(|| {
+            let message = "do not say how the machine stands: fewer joints are measured than it has \
+                           freedoms";
+            let help = "add a [[sensor]] of quantity \"position\" for each freedom";
+            rig.problem("sensor", message, help)
+        })?;
+        let sensors = declared.sensors.len();
+        let run = |recording: Recording| Run { view: View::new(&recording, sensors), recording };
+        let runs = recordings.into_iter().map(run).collect();
+        let simulations = AtomicUsize::new(0);
+        Ok(Self { rig, declared, runs, basis, control, replicas: 1, simulations })
+    }
+
+    /// The first run to fit on and the others to judge on; the halves of one where there is one alone.
+    pub fn split(&self) -> Split {
+        let whole = |run: usize| Segment { run, rows: self.runs[run].view.rows() };
+        if self.runs.len() > 1 {
+            let hold = (1..self.runs.len()).map(whole).collect();
+            return Split { on: vec![whole(0)], hold };
+        }
+        let rows = self.runs[0].view.rows();
+        let stride = self.runs[0].view.stride;
+        let middle = rows.start + rows.len() / 2 / stride * stride;
+        let part = |rows| vec![Segment { run: 0, rows }];
+        Split { on: part(rows.start..middle), hold: part(middle..rows.end) }
+    }
+
+    /// Simulations so far.
+    pub fn simulations(&self) -> usize {
+        self.simulations.load(Ordering::Relaxed)
+    }
+
+    /// Noiseless recordings of a model with these effects, so many replicas of each run.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn simulated(
+        &self,
+        effects: &[Setting],
+        replicas: usize,
+    ) -> Result<Vec<Vec<Recording>>, Stopped> {
+        let machines = self
+            .runs
+            .iter()
+            .map(|run| Ok(released(&self.rig, effects, &run.recording, self.control)?))
+            .collect::<Result<Vec<Mechanism>, Stopped>>()?;
+        let jobs: Vec<(usize, u64)> = (0..machines.len())
+            .flat_map(|run| (0..replicas as u64).map(move |replica| (run, replica)))
+            .collect();
+        self.simulations.fetch_add(jobs.len(), Ordering::Relaxed);
+        let recorded = jobs
+            .into_par_iter()
+            .map(|(run, replica)| {
+                let like = &self.runs[run].recording;
+                simulate::record(&machines[run], self.control, like, replica)
+            })
+            .collect::<Result<Vec<Recording>, Halt>>()?;
+        Ok(recorded.chunks(replicas).map(<[Recording]>::to_vec).collect())
+    }
+
+    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn one(
+        &self,
+        effects: &[Setting],
+        index: usize,
+        until: usize,
+    ) -> Result<Recording, Stopped> {
+        let recording = &self.runs[index].recording;
+        let machine = released(&self.rig, effects, recording, self.control)?;
+        // Filters see a little beyond the last row.
+        let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
+        self.simulations.fetch_add(1, Ordering::Relaxed);
+        Ok(simulate::record(&machine, self.control, &recording.first(seconds), 0)?)
+    }
+
+    /// Noiseless recordings of a model with these effects that was let go without a swing; none of runs whose
+    /// machine is not held before they begin.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn still(&self, effects: &[Setting]) -> Result<Vec<Option<Recording>>, Stopped> {
+        let still = |run: &Run| {
+            let machine = released(&self.rig, effects, &run.recording, self.control)?;
+            let Some(machine) = still(&machine, self.control)? else { return Ok(None) };
+            self.simulations.fetch_add(1, Ordering::Relaxed);
+            Ok(Some(simulate::record(&machine, self.control, &run.recording, 0)?))
+        };
+        self.runs.par_iter().map(still).collect()
+    }
+
+    /// Finds out whether replicas of the declared machine differ by more than sensors see, and by how much, in
+    /// units of their noise.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn look_for_rattle(&mut self) -> Result<f64, Stopped> {
+        let logs = self.simulated(&[], 2)?;
+        let sensors = &self.declared.sensors;
+        let mut largest = 0.0f64;
+        for pair in &logs {
+            for (i, sensor) in sensors.iter().enumerate() {
+                let (Some(a), Some(b)) = (pair[0].get(i), pair[1].get(i)) else { continue };
+                let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+                let noise = simulate::deviation(sensor, a);
+                largest = largest.max((squares / a.len() as f64).sqrt() / noise);
+            }
+        }
+        self.replicas = if largest > thresholds::SEEN { thresholds::REPLICAS } else { 1 };
+        Ok(largest)
+    }
+
+    /// Residuals of a view of run `segment.run` under a mechanism.
+    pub fn residuals(
+        &self,
+        view: &View,
+        mechanism: &Mechanism,
+        segment: &Segment,
+    ) -> Option<Residuals> {
+        residuals(view, mechanism, &self.basis, segment.rows.clone())
+    }
+
+    /// Names of the residuals.
+    pub fn names(&self) -> Option<Vec<super::residual::Name>> {
+        let view = &self.runs.first()?.view;
+        let rows = view.rows().start..view.rows().start + 1;
+        Some(residuals(view, &self.declared, &self.basis, rows)?.names)
+    }
+
+    /// Their coefficients by frequency.
+    pub fn coefficients(
+        &self,
+        view: &View,
+        mechanism: &Mechanism,
+        segment: &Segment,
+    ) -> Option<Vec<Vec<f64>>> {
+        let found = self.residuals(view, mechanism, segment)?;
+        let finite = found.signals.iter().flat_map(|s| &s.values).all(|value| value.is_finite());
+        finite.then(|| transform(&found.signals, view.interval * view.stride as f64))
+    }
+}

@@ -1,0 +1,161 @@
+//! Recorded runs of any mechanism: a CSV file with a column for each sensor, one row a sample.
+
+use crate::measure::log::{LogError, constant_step};
+use crate::measure::spelling::nearest;
+use crate::mechanism::{Reads, Sensor};
+use std::path::Path;
+
+/// A recorded run.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// The file as the user called it.
+    pub path: String,
+    /// Its name.
+    pub name: String,
+    /// Time of the first row in s.
+    pub start: f64,
+    /// Time between two rows in s.
+    pub interval: f64,
+    /// Number of rows.
+    pub samples: usize,
+    columns: Vec<Option<Vec<f64>>>,
+}
+
+/// Heads that a column of time may have.
+const TIME: [&str; 2] = ["t", "t_s"];
+
+impl Recording {
+    /// Reads the columns of `sensors`; measured ones may be missing, commands may not.
+    ///
+    /// # Errors
+    /// A file that cannot be read, columns that no sensor has or that stand there twice, missing commands,
+    /// values that are no numbers, time that does not advance by a constant step.
+    pub fn read(path: &Path, sensors: &[Sensor]) -> Result<Self, LogError> {
+        let file = path.display().to_string();
+        let wrong = |line: Option<u64>, message: String, help: String| LogError {
+            place: line.map_or_else(|| file.clone(), |line| format!("{file}:{line}")),
+            message,
+            help,
+        };
+        let unread = |error: csv::Error| {
+            let line = error.position().map(csv::Position::line);
+            let message = format!("cannot be read: {error}");
+            wrong(line, message, "expected a CSV file with a header and numbers".to_owned())
+        };
+        let mut reader =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(unread)?;
+        let heads = reader.headers().map_err(unread)?.clone();
+        let (time, places) =
+            choose(&heads, sensors).map_err(|(message, help)| wrong(Some(1), message, help))?;
+        let mut times = Vec::new();
+        let mut columns: Vec<Option<Vec<f64>>> =
+            places.iter().map(|place| place.map(|_| Vec::new())).collect();
+        for record in reader.records() {
+            let record = record.map_err(unread)?;
+            let number = |place: usize| {
+                let text = record.get(place).unwrap_or_default();
+                text.parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
+                    let what = if text.is_empty() { "nothing" } else { text };
+                    let message = format!("column `{}` holds {what}", &heads[place]);
+                    let line = record.position().map(csv::Position::line);
+                    wrong(line, message, "expected a finite number in every row".to_owned())
+                })
+            };
+            times.push(number(time)?);
+            for (place, column) in places.iter().zip(&mut columns) {
+                if let (Some(place), Some(column)) = (place, column) {
+                    column.push(number(*place)?);
+                }
+            }
+        }
+        let interval = constant_step(&times).map_err(|(row, message)| {
+            // The header is line 1.
+            let help = "expected samples at a constant rate, time growing".to_owned();
+            wrong(Some(row as u64 + 2), message, help)
+        })?;
+        let name = path.file_name().map_or(file.clone(), |n| n.to_string_lossy().into_owned());
+        Ok(Self { path: file, name, start: times[0], interval, samples: times.len(), columns })
+    }
+
+    /// Samples of sensor `index`, if the recording has them.
+    pub fn get(&self, index: usize) -> Option<&[f64]> {
+        self.columns.get(index)?.as_deref()
+    }
+
+    /// The same recording with other columns.
+    pub fn with(&self, columns: Vec<Option<Vec<f64>>>) -> Self {
+        Self { columns, ..self.clone() }
+    }
+
+    /// The rows of the first so many seconds.
+    pub fn first(&self, seconds: f64) -> Self {
+        let samples = ((seconds / self.interval) as usize + 1).min(self.samples);
+        let cut = |column: &Option<Vec<f64>>| column.as_ref().map(|c| c[..samples].to_vec());
+        Self { samples, columns: self.columns.iter().map(cut).collect(), ..self.clone() }
+    }
+
+    /// Length in s.
+    pub fn duration(&self) -> f64 {
+        (self.samples - 1) as f64 * self.interval
+    }
+
+    /// The recording as CSV.
+    pub fn to_csv(&self, sensors: &[Sensor]) -> String {
+        use std::fmt::Write as _;
+        let mut text = String::from("t");
+        let present: Vec<usize> = (0..sensors.len()).filter(|&i| self.get(i).is_some()).collect();
+        // Writing to a string cannot fail.
+        for &i in &present {
+            let _ = write!(text, ",{}", sensors[i].column);
+        }
+        text.push('\n');
+        for row in 0..self.samples {
+            let _ = write!(text, "{:.6}", self.start + row as f64 * self.interval);
+            for &i in &present {
+                let value = self.get(i).map_or(f64::NAN, |column| column[row]);
+                let _ = write!(text, ",{value:.9}");
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// Where time stands, and where each sensor's column does.
+type Places = (usize, Vec<Option<usize>>);
+
+/// Finds the columns by the header; what is wrong with it and what would be right.
+fn choose(heads: &csv::StringRecord, sensors: &[Sensor]) -> Result<Places, (String, String)> {
+    let known: Vec<&str> = sensors.iter().map(|sensor| sensor.column.as_str()).collect();
+    let expected = format!("expected `t` and any of {}", known.join(", "));
+    let (mut time, mut places) = (None, vec![None; sensors.len()]);
+    for (place, head) in heads.iter().enumerate() {
+        let twice = || (format!("column `{head}` twice"), "keep one of them".to_owned());
+        if let Some(sensor) = known.iter().position(|column| *column == head) {
+            if places[sensor].replace(place).is_some() {
+                return Err(twice());
+            }
+        } else if TIME.contains(&head) {
+            if time.replace(place).is_some() {
+                return Err(twice());
+            }
+        } else {
+            let help = nearest(head, &known).map_or_else(
+                || format!("no [[sensor]] has it; {expected}"),
+                |near| format!("did you mean `{near}`? no [[sensor]] has it; {expected}"),
+            );
+            return Err((format!("unknown column `{head}`"), help));
+        }
+    }
+    let time = time.ok_or_else(|| ("no column `t`".to_owned(), expected))?;
+    let commands = sensors.iter().zip(&places);
+    let missing = commands
+        .filter(|(sensor, place)| matches!(sensor.reads, Reads::Command(_)) && place.is_none())
+        .map(|(sensor, _)| format!("`{}`", sensor.column))
+        .collect::<Vec<_>>();
+    if missing.is_empty() {
+        return Ok((time, places));
+    }
+    let help = "without its commands nobody knows what the machine was asked to do".to_owned();
+    Err((format!("no column {}", missing.join(", ")), help))
+}

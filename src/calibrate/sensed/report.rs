@@ -1,0 +1,267 @@
+//! `report.json` and the folder of results.
+
+use super::outcome::{Outcome, calibrate};
+use super::page;
+use super::problem::{Problem, Stopped};
+use super::recording::Recording;
+use super::search::{Left, Tried, name};
+use super::start::machine;
+use crate::calibrate::errors::{ChannelError, worst};
+use crate::calibrate::outcome::Verdict;
+use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, ResidualReport, Seeds};
+use crate::calibrate::result::{
+    CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, refuse, to_json,
+};
+use crate::engine::StepControl;
+use crate::measure::log::LogError;
+use crate::mechanism::Mechanism;
+use crate::scenario::Scenario;
+use crate::simulate::Provenance;
+use crate::study::{Folder, PAGE_FILE, RunError};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant as Clock;
+
+/// The report. Keys are promised to scripts; see the README.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Program, versions, rig as declared.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+    /// What the calibration comes to.
+    pub verdict: Verdict,
+    /// The same in a sentence or two.
+    pub summary: String,
+    /// What the model was given.
+    pub effects: Vec<EffectReport>,
+    /// Errors by run and column.
+    pub errors: Vec<ChannelError>,
+    /// Candidates, round by round, the best first in each.
+    pub ranking: Vec<Ranked>,
+    /// Residuals on data not used for fits, under the declared and under the calibrated model.
+    pub residuals: Vec<ResidualReport>,
+    /// Whether the declared machine rattles by more than its sensors see, and what follows.
+    pub rattle: RattleReport,
+    /// Kinds of effects that were excluded by `--without`.
+    pub without: Vec<String>,
+    /// Velocity error allowed for one step of a simulation in m/s.
+    pub tolerance_m_s: f64,
+    /// Seeds.
+    pub seeds: Seeds,
+    /// Simulations of a run that it took.
+    pub simulations: usize,
+    /// Time of computing in s.
+    pub wall_s: f64,
+    /// What stands beside this file.
+    pub files: Vec<String>,
+}
+
+/// A rig and recordings that nothing speaks against, before anything is simulated.
+#[derive(Debug)]
+pub struct Prepared {
+    rig: Scenario,
+    recordings: Vec<Recording>,
+}
+
+/// Reads recordings of a rig whose sensors its file describes, the first to calibrate on, the others to validate
+/// on.
+///
+/// # Errors
+/// Everything that is wrong with them.
+pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateError> {
+    let mut wrong: Vec<String> = Vec::new();
+    if rig.mechanism.described().is_none_or(|described| described.sensors.is_empty()) {
+        let help = "describe each column of the recordings by a [[sensor]]";
+        let message = "is missing: nobody knows what the columns of the recordings are".to_owned();
+        wrong.push(rig.problem("sensor", message, help).to_string());
+    }
+    if !rig.effects.is_empty() {
+        let message = format!("holds {} effect(s)", rig.effects.len());
+        let help =
+            "calibrate starts from what a rig's maker declares: give it the rig without [[effect]]";
+        wrong.push(rig.problem("effect", message, help).to_string());
+    }
+    refuse(wrong)?;
+    let built: Mechanism = crate::model::parts_of(&rig)?;
+    let mut recordings = Vec::new();
+    let mut errors: Vec<LogError> = Vec::new();
+    for path in paths {
+        match Recording::read(path, &built.sensors) {
+            Ok(recording) => recordings.push(recording),
+            Err(error) => errors.push(error),
+        }
+    }
+    refuse(errors)?;
+    // What the machine cannot be at a recording's first row is told before anything is written.
+    for recording in &recordings {
+        machine(&rig, &[], recording)?;
+    }
+    Ok(Prepared { rig, recordings })
+}
+
+/// A finished calibration.
+#[derive(Debug)]
+pub struct Calibrated {
+    /// What it came to.
+    pub report: Report,
+    /// The text of `report.json`.
+    pub json: String,
+    /// Where all files are.
+    pub folder: PathBuf,
+}
+
+impl From<Stopped> for CalibrateError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Model(problem) => problem.into(),
+            Stopped::Halted(halt) => halt.into(),
+        }
+    }
+}
+
+/// Calibrates and writes everything about it into `folder`. `tell` hears what is being tried.
+///
+/// # Errors
+/// A rig that cannot be simulated, files that cannot be written; the folder is left as it was.
+pub fn into_folder(
+    prepared: Prepared,
+    without: &[&str],
+    folder: Folder,
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<Calibrated, CalibrateError> {
+    let started = Clock::now();
+    let control = control(&prepared.rig);
+    let mut problem = Problem::new(prepared.rig, prepared.recordings, control)?;
+    let outcome = calibrate(&mut problem, without, tell)?;
+    tell("drawing and writing");
+    let pictures = page::pictures(&problem, &outcome).map_err(RunError::from)?;
+    let sensors = &problem.declared.sensors;
+    let mut files: Vec<(String, String)> = Vec::new();
+    for (run, predicted) in problem.runs.iter().zip(&outcome.predicted) {
+        let stem = Path::new(&run.recording.name).file_stem();
+        let stem = stem.map_or_else(|| "run".into(), |stem| stem.to_string_lossy());
+        files.push((format!("predicted-{stem}.csv"), predicted.to_csv(sensors)));
+    }
+    let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
+    let written = files.iter().map(|(name, _)| name.clone());
+    let drawn = pictures.iter().map(|picture| picture.file.clone());
+    let files_list = texts.chain(written).chain(drawn).collect();
+    let report = Report {
+        provenance: Provenance::of(&problem.rig),
+        verdict: outcome.verdict,
+        summary: summary(&outcome),
+        effects: effects(&outcome),
+        errors: outcome.errors.clone(),
+        ranking: ranking(&outcome),
+        residuals: residuals(&outcome.before, &outcome.after),
+        rattle: RattleReport {
+            chaotic: problem.replicas > 1,
+            difference: outcome.rattle,
+            channel: String::new(),
+            replicas: problem.replicas,
+        },
+        without: without.iter().map(|kind| (*kind).to_owned()).collect(),
+        tolerance_m_s: match control {
+            StepControl::Tolerance(tolerance) => tolerance,
+            StepControl::Fixed(_) => f64::NAN,
+        },
+        seeds: Seeds {
+            scenario: problem.rig.seed,
+            replicas: (0..problem.replicas as u64).collect(),
+        },
+        simulations: problem.simulations(),
+        wall_s: started.elapsed().as_secs_f64(),
+        files: files_list,
+    };
+    let json = to_json(&report);
+    let mut calibrated = problem.rig.clone();
+    calibrated.effects = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
+    let (model, page) = (calibrated.to_toml(), page::page(&report, &pictures));
+    let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &model), (PAGE_FILE, &page)];
+    texts.extend(files.iter().map(|(name, text)| (name.as_str(), text)));
+    let folder = publish(folder, &texts, &pictures)?;
+    Ok(Calibrated { report, json, folder })
+}
+
+fn summary(outcome: &Outcome) -> String {
+    let list = outcome.effects.iter().map(|(e, _)| name(e)).collect::<Vec<_>>().join(", ");
+    let worst = worst(&outcome.errors).map_or_else(String::new, |error| {
+        format!(
+            " (worst: {} of {}, {:.2} floors)",
+            error.channel,
+            error.run,
+            error.after / error.floor
+        )
+    });
+    match outcome.verdict {
+        Verdict::NothingMissing => format!(
+            "The declared model explains the recordings to within noise: nothing is missing{worst}."
+        ),
+        Verdict::Explained => format!(
+            "The declared model lacks {list}. With it the recordings are explained to within noise{worst}."
+        ),
+        Verdict::Unexplained => format!(
+            "What the declared model misses stands above noise, and no effect with a name that was tried \
+             explains it{worst}."
+        ),
+    }
+}
+
+fn effects(outcome: &Outcome) -> Vec<EffectReport> {
+    let report = |(effect, params): &super::outcome::Estimated| {
+        let round = outcome
+            .rounds
+            .iter()
+            .find(|round| round.added.as_ref().is_some_and(|added| added.is(effect)));
+        let gain = round.and_then(|round| {
+            round.tried.iter().find(|tried| tried.effect.is(effect)).map(|tried| tried.gain)
+        });
+        EffectReport {
+            kind: effect.kind.name,
+            on: ActsOn::of(effect),
+            depends_on: None,
+            params: params.clone(),
+            evidence: gain.map_or_else(String::new, |gain| {
+                format!(
+                    "takes {gain:.0} off the sum of squares, in units of noise, on data that it was not \
+                     fitted to"
+                )
+            }),
+            as_good: round.map_or_else(Vec::new, |round| round.as_good.iter().map(name).collect()),
+            equation: effect.kind.equation,
+        }
+    };
+    outcome.effects.iter().map(report).collect()
+}
+
+fn ranking(outcome: &Outcome) -> Vec<Ranked> {
+    let kept = |tried: &Tried| outcome.effects.iter().any(|(effect, _)| effect.is(&tried.effect));
+    let mut ranked = Vec::new();
+    for (i, round) in outcome.rounds.iter().enumerate() {
+        for tried in &round.tried {
+            let added = round.added.as_ref().is_some_and(|added| added.is(&tried.effect));
+            ranked.push(Ranked {
+                kind: tried.effect.kind.name,
+                on: ActsOn::of(&tried.effect),
+                validation_score: tried.share,
+                kept: added && kept(tried),
+                round: i + 1,
+                simulated: tried.simulated,
+                gain: tried.gain,
+            });
+        }
+    }
+    ranked
+}
+
+fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
+    let pair = |(before, after): (&Left, &Left)| ResidualReport {
+        residual: format!("{} of {}", before.residual.word(), before.of),
+        mean_square_before: before.mean_square,
+        mean_square_after: after.mean_square,
+        noise_up_to: super::thresholds::NOISE,
+        largest_before: before.largest,
+        largest_after: after.largest,
+    };
+    before.iter().zip(after).map(pair).collect()
+}

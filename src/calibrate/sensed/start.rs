@@ -1,0 +1,339 @@
+//! The machine where a recording begins.
+
+use super::estimate::position_sensor;
+use super::recording::Recording;
+use super::simulate::record;
+use crate::effects::Setting;
+use crate::engine::{Halt, Schedule, StepControl, run};
+use crate::measure::spline::CubicSpline;
+use crate::mechanism::{
+    Actuator, Command, Commands, Drive, Idle, JointIndex, Load, Mechanism, Reads, Situation,
+};
+use crate::model::recorded;
+use crate::scenario::{Problem, Scenario};
+use nalgebra::{DMatrix, DVector, Vector3};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Time in s for which a driven machine was held at its first command before a recording begins.
+pub const LEAD: f64 = 0.25;
+
+/// Time in s for which a free machine is held by the angles of its joints before it is let go: journals settle
+/// in some hundredths of a second.
+const HELD: f64 = 0.1;
+
+/// Natural frequency in Hz of what holds it: the weight of a machine of some decimetres bends it by
+/// `g/(l ω²)`, a hundred-thousandth of a radian, and contacts take shorter steps.
+const HOLD: f64 = 300.0;
+
+/// Time in s over which the first coordinates of a free machine are taken, that fall away from rest with the
+/// square of time: short beside its swing, and enough rows to average a sensor's steps.
+const FIRST: f64 = 0.012;
+
+/// Commands of a recording, interpolated by cubic splines: they rest before it and after it.
+#[derive(Debug)]
+struct Recorded(Vec<Option<CubicSpline>>);
+
+impl Commands for Recorded {
+    fn at(&self, t: f64, commands: &mut [Command]) {
+        for (command, spline) in commands.iter_mut().zip(&self.0) {
+            if let Some(spline) = spline {
+                // The last row may be reached a rounding error late.
+                let end = spline.end();
+                let t = if t > end && t < end * (1.0 + 1e-9) { end } else { t };
+                let [position, rate, acceleration] = spline.at(t);
+                *command = Command { position, rate, acceleration };
+            }
+        }
+    }
+}
+
+/// Commands of a recording for a machine with these drives.
+pub fn commands(mechanism: &Mechanism, recording: &Recording) -> Arc<dyn Commands> {
+    if mechanism.actuators.is_empty() {
+        return Arc::new(Idle);
+    }
+    let t: Vec<f64> = (0..recording.samples).map(|i| i as f64 * recording.interval).collect();
+    let spline = |drive: usize| {
+        let reads = |reads: &Reads| matches!(reads, Reads::Command(i) if *i == drive);
+        let sensor = mechanism.sensors.iter().position(|sensor| reads(&sensor.reads))?;
+        Some(CubicSpline::natural(&t, recording.get(sensor)?))
+    };
+    Arc::new(Recorded((0..mechanism.actuators.len()).map(spline).collect()))
+}
+
+/// Coordinates at the first row of joints that no drive moves and that are measured, by sensor.
+fn free_coordinates(mechanism: &Mechanism, recording: &Recording) -> Vec<(JointIndex, f64)> {
+    let rows = ((FIRST / recording.interval) as usize + 1).clamp(1, recording.samples);
+    let first = |values: &[f64]| from_rest(&values[..rows]);
+    let sensors = mechanism.sensors.iter().enumerate();
+    let found = sensors.filter_map(|(i, sensor)| {
+        let Reads::Position(joint) = sensor.reads else { return None };
+        let driven = mechanism.actuators.iter().any(|drive| drive.joint == joint);
+        let value = (first(recording.get(i)?) - sensor.offset) / sensor.scale;
+        (!driven).then_some((joint, value))
+    });
+    found.collect()
+}
+
+/// The `a` of `a + b k²`, by least squares over samples k = 0, 1, …
+fn from_rest(values: &[f64]) -> f64 {
+    let [mut n, mut s2, mut s4, mut y, mut y2] = [0.0; 5];
+    for (k, value) in values.iter().enumerate() {
+        let k2 = (k * k) as f64;
+        n += 1.0;
+        s2 += k2;
+        s4 += k2 * k2;
+        y += value;
+        y2 += k2 * value;
+    }
+    let determinant = n * s4 - s2 * s2;
+    if determinant > 0.0 { (s4 * y - s2 * y2) / determinant } else { y / n }
+}
+
+/// Commands of drives, and of what holds joints at constant coordinates after them.
+#[derive(Debug)]
+struct Holding {
+    drives: Arc<dyn Commands>,
+    count: usize,
+    held: Vec<f64>,
+}
+
+impl Commands for Holding {
+    fn at(&self, t: f64, commands: &mut [Command]) {
+        let (drives, held) = commands.split_at_mut(self.count.min(commands.len()));
+        self.drives.at(t, drives);
+        for (command, position) in held.iter_mut().zip(&self.held) {
+            *command = Command { position: *position, ..Command::default() };
+        }
+    }
+}
+
+/// A recorded machine with these effects, closed at its first row, and the joints that hold it there beside its
+/// drives.
+struct Closed {
+    mechanism: Mechanism,
+    held: Vec<(JointIndex, f64)>,
+}
+
+fn closed(
+    rig: &Scenario,
+    effects: &[Setting],
+    recording: &Recording,
+    known: Option<&[f64]>,
+) -> Result<Closed, Problem> {
+    let mut scenario = rig.clone();
+    scenario.effects = effects.to_vec();
+    let mut held = Vec::new();
+    let mechanism = recorded(&scenario, &mut |mechanism| {
+        mechanism.commands = commands(mechanism, recording);
+        mechanism.epoch = 0.0;
+        let starts: Vec<_> = mechanism.bodies.iter().map(|body| body.start).collect();
+        // Joints that drives leave free start where they are measured, as far as they are independent.
+        for (joint, measured) in free_coordinates(mechanism, recording) {
+            let drive = Actuator::new("", joint, Drive::Prescribed);
+            mechanism.actuators.push(drive);
+            if mechanism.freedoms(&starts).overdriven.is_empty() {
+                let value = known.and_then(|known| known.get(held.len()).copied());
+                held.push((joint, value.unwrap_or(measured)));
+            } else {
+                mechanism.actuators.pop();
+            }
+        }
+        let count = mechanism.actuators.len() - held.len();
+        mechanism.commands = Arc::new(Holding {
+            drives: Arc::clone(&mechanism.commands),
+            count,
+            held: held.iter().map(|(_, value)| *value).collect(),
+        });
+    })?;
+    Ok(Closed { mechanism, held })
+}
+
+fn release(mechanism: &mut Mechanism, held: usize, recording: &Recording) {
+    let drives = mechanism.actuators.len() - held;
+    mechanism.actuators.truncate(drives);
+    mechanism.commands = commands(mechanism, recording);
+}
+
+/// The machine of a rig with these effects at the first row of a recording, to be looked at.
+///
+/// # Errors
+/// An effect that the machine cannot take, joints that do not close.
+pub fn machine(
+    rig: &Scenario,
+    effects: &[Setting],
+    recording: &Recording,
+) -> Result<Mechanism, Problem> {
+    let Closed { mut mechanism, held } = closed(rig, effects, recording, None)?;
+    release(&mut mechanism, held.len(), recording);
+    Ok(mechanism)
+}
+
+/// Why a machine cannot be put where a recording begins.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// The machine cannot be.
+    #[error("{0}")]
+    Model(#[from] Problem),
+    /// It breaks down while it is held.
+    #[error("{0}")]
+    Halted(#[from] Halt),
+}
+
+/// The machine of a rig with these effects as it was let go: a driven one at rest at its first commands, some
+/// time before the first row; one that drives leave free after it was held there, at the first row.
+///
+/// # Errors
+/// An effect that the machine cannot take, joints that do not close, a run that breaks down.
+pub fn released(
+    rig: &Scenario,
+    effects: &[Setting],
+    recording: &Recording,
+    control: StepControl,
+) -> Result<Mechanism, StartError> {
+    let Closed { mut mechanism, held } = closed(rig, effects, recording, None)?;
+    if held.is_empty() {
+        for body in &mut mechanism.bodies {
+            body.start.twist.fill(0.0);
+        }
+        release(&mut mechanism, 0, recording);
+        mechanism.epoch = -LEAD;
+        return Ok(mechanism);
+    }
+    let let_go = |values: &[f64]| -> Result<Mechanism, StartError> {
+        let Closed { mechanism, held } = closed(rig, effects, recording, Some(values))?;
+        Ok(held_there(mechanism, held.len(), recording, control)?)
+    };
+    let mut values: Vec<f64> = held.iter().map(|(_, value)| *value).collect();
+    let part = recording.first(SEEN);
+    let missed = |values: &[f64]| -> Result<(Mechanism, DVector<f64>), StartError> {
+        let machine = let_go(values)?;
+        let simulated = record(&machine, control, &part, 0)?;
+        let mut left = Vec::new();
+        for (joint, _) in &held {
+            let sensor = position_sensor(&machine, *joint);
+            let pair = sensor.and_then(|i| part.get(i).zip(simulated.get(i)));
+            for (measured, simulated) in pair.into_iter().flat_map(|(a, b)| a.iter().zip(b)) {
+                left.push(measured - simulated);
+            }
+        }
+        Ok((machine, DVector::from_vec(left)))
+    };
+    let (mut machine, mut left) = missed(&values)?;
+    for _ in 0..STEPS {
+        let mut columns = Vec::new();
+        for k in 0..values.len() {
+            let mut beside = values.clone();
+            beside[k] += SMALL;
+            columns.push((missed(&beside)?.1 - &left) / SMALL);
+        }
+        let matrix = DMatrix::from_columns(&columns);
+        let normal = matrix.transpose() * &matrix;
+        let Some(factor) = normal.cholesky() else { break };
+        let step = factor.solve(&-(matrix.transpose() * &left));
+        let better: Vec<f64> = values.iter().zip(step.iter()).map(|(v, s)| v + s).collect();
+        let there = missed(&better)?;
+        if there.1.norm() >= left.norm() {
+            break;
+        }
+        (values, (machine, left)) = (better, there);
+    }
+    Ok(machine)
+}
+
+/// Time in s from the first row over which the start of a free machine is fitted: long enough to average a
+/// sensor's steps, and short beside the time in which a double pendulum forgets its start.
+const SEEN: f64 = 0.5;
+
+/// Steps of Gauss and Newton of that fit, at most: it starts near.
+const STEPS: usize = 2;
+
+/// A small change of a coordinate in m or rad: far above rounding, far below a swing.
+const SMALL: f64 = 1e-4;
+
+/// A machine that was held at its start by the last `held` of its drives until its journals settled, and let go.
+fn held_there(
+    mut mechanism: Mechanism,
+    held: usize,
+    recording: &Recording,
+    control: StepControl,
+) -> Result<Mechanism, Halt> {
+    let inertia =
+        |body: &crate::mechanism::Body| body.inertia + body.mass * mechanism.size().powi(2);
+    let total: f64 = mechanism.bodies.iter().map(inertia).sum();
+    let mass: f64 = mechanism.bodies.iter().map(|body| body.mass).sum();
+    let mut holding = mechanism.clone();
+    holding.epoch = -HELD;
+    let first = holding.actuators.len() - held;
+    let omega = TAU * HOLD;
+    for drive in &mut holding.actuators[first..] {
+        let inert = match drive.joint {
+            JointIndex::Revolute(_) => total,
+            JointIndex::Prismatic(_) => mass,
+        };
+        drive.drive =
+            Drive::Servo { stiffness: inert * omega * omega, damping: 2.0 * inert * omega };
+    }
+    for body in &mut holding.bodies {
+        body.start.twist.fill(0.0);
+    }
+    let schedule = Schedule { duration: HELD, interval: HELD };
+    run(&holding, control, schedule, &mut |instant| {
+        for (i, body) in mechanism.bodies.iter_mut().enumerate() {
+            (body.start, body.angle) = (instant.states[i], instant.angles[i]);
+            body.start.twist.fill(0.0);
+        }
+    })?;
+    release(&mut mechanism, held, recording);
+    mechanism.epoch = 0.0;
+    Ok(mechanism)
+}
+
+/// Swing in Hz that dies fastest while a machine comes to rest, critically damped: light bodies in play of
+/// 0.1 mm swing at 30–60 Hz.
+const SWING: f64 = 40.0;
+
+/// Time in s from rest to the first row.
+const SHORT: f64 = 0.03;
+
+/// `f = −D v` on every body.
+#[derive(Debug)]
+struct Calming;
+
+impl Load for Calming {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let rate = 2.0 * TAU * SWING;
+        let bodies = at.mechanism.bodies.iter().zip(at.states);
+        for (wrench, (body, state)) in wrenches.iter_mut().zip(bodies) {
+            let masses = Vector3::new(body.mass, body.mass, body.inertia);
+            *wrench -= masses.component_mul(&state.twist) * rate;
+        }
+    }
+
+    fn longest_step(&self, _mechanism: &Mechanism) -> Option<f64> {
+        Some(1.0 / (2.0 * TAU * SWING))
+    }
+}
+
+/// A released machine at rest under its first commands, shortly before the first row: its swing is damped away.
+/// None of one that begins at the first row.
+///
+/// # Errors
+/// A run that broke down.
+pub fn still(released: &Mechanism, control: StepControl) -> Result<Option<Mechanism>, Halt> {
+    let duration = -released.epoch - SHORT;
+    if duration <= 0.0 {
+        return Ok(None);
+    }
+    let mut calmed = released.clone();
+    calmed.loads.push(Arc::new(Calming));
+    let mut machine = released.clone();
+    run(&calmed, control, Schedule { duration, interval: duration }, &mut |instant| {
+        for (i, body) in machine.bodies.iter_mut().enumerate() {
+            (body.start, body.angle) = (instant.states[i], instant.angles[i]);
+        }
+    })?;
+    machine.epoch = -SHORT;
+    Ok(Some(machine))
+}

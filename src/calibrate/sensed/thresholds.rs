@@ -1,0 +1,65 @@
+//! Every number that the method was given, with what it rests on.
+
+/// Rate in Hz at which residuals are looked at, at least: twice the highest band below, and half again.
+pub const RATE: f64 = 250.0;
+
+/// Corner in Hz of the low-pass before that: below half the rate.
+pub const PREFILTER: f64 = 100.0;
+
+/// Corner in Hz of the low-pass of coordinates before they are differentiated twice: noise grows with the
+/// square of the frequency.
+pub const CORNER: f64 = 80.0;
+
+/// The same of forces that say where journals lean: there noise turns directions.
+pub const LEAN_CORNER: f64 = 40.0;
+
+/// Highest frequencies in Hz that are looked at: below the corner of the coordinates; laws and closure up to
+/// nearly half the rate.
+pub const DYNAMICS_BAND: f64 = 60.0;
+/// See [`DYNAMICS_BAND`].
+pub const PLAIN_BAND: f64 = 90.0;
+
+/// Left out at both ends in s, where filters see beyond the recording.
+pub const TRIM: f64 = 0.06;
+
+/// Draws of sensor noise that a covariance is taken from.
+pub const DRAWS: usize = 16;
+
+/// Replicas of a machine whose joints rattle: the mean of six misses the true one by 40 % of a replica's own
+/// scatter.
+pub const REPLICAS: usize = 6;
+
+/// Root mean square of the difference of two replicas, in units of the sensor's noise, above which they differ
+/// by more than sensors see: a tenth of the noise's variance.
+pub const SEEN: f64 = 0.3;
+
+/// Drop of Σ of squares on data not used for the fit that an effect has to bring: twice the logarithm of a
+/// thousand candidates, 14, and as much again for what noise is not white.
+pub const GAIN: f64 = 28.0;
+
+/// The same for each value of an effect: Akaike's price of a parameter.
+pub const GAIN_PER_VALUE: f64 = 2.0;
+
+/// Most effects that are added: more than any machine was seen to need, so that a search ends.
+pub const EFFECTS: usize = 5;
+
+/// Hypotheses that are followed at once; candidates of each that are fitted by more than one linear step, and of
+/// these that are simulated.
+pub const HYPOTHESES: usize = 2;
+/// See [`HYPOTHESES`].
+pub const CLOSER: usize = 8;
+/// See [`HYPOTHESES`].
+pub const SIMULATED: usize = 5;
+
+/// Share of a swing that a model may be wrong by before its values are settled: a frequency that is off by a
+/// thousandth has lost the phase after some seconds. Two swings of one size and any phase differ by √2 of it.
+pub const MISSED: f64 = 0.3;
+
+/// Mean square in units of noise, on data not used for fits, up to which a residual is noise.
+pub const NOISE: f64 = 1.3;
+
+/// Its largest coefficient in units of noise: of 1000 normal numbers one in a thousand runs has one of 5.
+pub const LARGEST: f64 = 6.0;
+
+/// Largest error after calibration, in floors, of a model that explains.
+pub const MET: f64 = 1.5;

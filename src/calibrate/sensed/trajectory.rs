@@ -1,0 +1,52 @@
+//! Values from whole simulations: what residuals are wrong by depends on all values, and how bodies swing in
+//! their play on some of them more sharply than any force shows.
+
+use super::baseline::Baseline;
+use super::problem::{Problem, Segment, Stopped};
+use crate::calibrate::fit::{free, values, with_values};
+use crate::calibrate::least_squares::{Effort, least_squares};
+use crate::effects::Setting;
+
+/// Lengths in s over which values are fitted, one after another: a swing whose frequency is off by a hundredth
+/// keeps its phase for so long at first. The whole follows.
+const LENGTHS: [f64; 2] = [0.5, 1.2];
+
+/// Steps of Gauss and Newton on each length, and the drop of Σ of squares that is none: a look costs a
+/// simulation.
+const EFFORT: Effort = Effort { steps: 4, enough: 2.0, secant: true };
+
+/// The effects at values that simulations of these runs agree with, from values near them on.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn fitted(
+    problem: &Problem,
+    effects: &[Setting],
+    on: &[Segment],
+) -> Result<Vec<Setting>, Stopped> {
+    let mut effects = effects.to_vec();
+    for length in LENGTHS.map(Some).into_iter().chain([None]) {
+        let part: Vec<Segment> =
+            on.iter().map(|segment| shorter(problem, segment, length)).collect();
+        let baseline = Baseline::of(problem, &effects, &part)?;
+        let look = |values: &[f64]| {
+            let there = with_values(&effects, values);
+            baseline.simulated_white(problem, &there, &part).ok().flatten()
+        };
+        let start = values(&effects);
+        if let Some(best) = least_squares(&look, &free(&effects), start, EFFORT, None) {
+            effects = with_values(&effects, &best.values);
+        }
+    }
+    Ok(effects)
+}
+
+/// The first so many seconds of a segment.
+fn shorter(problem: &Problem, segment: &Segment, length: Option<f64>) -> Segment {
+    let view = &problem.runs[segment.run].view;
+    let Some(length) = length else { return segment.clone() };
+    let rows = (length / (view.interval * view.stride as f64)) as usize;
+    let rows = crate::calibrate::spectrum::fast_length(rows.max(1)) * view.stride;
+    let end = segment.rows.end.min(segment.rows.start + rows);
+    Segment { run: segment.run, rows: segment.rows.start..end }
+}

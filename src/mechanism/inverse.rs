@@ -1,0 +1,224 @@
+//! Inverse dynamics: the efforts and joint forces that a motion of the machine without clearance takes, and
+//! where its bodies are when journals lean on their rings under those forces.
+
+use super::assembly::matrix;
+use super::{Bearing, BodyState, Command, JointIndex, Mechanism, Revolute, Situation, Tracker};
+use crate::contact::CoulombFriction;
+use nalgebra::{DMatrix, DVector, UnitComplex, Vector2, Vector3};
+
+/// What a motion takes at one instant.
+#[derive(Clone, Debug)]
+pub struct Taken {
+    /// Effort along the coordinate of each drive that imposes the motion, in N or N·m.
+    pub efforts: Vec<f64>,
+    /// Force of each revolute joint on its journal's body in N, world directions.
+    pub reactions: Vec<Vector2<f64>>,
+    /// States with journals that lean on their rings as the forces say, the imposed coordinates as they are.
+    pub leaning: Vec<BodyState>,
+}
+
+impl Tracker {
+    /// What the present state of a motion that drives impose takes of `mechanism`, the machine with its
+    /// clearances and loads: with M, the masses, a, the accelerations, w, gravity and loads, J and B, the rows
+    /// of the joints and of the imposed coordinates, `M a = w + Jᵀ λ + Bᵀ τ`, τ being the efforts.
+    ///
+    /// Joint forces are those λ that fit best when the `measured` efforts (N, N·m; of each drive) act in place
+    /// of τ: what acts on the machine beside them turns fewer of them. Friction in joints with clearance
+    /// depends on λ: it is looked at without, then with it.
+    ///
+    /// `t` is the time in s that loads see; `applied` are efforts at joints beside the imposed ones. None in a
+    /// singular pose.
+    pub fn taken(
+        &self,
+        mechanism: &Mechanism,
+        t: f64,
+        measured: &[Option<f64>],
+        applied: &[(JointIndex, f64)],
+    ) -> Option<Taken> {
+        let (states, bodies) = (self.states(), self.states().len());
+        let closure = self.mechanism().closure(states, &self.commands_now());
+        let rows = matrix(&closure.rows, bodies);
+        let factors = rows.transpose().lu();
+        let mut needed = self.needed(mechanism, t, applied);
+        let joints: Vec<usize> =
+            (0..closure.rows.len()).filter(|&row| closure.driven[row].is_none()).collect();
+        let held = Held::new(&rows.select_rows(&joints), mechanism.size())?;
+        let rubbing = mechanism.revolutes.iter().any(|joint| friction(joint).is_some());
+        let mut taken = Taken {
+            efforts: vec![0.0; self.mechanism().actuators.len()],
+            reactions: vec![Vector2::zeros(); mechanism.revolutes.len()],
+            leaning: Vec::new(),
+        };
+        for pass in 0..=usize::from(rubbing) {
+            if pass > 0 {
+                rub(mechanism, states, &taken.reactions, &mut needed);
+            }
+            let exact = match rows.is_square() {
+                true => factors.solve(&needed)?,
+                false => rows.transpose().svd(true, true).solve(&needed, 1e-10).ok()?,
+            };
+            let mut left = needed.clone();
+            for (row, drive) in closure.driven.iter().enumerate() {
+                let Some(drive) = *drive else { continue };
+                taken.efforts[drive] = exact[row];
+                let given = measured.get(drive).copied().flatten().unwrap_or(exact[row]);
+                left -= rows.row(row).transpose() * given;
+            }
+            let multipliers = held.forces(&left)?;
+            let mut next = 0;
+            for (k, &row) in joints.iter().enumerate() {
+                if let JointIndex::Revolute(i) = closure.joints[row] {
+                    taken.reactions[i][next % 2] = multipliers[k];
+                    next += 1;
+                }
+            }
+        }
+        let mut gaps = DVector::zeros(closure.rows.len());
+        let mut next = 0;
+        for &row in &joints {
+            if let JointIndex::Revolute(i) = closure.joints[row] {
+                gaps[row] = lean(&mechanism.revolutes[i], taken.reactions[i])[next % 2];
+                next += 1;
+            }
+        }
+        let shift = match rows.is_square() {
+            true => rows.lu().solve(&gaps)?,
+            false => rows.svd(true, true).solve(&gaps, 1e-10).ok()?,
+        };
+        taken.leaning = states.to_vec();
+        for (i, state) in taken.leaning.iter_mut().enumerate() {
+            state.position += shift.fixed_rows::<2>(3 * i);
+            state.rotation *= UnitComplex::new(shift[3 * i + 2]);
+        }
+        Some(taken)
+    }
+
+    /// `M a − w`, but for friction in joints with clearance.
+    fn needed(&self, mechanism: &Mechanism, t: f64, applied: &[(JointIndex, f64)]) -> DVector<f64> {
+        let states = self.states();
+        let mut given: Vec<Vector3<f64>> =
+            mechanism.bodies.iter().map(|body| (mechanism.gravity * body.mass).push(0.0)).collect();
+        for load in &mechanism.loads {
+            load.add(Situation { t, mechanism, states }, &mut given);
+        }
+        for (joint, effort) in applied {
+            mechanism.add_effort(*joint, *effort, states, &mut given);
+        }
+        let mut needed = DVector::zeros(3 * states.len());
+        for (i, (body, given)) in mechanism.bodies.iter().zip(given).enumerate() {
+            let masses = Vector3::new(body.mass, body.mass, body.inertia);
+            let wrench = masses.component_mul(&self.acceleration(i)) - given;
+            needed.fixed_rows_mut::<3>(3 * i).copy_from(&wrench);
+        }
+        needed
+    }
+
+    fn commands_now(&self) -> Vec<Command> {
+        let mut commands = vec![Command::default(); self.mechanism().actuators.len()];
+        self.mechanism().true_commands(self.time(), &mut commands);
+        commands
+    }
+}
+
+impl Mechanism {
+    /// Adds the wrenches of an effort (N, N·m) at a joint to those of the bodies.
+    pub fn add_effort(
+        &self,
+        joint: JointIndex,
+        effort: f64,
+        states: &[BodyState],
+        wrenches: &mut [Vector3<f64>],
+    ) {
+        let ([first, second], [a, b]) = match joint {
+            JointIndex::Prismatic(i) => {
+                let joint = &self.prismatics[i];
+                (joint.bodies(), joint.telescope(states).drive(effort))
+            }
+            JointIndex::Revolute(i) => {
+                let torque = Vector3::new(0.0, 0.0, effort);
+                (self.revolutes[i].bodies(), [-torque, torque])
+            }
+        };
+        for (body, wrench) in [(first, a), (second, b)] {
+            if let Some(body) = body {
+                wrenches[body] += wrench;
+            }
+        }
+    }
+}
+
+/// Rows of joints, ready to say which forces in them come nearest to what bodies need.
+struct Held {
+    rows: DMatrix<f64>,
+    gram: nalgebra::Cholesky<f64, nalgebra::Dyn>,
+    size: f64,
+}
+
+/// Share of the largest row's square that keeps joints which say the same twice from being singular: their
+/// forces are then the smallest.
+const RIDGE: f64 = 1e-12;
+
+impl Held {
+    fn new(rows: &DMatrix<f64>, size: f64) -> Option<Self> {
+        let mut rows = rows.clone();
+        for (k, mut column) in rows.column_iter_mut().enumerate() {
+            if k % 3 == 2 {
+                column /= size;
+            }
+        }
+        let mut gram = &rows * rows.transpose();
+        let ridge = RIDGE * gram.diagonal().amax();
+        for i in 0..gram.nrows() {
+            gram[(i, i)] += ridge;
+        }
+        Some(Self { gram: gram.cholesky()?, rows, size })
+    }
+
+    /// The λ that leaves least of `needed − Jᵀ λ`, moments as forces at the size of the mechanism.
+    fn forces(&self, needed: &DVector<f64>) -> Option<DVector<f64>> {
+        let mut scaled = needed.clone();
+        for k in (2..scaled.len()).step_by(3) {
+            scaled[k] /= self.size;
+        }
+        let forces = self.gram.solve(&(&self.rows * scaled));
+        forces.iter().all(|x| x.is_finite()).then_some(forces)
+    }
+}
+
+/// Takes the friction of joints with clearance, under these joint forces (N), from what bodies need.
+fn rub(
+    mechanism: &Mechanism,
+    states: &[BodyState],
+    reactions: &[Vector2<f64>],
+    needed: &mut DVector<f64>,
+) {
+    for (joint, reaction) in mechanism.revolutes.iter().zip(reactions) {
+        let Some((law, radius)) = friction(joint) else { continue };
+        let torque = -radius * law.force(reaction.norm(), joint.spin(states) * radius);
+        for (body, torque) in joint.bodies().into_iter().zip([-torque, torque]) {
+            if let Some(body) = body {
+                needed[3 * body + 2] -= torque;
+            }
+        }
+    }
+}
+
+/// Friction of a joint and its journal's radius in m, if it rubs.
+fn friction(joint: &Revolute) -> Option<(CoulombFriction, f64)> {
+    match &joint.bearing {
+        Bearing::Clearance(clearance) => Some((clearance.friction?, clearance.journal_radius)),
+        Bearing::Ideal | Bearing::Native { .. } => None,
+    }
+}
+
+/// From the ring's centre to the journal's in m, where the ring pushes the journal with this force (N).
+fn lean(joint: &Revolute, force: Vector2<f64>) -> Vector2<f64> {
+    let size = force.norm();
+    match &joint.bearing {
+        Bearing::Clearance(clearance) if size > 0.0 => {
+            let depth = clearance.law.resting_penetration(size);
+            force * (-(clearance.radial() + depth) / size)
+        }
+        _ => Vector2::zeros(),
+    }
+}
