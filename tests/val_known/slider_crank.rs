@@ -6,7 +6,7 @@
 //! torque is what virtual power asks for: `τ ω = Σ (m (a − g)·v + I α w)` over the three bodies.
 
 use super::{evaluate, machine};
-use freeplay::mechanism::JointIndex;
+use freeplay::mechanism::{Imposed, JointIndex, Tracker};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
@@ -137,6 +137,37 @@ fn motion_and_torque_are_those_of_the_closed_form() {
                 rows.iter().map(|[found, closed]| (found[k] - closed[k]).abs()).fold(0.0, f64::max);
             println!("{gravity} m/s²: {what} up to {peak:.3}, error {:.1e} of it", error / peak);
             assert!(error < 1e-9 * peak, "{gravity} m/s², {what}: {error:e} of {peak}");
+        }
+    }
+}
+
+/// Inverse dynamics from the motion alone: the torque is the closed form's, the joint forces are those that the
+/// equations of motion find.
+#[test]
+fn inverse_dynamics_takes_the_torque_of_the_closed_form() {
+    let mechanism = machine(&text(-9.81)).mechanism.without_clearance();
+    let starts = mechanism.bodies.iter().map(|body| body.start).collect();
+    let mut tracker = Tracker::new(mechanism.clone(), Imposed::Drives, starts, 0.0).unwrap();
+    for degree in 0..=360 {
+        let t = TAU / SPEED * f64::from(degree) / 360.0;
+        tracker.advance(t).unwrap();
+        let taken = tracker.taken(&mechanism, t, &[], &[]).unwrap();
+        let [.., torque] = closed_form(SPEED * t, -9.81);
+        assert!(
+            (taken.efforts[0] - torque).abs() < 1e-9,
+            "{degree}°: {} {torque}",
+            taken.efforts[0]
+        );
+        let now = evaluate(&mechanism, t, tracker.states());
+        for (taken, found) in taken.reactions.iter().zip(&now.reactions) {
+            assert!(
+                (taken - found).norm() < 1e-7 * (1.0 + found.norm()),
+                "{degree}°: {taken} {found}"
+            );
+        }
+        // Without clearance nothing leans.
+        for (leaning, state) in taken.leaning.iter().zip(tracker.states()) {
+            assert!((leaning.position - state.position).norm() < 1e-12);
         }
     }
 }

@@ -7,7 +7,7 @@ use super::fit::{Fit, Target};
 use super::problem::{Problem, Split, Stopped};
 use super::residual::{Kind, Name};
 use super::thresholds::{
-    CLOSER, EFFECTS, GAIN, GAIN_PER_VALUE, HYPOTHESES, LARGEST, NOISE, SIMULATED,
+    BUDGET, CLOSER, EFFECTS, GAIN, GAIN_PER_VALUE, HYPOTHESES, LARGEST, NOISE, SIMULATED,
 };
 use super::trajectory::fitted;
 use crate::effects::Setting;
@@ -329,10 +329,16 @@ impl Search<'_> {
         let mut best = declared.clone();
         let mut rounds = Vec::new();
         let mut hypotheses = vec![declared.clone()];
-        while best.fit.effects.len() < EFFECTS && !is_noise(&self.left(&best)) {
+        while best.fit.effects.len() < EFFECTS
+            && self.problem.simulations() < BUDGET
+            && !is_noise(&self.left(&best))
+        {
             let mut next: Vec<Model> = Vec::new();
             let mut round = Round::default();
             for (i, model) in hypotheses.iter().enumerate() {
+                if i > 0 && self.problem.simulations() > BUDGET {
+                    break;
+                }
                 let (own, found) = self.beside(model)?;
                 if i == 0 {
                     round = own;

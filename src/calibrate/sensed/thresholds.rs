@@ -51,6 +51,10 @@ pub const CLOSER: usize = 8;
 /// See [`HYPOTHESES`].
 pub const SIMULATED: usize = 5;
 
+/// Simulations of a run after which no further effect is looked for: what two slow cores do in two minutes, at
+/// some 0.8 s for one of three seconds, leaves as much for what follows.
+pub const BUDGET: usize = 100;
+
 /// Share of a swing that a model may be wrong by before its values are settled: a frequency that is off by a
 /// thousandth has lost the phase after some seconds. Two swings of one size and any phase differ by √2 of it.
 pub const MISSED: f64 = 0.3;

@@ -1,0 +1,60 @@
+//! Recordings and rigs that cannot be right: told with where it stands and what would be right.
+
+use crate::FOUR_BAR;
+use crate::cli_common::Place;
+
+const GOOD: &str = "t,crank_cmd,crank,torque,rocker\n";
+
+/// Some rows at rest.
+fn rows(count: u32) -> String {
+    (0..count).map(|i| format!("{:.3},1,1,0.1,1.6\n", f64::from(i) * 1e-3)).collect()
+}
+
+#[test]
+fn recordings_that_cannot_be_right_are_refused() {
+    let long = rows(1200);
+    for (text, fragments) in [
+        (
+            format!("t,crank_cmd,krank,torque,rocker\n{long}"),
+            &["bad.csv:1: unknown column `krank`", "did you mean `crank`?", "[[sensor]]"][..],
+        ),
+        (
+            format!("t,crank_cmd,crank,crank,rocker\n{long}"),
+            &["bad.csv:1: column `crank` twice", "keep one"],
+        ),
+        (
+            "t,crank,torque,rocker\n0,1,0.1,1.6\n0.001,1,0.1,1.6\n".to_owned(),
+            &["bad.csv:1: no column `crank_cmd`", "commands"],
+        ),
+        (format!("time,crank_cmd,crank,torque,rocker\n{long}"), &["unknown column `time`"]),
+        (format!("{GOOD}{}0.9,1,1,0.1,1.6\n", rows(50)), &["bad.csv:52: a step of"]),
+        (format!("{GOOD}{}0.050,1,one,0.1,1.6\n", rows(50)), &["column `crank` holds one"]),
+        (GOOD.to_owned(), &["0 row(s)"]),
+    ] {
+        let place = Place::new();
+        place.write("rig.toml", FOUR_BAR);
+        place.write("bad.csv", &text);
+        place.refused("calibrate --rig rig.toml --data bad.csv --quiet", fragments);
+    }
+}
+
+#[test]
+fn rigs_that_cannot_be_calibrated_are_refused() {
+    let (machine, _) = FOUR_BAR.split_once("[[sensor]]").unwrap();
+    let payload = "[[effect]]\nkind = \"payload\"\nmass_kg = 0.1\n";
+    let encoder = "[[sensor]]\ncolumn = \"crank_cmd\"\nquantity = \"command\"\nof = \"O\"\n";
+    for (rig, fragments) in [
+        (machine.to_owned(), &["sensor: is missing", "[[sensor]]"][..]),
+        (format!("{FOUR_BAR}{payload}"), &["holds 1 effect", "without [[effect]]"]),
+        // Nothing says how the machine stands.
+        (format!("{machine}{encoder}"), &["fewer joints are measured", "position"]),
+    ] {
+        let place = Place::new();
+        place.write("rig.toml", &rig);
+        let heads = if rig.contains("rocker\"\nquantity") { GOOD } else { "t,crank_cmd\n" };
+        let columns = heads.matches(',').count();
+        let row = |i: u32| format!("{:.3}{}\n", f64::from(i) * 1e-3, ",1".repeat(columns));
+        place.write("a.csv", &(heads.to_owned() + &(0..1200).map(row).collect::<String>()));
+        place.refused("calibrate --rig rig.toml --data a.csv --quiet", fragments);
+    }
+}

@@ -1,0 +1,50 @@
+//! Rigs whose recordings come from another simulator, of another kind, with sensor noise: what their
+//! declarations lack is not written down anywhere.
+
+use crate::cli_common::Place;
+use serde_json::Value;
+use std::path::Path;
+
+/// Calibrates a rig, and returns its report.
+fn report(name: &str) -> Value {
+    let rigs = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar").join(name);
+    let file = |name: &str| rigs.join(name).display().to_string();
+    let place = Place::new();
+    let text = place.good(&format!(
+        "calibrate --rig {} --data {} --validate {} --out found --json --quiet",
+        file("rig.toml"),
+        file("run-a.csv"),
+        file("run-b.csv")
+    ));
+    for written in ["calibrated.toml", "index.html", "predicted-run-a.csv", "predicted-run-b.csv"] {
+        assert!(!place.read(&format!("found/{written}")).is_empty(), "{written}");
+    }
+    // What was found is a scenario like any other.
+    place.good("check found/calibrated.toml --quiet --set motion.joint=O --set motion.kind=line");
+    serde_json::from_str(&text).unwrap()
+}
+
+/// Largest error on the run that was not fitted, in floors.
+fn worst(report: &Value) -> f64 {
+    let errors = report["errors"].as_array().unwrap();
+    let judged = errors.iter().filter(|error| error["role"] == "validation");
+    let ratio = |e: &Value| e["after"].as_f64().unwrap() / e["floor"].as_f64().unwrap();
+    judged.map(ratio).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_four_bar_whose_rocker_is_not_as_long_as_declared_is_explained() {
+    let report = report("planar-2");
+    assert_eq!(report["verdict"], "explained", "{}", report["summary"]);
+    assert_eq!(report["effects"].as_array().unwrap().len(), 1);
+    assert_eq!(report["effects"][0]["kind"], "point-offset");
+    assert!(worst(&report) < 1.5, "{}", report["errors"]);
+}
+
+#[test]
+fn a_double_pendulum_that_lacks_nothing_is_left_alone() {
+    let report = report("planar-4");
+    assert_eq!(report["verdict"], "nothing-missing", "{}", report["summary"]);
+    assert_eq!(report["effects"].as_array().unwrap().len(), 0);
+    assert!(worst(&report) < 1.5, "{}", report["errors"]);
+}
