@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 /// Find out what a declared model lacks, from recorded runs of the machine
 ///
-/// A rig file is a scenario with [sensors]. The declared model is simulated along the recorded commands;
+/// A rig file is a scenario with [sensors], or a described mechanism with [[sensor]]s. The declared model is simulated along the recorded commands;
 /// what remains between measurement and model is searched for the trace of every effect at every joint
 /// (`freeplay effects` lists them), values are fitted on --data and judged on --validate (without it,
 /// on the second half of --data). The verdict: nothing-missing, explained (by which effects, with values

@@ -202,7 +202,8 @@ impl Search<'_> {
             .collect::<Vec<_>>()
             .par_iter()
             .filter_map(|near| {
-                let start = [model.fit.effects.as_slice(), &[near.effect.clone()]].concat();
+                let start =
+                    [model.fit.effects.as_slice(), std::slice::from_ref(&near.effect)].concat();
                 let fit = on.fit(&start, 8)?;
                 let there = hold.look(&fit.effects)?;
                 let gain = held.chi2 - there.chi2;
@@ -303,7 +304,8 @@ impl Search<'_> {
                 continue;
             }
             kinds.push(candidate.effect.clone());
-            let effects = [model.fit.effects.as_slice(), &[candidate.effect.clone()]].concat();
+            let effects =
+                [model.fit.effects.as_slice(), std::slice::from_ref(&candidate.effect)].concat();
             (self.tell)(&format!("simulating with {}", names(&effects)));
             if let Some(settled) = self.settle(&effects, 2)? {
                 candidate.simulated = true;
