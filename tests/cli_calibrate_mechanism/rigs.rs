@@ -42,6 +42,15 @@ fn a_four_bar_whose_rocker_is_not_as_long_as_declared_is_explained() {
 }
 
 #[test]
+fn a_slider_crank_whose_torque_repeats_with_its_angle_is_explained() {
+    let report = report("planar-6");
+    assert_eq!(report["verdict"], "explained", "{}", report["summary"]);
+    assert_eq!(report["effects"].as_array().unwrap().len(), 1);
+    assert_eq!(report["effects"][0]["kind"], "torque-ripple");
+    assert!(worst(&report) < 1.5, "{}", report["errors"]);
+}
+
+#[test]
 fn a_double_pendulum_that_lacks_nothing_is_left_alone() {
     let report = report("planar-4");
     assert_eq!(report["verdict"], "nothing-missing", "{}", report["summary"]);
