@@ -53,7 +53,12 @@ pub fn tell_apart(logs: Vec<(&mut Log, &str)>) {
 /// The name of a log without folders' separators and without `.csv`: what files about it are called
 /// after.
 pub fn stem(log: &Log) -> String {
-    let path = PathBuf::from(&log.name);
+    stem_of(&log.name)
+}
+
+/// The same of the name of a log.
+pub fn stem_of(name: &str) -> String {
+    let path = PathBuf::from(name);
     let bare = match path.extension() {
         Some(extension) if extension.eq_ignore_ascii_case("csv") => path.with_extension(""),
         _ => path,

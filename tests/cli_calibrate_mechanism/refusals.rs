@@ -30,12 +30,31 @@ fn recordings_that_cannot_be_right_are_refused() {
         (format!("{GOOD}{}0.9,1,1,0.1,1.6\n", rows(50)), &["bad.csv:52: a step of"]),
         (format!("{GOOD}{}0.050,1,one,0.1,1.6\n", rows(50)), &["column `crank` holds one"]),
         (GOOD.to_owned(), &["0 row(s)"]),
+        // Fewer rows than are left out at both ends.
+        (format!("{GOOD}{}", rows(50)), &["bad.csv: lasts 0.0490 s", "at least 1 s"]),
+        (
+            GOOD.to_owned()
+                + &(0..300)
+                    .map(|i| format!("{:.2},1,1,0.1,1.6\n", f64::from(i) * 1e-2))
+                    .collect::<String>(),
+            &["bad.csv: rows are 0.0100 s apart", "at least 200 a second"],
+        ),
     ] {
         let place = Place::new();
         place.write("rig.toml", FOUR_BAR);
         place.write("bad.csv", &text);
         place.refused("calibrate --rig rig.toml --data bad.csv --quiet", fragments);
     }
+}
+
+#[test]
+fn the_run_that_was_fitted_proves_nothing() {
+    let place = Place::new();
+    place.write("rig.toml", FOUR_BAR);
+    place.write("a.csv", &format!("{GOOD}{}", rows(1200)));
+    place.write("b.csv", &format!("{GOOD}{}", rows(1200)));
+    let line = "calibrate --rig rig.toml --data a.csv --validate b.csv --quiet";
+    place.refused(line, &["b.csv: holds the same samples as a.csv", "another run"]);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Recorded runs of any mechanism: a CSV file with a column for each sensor, one row a sample.
 
+use super::thresholds::{LOWEST_RATE, PLAIN_BAND, SHORTEST};
 use crate::measure::log::{LogError, constant_step};
 use crate::measure::spelling::nearest;
 use crate::mechanism::{Reads, Sensor};
@@ -92,6 +93,33 @@ impl Recording {
         let samples = ((seconds / self.interval) as usize + 1).min(self.samples);
         let cut = |column: &Option<Vec<f64>>| column.as_ref().map(|c| c[..samples].to_vec());
         Self { samples, columns: self.columns.iter().map(cut).collect(), ..self.clone() }
+    }
+
+    /// What speaks against calibrating with this recording.
+    pub fn wrong(&self) -> Option<LogError> {
+        let wrong = |message: String, help: String| {
+            Some(LogError { place: self.path.clone(), message, help })
+        };
+        let rate = 1.0 / self.interval;
+        // A rate that is the limit's reads a hair below it.
+        if rate < LOWEST_RATE * 0.999 {
+            let message = format!("rows are {:.4} s apart, {rate:.4} a second", self.interval);
+            let help = format!(
+                "calibrate needs at least {LOWEST_RATE} a second, because it looks at residuals up to \
+                 {PLAIN_BAND} Hz; if column `t` is in ms, write it in s"
+            );
+            return wrong(message, help);
+        }
+        if self.duration() < SHORTEST * 0.999 {
+            let message = format!("lasts {:.4} s", self.duration());
+            return wrong(message, format!("expected at least {SHORTEST} s of motion"));
+        }
+        None
+    }
+
+    /// Whether another recording holds the same samples.
+    pub fn is_twin_of(&self, other: &Self) -> bool {
+        self.columns == other.columns
     }
 
     /// Length in s.

@@ -8,6 +8,7 @@ use super::search::{Left, Tried, name};
 use super::start::machine;
 use crate::calibrate::errors::{ChannelError, worst};
 use crate::calibrate::outcome::Verdict;
+use crate::calibrate::recording::stem_of;
 use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, ResidualReport, Seeds};
 use crate::calibrate::result::{
     CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, refuse, to_json,
@@ -91,7 +92,25 @@ pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateErro
             Err(error) => errors.push(error),
         }
     }
+    errors.extend(recordings.iter().filter_map(Recording::wrong));
+    for (i, one) in recordings.iter().enumerate() {
+        for other in recordings[..i].iter().filter(|other| one.is_twin_of(other)) {
+            errors.push(LogError {
+                place: one.path.clone(),
+                message: format!("holds the same samples as {}", other.path),
+                help: "validate on another run: on the one that was fitted nothing is proved"
+                    .to_owned(),
+            });
+        }
+    }
     refuse(errors)?;
+    // Files of one name in several folders are called by their paths.
+    let names: Vec<String> = recordings.iter().map(|r: &Recording| r.name.clone()).collect();
+    for recording in &mut recordings {
+        if names.iter().filter(|name| **name == recording.name).count() > 1 {
+            recording.name.clone_from(&recording.path);
+        }
+    }
     // What the machine cannot be at a recording's first row is told before anything is written.
     for recording in &recordings {
         machine(&rig, &[], recording)?;
@@ -138,8 +157,7 @@ pub fn into_folder(
     let sensors = &problem.declared.sensors;
     let mut files: Vec<(String, String)> = Vec::new();
     for (run, predicted) in problem.runs.iter().zip(&outcome.predicted) {
-        let stem = Path::new(&run.recording.name).file_stem();
-        let stem = stem.map_or_else(|| "run".into(), |stem| stem.to_string_lossy());
+        let stem = stem_of(&run.recording.name);
         files.push((format!("predicted-{stem}.csv"), predicted.to_csv(sensors)));
     }
     let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();

@@ -3,6 +3,12 @@
 /// Rate in Hz at which residuals are looked at, at least: twice the highest band below, and half again.
 pub const RATE: f64 = 250.0;
 
+/// Lowest rate of a recording in Hz: more than twice [`PLAIN_BAND`], the highest frequency that is looked at.
+pub const LOWEST_RATE: f64 = 200.0;
+
+/// Shortest recording in s: shorter ones hold less than a machine's motion.
+pub const SHORTEST: f64 = 1.0;
+
 /// Corner in Hz of the low-pass before that: below half the rate.
 pub const PREFILTER: f64 = 100.0;
 
