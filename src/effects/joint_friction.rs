@@ -1,6 +1,6 @@
 //! Friction in any joint.
 
-use super::kind::{defaults, linear};
+use super::kind::defaults;
 use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{JointIndex, Load, Mechanism, Situation};
 use nalgebra::Vector3;
@@ -9,6 +9,10 @@ use std::sync::Arc;
 /// Rates at which Coulomb friction is near its full value where none is given: slow against working speeds
 /// of a slide (m/s), and of a pin some centimetres across that slides as slowly (rad/s).
 const NEAR_REST: [f64; 2] = [1e-3, 1e-2];
+
+/// Rates v_s in m/s or rad/s from which a search for it starts: dry metal to a slow film of grease, in steps
+/// that least squares bridge.
+const RATES: [f64; 4] = [3e-3, 1e-2, 3e-2, 1e-1];
 
 pub(super) const KIND: Kind = Kind {
     name: "joint-friction",
@@ -32,9 +36,24 @@ pub(super) const KIND: Kind = Kind {
             default: None,
         },
     ],
-    variants: &[&["coulomb"], &["viscous"], &["coulomb", "viscous"]],
-    neutral: defaults,
-    starts: linear,
+    variants: &[
+        &["coulomb"],
+        &["viscous"],
+        &["coulomb", "viscous"],
+        &["coulomb", "viscous", "velocity"],
+    ],
+    neutral: |mechanism, setting| {
+        let mut values = defaults(mechanism, setting);
+        // Any rate does where there is no friction; none is not one.
+        if let Some(velocity) = values.get_mut(2) {
+            *velocity = NEAR_REST[1];
+        }
+        values
+    },
+    starts: |variant| match variant {
+        [_, _, _] => RATES.map(|velocity| vec![1e-3, 0.0, velocity]).to_vec(),
+        _ => Vec::new(),
+    },
     scan: None,
     apply,
 };

@@ -50,11 +50,13 @@ mod torque_ripple;
 mod tracker_frame;
 mod unbalance;
 mod unnamed;
+mod unnamed_efforts;
 
 pub use kind::{Joints, Kind, Parameter, Range, Scan, Senses, Targets};
 pub use setting::{Setting, Wrong};
 pub use target::Target;
 pub use unnamed::{DependsOn, Map, Motion, UNNAMED};
+pub use unnamed_efforts::{Efforts, Over};
 
 /// Every effect there is, in the order in which they are listed.
 pub const ALL: &[&Kind] = &[

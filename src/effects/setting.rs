@@ -1,6 +1,6 @@
 //! An effect with its numbers.
 
-use super::{Kind, Map, Parameter, Target, Targets, named};
+use super::{Efforts, Kind, Map, Parameter, Target, Targets, named};
 use crate::measure::spelling::nearest;
 use crate::mechanism::{Axes, JointIndex, Mark, Mechanism};
 use nalgebra::Vector2;
@@ -29,11 +29,16 @@ pub struct Setting {
     values: Vec<(&'static str, f64)>,
     /// What an effect without a name does.
     pub(super) map: Option<Arc<Map>>,
+    /// The same of a mechanism's joints.
+    pub(super) efforts: Option<Arc<Efforts>>,
 }
 
 impl PartialEq for Setting {
     fn eq(&self, other: &Self) -> bool {
-        self.is(other) && self.values == other.values && self.map == other.map
+        self.is(other)
+            && self.values == other.values
+            && self.map == other.map
+            && self.efforts == other.efforts
     }
 }
 
@@ -56,7 +61,7 @@ impl Setting {
 
     /// The effect `kind` of a target, with these values of its parameters.
     pub fn on(kind: &'static Kind, target: Target, values: &[(&'static str, f64)]) -> Self {
-        Self { kind, target, values: values.to_vec(), map: None }
+        Self { kind, target, values: values.to_vec(), map: None, efforts: None }
     }
 
     /// The effect `kind` of a target of `mechanism`, where a variant's values change nothing.
@@ -85,6 +90,17 @@ impl Setting {
         Self { map: Some(Arc::new(map)), ..Self::on(kind, Target::Machine, &[]) }
     }
 
+    /// A fitted table of efforts in joints that have no name.
+    pub fn unnamed_efforts(table: Efforts) -> Self {
+        let kind = &super::unnamed::KIND;
+        Self { efforts: Some(Arc::new(table)), ..Self::on(kind, Target::Machine, &[]) }
+    }
+
+    /// The table of efforts of an effect without a name.
+    pub fn efforts(&self) -> Option<&Efforts> {
+        self.efforts.as_deref()
+    }
+
     /// The map of an effect without a name.
     pub fn map(&self) -> Option<&Map> {
         self.map.as_deref()
@@ -107,7 +123,11 @@ impl Setting {
         };
         let mut setting = Self::on(kind, Target::Machine, &[]);
         if kind.name == super::unnamed::KIND.name {
-            setting.map = Some(Arc::new(Map::from_table(table)?));
+            if table.contains_key("joints") {
+                setting.efforts = Some(Arc::new(Efforts::from_table(table)?));
+            } else {
+                setting.map = Some(Arc::new(Map::from_table(table)?));
+            }
             return Ok(setting);
         }
         for (key, value) in table {
@@ -350,6 +370,14 @@ impl Serialize for Setting {
             map.serialize_entry("reach", &unnamed.reach)?;
             map.serialize_entry("lengths", &unnamed.lengths)?;
             map.serialize_entry("coefficients", &unnamed.coefficients)?;
+        }
+        if let Some(table) = &self.efforts {
+            map.serialize_entry("depends_on", &table.depends_on)?;
+            map.serialize_entry("joints", &table.joints)?;
+            map.serialize_entry("middle", &table.middle)?;
+            map.serialize_entry("reach", &table.reach)?;
+            map.serialize_entry("rates", &table.rates)?;
+            map.serialize_entry("coefficients", &table.coefficients)?;
         }
         map.end()
     }

@@ -200,7 +200,7 @@ impl Load for Applied {
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    let Some(map) = &setting.map else { return Ok(()) };
+    let Some(map) = &setting.map else { return super::unnamed_efforts::apply(setting, mechanism) };
     let components = map.components(mechanism.actuators.len());
     if map.coefficients.len() != components {
         return Err(Wrong {

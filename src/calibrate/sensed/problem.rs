@@ -183,13 +183,13 @@ impl Problem {
         self.runs.par_iter().map(still).collect()
     }
 
-    /// Finds out whether replicas of the declared machine differ by more than sensors see, and by how much, in
-    /// units of their noise.
+    /// Finds out whether replicas of the machine with these effects differ by more than sensors see, and by how
+    /// much, in units of their noise. Where they do, means are taken of several simulations from now on.
     ///
     /// # Errors
     /// A run that broke down.
-    pub fn look_for_rattle(&mut self) -> Result<f64, Stopped> {
-        let logs = self.simulated(&[], 2)?;
+    pub fn look_for_rattle(&mut self, effects: &[Setting]) -> Result<f64, Stopped> {
+        let logs = self.simulated(effects, 2)?;
         let sensors = &self.declared.sensors;
         let mut largest = 0.0f64;
         for pair in &logs {
@@ -200,7 +200,9 @@ impl Problem {
                 largest = largest.max((squares / a.len() as f64).sqrt() / noise);
             }
         }
-        self.replicas = if largest > thresholds::SEEN { thresholds::REPLICAS } else { 1 };
+        if largest > thresholds::SEEN {
+            self.replicas = thresholds::REPLICAS;
+        }
         Ok(largest)
     }
 

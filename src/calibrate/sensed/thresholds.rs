@@ -73,3 +73,10 @@ pub const LARGEST: f64 = 6.0;
 
 /// Largest error after calibration, in floors, of a model that explains.
 pub const MET: f64 = 1.5;
+
+/// Share of what stands above noise on data that a table of efforts was not fitted to that it has to remove: less
+/// is chance.
+pub const TABLE: f64 = 0.05;
+
+/// How often a table is fitted anew, its model simulated in between: what a look is wrong by depends on it.
+pub const TABLE_PASSES: usize = 2;
