@@ -71,7 +71,8 @@ pub struct Prepared {
 /// Everything that is wrong with them.
 pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateError> {
     let mut wrong: Vec<String> = Vec::new();
-    if rig.mechanism.described().is_none_or(|described| described.sensors.is_empty()) {
+    let built: Mechanism = crate::model::parts_of(&rig)?;
+    if built.sensors.is_empty() {
         let help = "describe each column of the recordings by a [[sensor]]";
         let message = "is missing: nobody knows what the columns of the recordings are".to_owned();
         wrong.push(rig.problem("sensor", message, help).to_string());
@@ -83,7 +84,6 @@ pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateErro
         wrong.push(rig.problem("effect", message, help).to_string());
     }
     refuse(wrong)?;
-    let built: Mechanism = crate::model::parts_of(&rig)?;
     let mut recordings = Vec::new();
     let mut errors: Vec<LogError> = Vec::new();
     for path in paths {
