@@ -256,8 +256,11 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     let kept = |tried: &Tried| outcome.effects.iter().any(|(effect, _)| effect.is(&tried.effect));
     let mut ranked = Vec::new();
     for (i, round) in outcome.rounds.iter().enumerate() {
-        for tried in &round.tried {
-            let added = round.added.as_ref().is_some_and(|added| added.is(&tried.effect));
+        let added = |tried: &&Tried| round.added.as_ref().is_some_and(|a| a.is(&tried.effect));
+        // Of the variants of one effect the one that was simulated, which comes first.
+        let own = round.tried.iter().position(|tried| tried.simulated && added(&tried));
+        for (place, tried) in round.tried.iter().enumerate() {
+            let added = own == Some(place);
             ranked.push(Ranked {
                 kind: tried.effect.kind.name,
                 on: ActsOn::of(&tried.effect),

@@ -7,7 +7,7 @@ use super::fit::{Fit, Target};
 use super::problem::{Problem, Split, Stopped};
 use super::residual::{Kind, Name};
 use super::thresholds::{
-    BUDGET, CLOSER, EFFECTS, GAIN, GAIN_PER_VALUE, HYPOTHESES, LARGEST, NOISE, SIMULATED,
+    BUDGET, CLOSER, EFFECTS, GAIN, GAIN_PER_VALUE, HYPOTHESES, LARGEST, MOSTLY, NOISE, SIMULATED,
 };
 use super::trajectory::fitted;
 use crate::effects::{Joints, Setting, Targets};
@@ -317,11 +317,25 @@ impl Search<'_> {
                 found.push(settled);
             }
         }
-        if !found.iter().any(|model| is_noise(&self.left(model))) {
+        // What residuals see is tried before what they hardly see.
+        let seen = |tried: &Tried| tried.simulated && tried.gain > GAIN && tried.share > MOSTLY;
+        let noise = |model: &Model| is_noise(&self.left(model));
+        if !tried.iter().any(seen) && !found.iter().any(noise) {
             found.extend(self.unseen(model, &mut tried)?);
         }
         found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         Ok((Round { tried, ..Round::default() }, found))
+    }
+
+    /// The model with an effect that left nothing but noise beside another one, which may have been mistaken for
+    /// an effect of this one.
+    fn also(&self, model: &Model, effect: &Setting) -> Result<Vec<Model>, Stopped> {
+        if model.fit.effects.iter().any(|own| own.is(effect)) {
+            return Ok(Vec::new());
+        }
+        let effects = [model.fit.effects.as_slice(), std::slice::from_ref(effect)].concat();
+        (self.tell)(&format!("simulating with {}", names(&effects)));
+        Ok(self.settle(&effects, 2)?.into_iter().collect())
     }
 
     /// Models with one more effect of the joints' bearings, which residuals hardly see without a simulation: how
@@ -377,13 +391,19 @@ impl Search<'_> {
         {
             let mut next: Vec<Model> = Vec::new();
             let mut round = Round::default();
+            let mut enough: Option<Setting> = None;
             for (i, model) in hypotheses.iter().enumerate() {
-                if i > 0 && self.problem.simulations() > BUDGET {
-                    break;
-                }
-                let (own, found) = self.beside(model)?;
+                let (own, found) = match &enough {
+                    _ if i > 0 && self.problem.simulations() > BUDGET => break,
+                    Some(effect) => (Round::default(), self.also(model, effect)?),
+                    None => self.beside(model)?,
+                };
                 if i == 0 {
                     round = own;
+                }
+                if enough.is_none() {
+                    let last = found.iter().find(|model| is_noise(&self.left(model)));
+                    enough = last.and_then(|model| model.fit.effects.last().cloned());
                 }
                 next.extend(found);
             }
@@ -422,6 +442,7 @@ impl Search<'_> {
                 best = self.refined(best)?;
             }
         }
+        credited(&mut rounds, &best.fit.effects);
         Ok(Found { best, declared, rounds })
     }
 
@@ -456,6 +477,27 @@ impl Search<'_> {
             }
         }
         Ok(model)
+    }
+}
+
+/// Gives each effect that was kept the round in which it was tried first, where another hypothesis was the better
+/// one at that time.
+fn credited(rounds: &mut [Round], kept: &[Setting]) {
+    let added = |rounds: &[Round], effect: &Setting| {
+        rounds.iter().any(|round| round.added.as_ref().is_some_and(|added| added.is(effect)))
+    };
+    for effect in kept {
+        if added(rounds, effect) {
+            continue;
+        }
+        let free = |round: &&mut Round| {
+            let own = |added: &Setting| kept.iter().any(|kept| kept.is(added));
+            let tried = round.tried.iter().any(|t| t.simulated && t.effect.is(effect));
+            tried && !round.added.as_ref().is_some_and(own)
+        };
+        if let Some(round) = rounds.iter_mut().find(free) {
+            round.added = Some(effect.clone());
+        }
     }
 }
 

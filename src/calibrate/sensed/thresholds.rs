@@ -51,11 +51,15 @@ pub const EFFECTS: usize = 5;
 
 /// Hypotheses that are followed at once; candidates of each that are fitted by more than one linear step, and of
 /// these that are simulated.
-pub const HYPOTHESES: usize = 2;
+pub const HYPOTHESES: usize = 4;
 /// See [`HYPOTHESES`].
 pub const CLOSER: usize = 8;
 /// See [`HYPOTHESES`].
 pub const SIMULATED: usize = 5;
+
+/// Share of what stands above noise from which an effect is mostly what is missing: where residuals show such a
+/// one, what only simulations would show is not looked for.
+pub const MOSTLY: f64 = 0.5;
 
 /// Simulations of a run after which no further effect is looked for: what two slow cores do in two minutes, at
 /// some 0.8 s for one of three seconds, leaves as much for what follows.
