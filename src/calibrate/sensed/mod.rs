@@ -8,6 +8,7 @@
 
 pub mod baseline;
 pub mod basis;
+mod calm;
 pub mod candidates;
 pub mod errors;
 pub mod estimate;

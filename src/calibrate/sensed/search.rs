@@ -7,7 +7,8 @@ use super::fit::{Fit, Target};
 use super::problem::{Problem, Split, Stopped};
 use super::residual::{Kind, Name};
 use super::thresholds::{
-    BUDGET, CLOSER, EFFECTS, GAIN, GAIN_PER_VALUE, HYPOTHESES, LARGEST, MOSTLY, NOISE, SIMULATED,
+    BUDGET, CLOSER, EFFECTS, GAIN, GAIN_PER_VALUE, HYPOTHESES, LARGEST, MOSTLY, NOISE, PROMISING,
+    SIMULATED,
 };
 use super::trajectory::fitted;
 use crate::effects::{Joints, Setting, Targets};
@@ -297,34 +298,62 @@ impl Search<'_> {
     fn beside(&self, model: &Model) -> Result<(Round, Vec<Model>), Stopped> {
         (self.tell)(&format!("trying every effect{}", beside(&model.fit.effects)));
         let mut tried = self.screened(model);
-        let mut found = Vec::new();
-        let mut kinds: Vec<Setting> = Vec::new();
+        let mut found: Vec<Model> = Vec::new();
         for candidate in tried.iter_mut() {
-            if kinds.len() >= SIMULATED || candidate.gain < 0.5 * GAIN {
+            if found.len() >= SIMULATED || candidate.gain < 0.5 * GAIN[0] {
                 break;
             }
             // Variants of one effect are one hypothesis.
-            if kinds.iter().any(|known| known.is(&candidate.effect)) {
+            let last =
+                |model: &Model| model.fit.effects.last().is_some_and(|e| e.is(&candidate.effect));
+            if found.iter().any(last) {
                 continue;
             }
-            kinds.push(candidate.effect.clone());
             let effects =
                 [model.fit.effects.as_slice(), std::slice::from_ref(&candidate.effect)].concat();
             (self.tell)(&format!("simulating with {}", names(&effects)));
-            if let Some(settled) = self.settle(&effects, 2)? {
+            if let Some(settled) = self.settle(&effects, 1)? {
                 candidate.simulated = true;
                 candidate.gain = model.cost() - settled.cost();
                 found.push(settled);
             }
         }
+        self.again(model, &mut found, &mut tried)?;
         // What residuals see is tried before what they hardly see.
-        let seen = |tried: &Tried| tried.simulated && tried.gain > GAIN && tried.share > MOSTLY;
+        let seen =
+            |tried: &Tried| tried.simulated && tried.gain > price(model) && tried.share > MOSTLY;
         let noise = |model: &Model| is_noise(&self.left(model));
         if !tried.iter().any(seen) && !found.iter().any(noise) {
             found.extend(self.unseen(model, &mut tried)?);
         }
         found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         Ok((Round { tried, ..Round::default() }, found))
+    }
+
+    /// Simulates rivals again at the values that their first simulations led to, those that promise nearly as much
+    /// as the best of them.
+    fn again(
+        &self,
+        model: &Model,
+        found: &mut [Model],
+        tried: &mut [Tried],
+    ) -> Result<(), Stopped> {
+        let best = found.iter().map(Model::cost).fold(model.cost(), f64::min);
+        let enough = model.cost() - PROMISING * (model.cost() - best);
+        for rival in found.iter_mut().filter(|rival| rival.cost() <= enough) {
+            let Some(settled) = self.settle(&rival.fit.effects, 1)? else { continue };
+            if !settled.baseline.rattles || settled.misfit < rival.misfit {
+                *rival = settled;
+            }
+            let last = rival.fit.effects.last();
+            let own = |tried: &&mut Tried| {
+                tried.simulated && last.is_some_and(|effect| effect.is(&tried.effect))
+            };
+            if let Some(tried) = tried.iter_mut().find(own) {
+                tried.gain = model.cost() - rival.cost();
+            }
+        }
+        Ok(())
     }
 
     /// The model with an effect that left nothing but noise beside another one, which may have been mistaken for
@@ -348,23 +377,18 @@ impl Search<'_> {
         let of_bearings = |tried: &&mut Tried| {
             let targets = tried.effect.kind.targets;
             let bearing = [Targets::Joint, Targets::JointOrAll].map(|of| of(Joints::Bearing));
-            bearing.contains(&targets) && tried.gain < GAIN
+            bearing.contains(&targets) && tried.gain < GAIN[0]
         };
         for candidate in tried.iter_mut().filter(of_bearings) {
             if self.problem.simulations() > BUDGET {
                 break;
             }
-            let away = candidate.effect.values().map(|(name, value)| {
-                let parameter = candidate.effect.kind.parameter(name);
-                parameter.map_or(value, |p| (value + AWAY * p.step).clamp(p.bounds[0], p.bounds[1]))
-            });
-            let away = candidate.effect.with(&away.collect::<Vec<_>>());
-            let effects = [model.fit.effects.as_slice(), &[away]].concat();
+            let effects = [model.fit.effects.as_slice(), &[away(&candidate.effect)]].concat();
             (self.tell)(&format!("simulating with {}", names(&effects)));
             let Some(settled) = self.settle(&effects, 1)? else { continue };
             candidate.simulated = true;
             candidate.gain = model.cost() - settled.cost();
-            if candidate.gain > GAIN {
+            if candidate.gain > GAIN[0] {
                 found.push(self.refined(settled)?);
             }
         }
@@ -409,7 +433,7 @@ impl Search<'_> {
             }
             next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
             next.dedup_by(|a, b| same(&a.fit.effects, &b.fit.effects));
-            let won = next.first().is_some_and(|first| first.cost() < best.cost() - GAIN);
+            let won = next.first().is_some_and(|first| first.cost() < best.cost() - price(&best));
             if !won {
                 rounds.push(round);
                 break;
@@ -429,6 +453,17 @@ impl Search<'_> {
             next.retain(|model| before - model.cost() > 0.7 * (before - cost));
             next.truncate(HYPOTHESES);
             hypotheses = next;
+        }
+        // What is noise already is not explained any better; that recorded joints rattle less than a model's does
+        // not show in what is left, only in its size.
+        while best.baseline.rattles
+            && best.fit.effects.len() < EFFECTS
+            && is_noise(&self.left(&best))
+        {
+            let (round, calmer) = self.calmer(&best)?;
+            rounds.push(round);
+            let Some(calmer) = calmer else { break };
+            best = calmer;
         }
         if !best.fit.effects.is_empty() {
             // Values that leave noise are left alone: looks alone do not find them as well again.
@@ -472,12 +507,26 @@ impl Search<'_> {
             let dropped = fewer.remove(i);
             (self.tell)(&format!("simulating without {}", name(&dropped)));
             match self.settle(&fewer, 2)? {
-                Some(simpler) if simpler.cost() < model.cost() + GAIN => model = simpler,
+                Some(simpler) if simpler.cost() < model.cost() + price(&model) => model = simpler,
                 _ => i += 1,
             }
         }
         Ok(model)
     }
+}
+
+/// Drop of cost that one more effect has to bring.
+fn price(model: &Model) -> f64 {
+    GAIN[usize::from(model.baseline.rattles)]
+}
+
+/// An effect some way from its values, for what only simulations show.
+pub(super) fn away(effect: &Setting) -> Setting {
+    let values = effect.values().map(|(name, value)| {
+        let parameter = effect.kind.parameter(name);
+        parameter.map_or(value, |p| (value + AWAY * p.step).clamp(p.bounds[0], p.bounds[1]))
+    });
+    effect.with(&values.collect::<Vec<_>>())
 }
 
 /// Gives each effect that was kept the round in which it was tried first, where another hypothesis was the better
