@@ -111,6 +111,16 @@ pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateErro
             recording.name.clone_from(&recording.path);
         }
     }
+    // One look serves all runs: it is through the sensors that all of them have.
+    let common: Vec<bool> =
+        (0..built.sensors.len()).map(|i| recordings.iter().all(|r| r.get(i).is_some())).collect();
+    for recording in &mut recordings {
+        let columns = common
+            .iter()
+            .enumerate()
+            .map(|(i, common)| recording.get(i).filter(|_| *common).map(<[f64]>::to_vec));
+        *recording = recording.with(columns.collect());
+    }
     // What the machine cannot be at a recording's first row is told before anything is written.
     for recording in &recordings {
         machine(&rig, &[], recording)?;

@@ -8,7 +8,7 @@ use super::problem::{Problem, Split, Stopped};
 use super::residual::{Kind, Name};
 use super::thresholds::{
     BUDGET, CLOSER, EFFECTS, GAIN, GAIN_PER_VALUE, HYPOTHESES, LARGEST, MOSTLY, NOISE, PROMISING,
-    SIMULATED,
+    SIMULATED, TWINS,
 };
 use super::trajectory::fitted;
 use crate::effects::{Joints, Setting, Targets};
@@ -106,11 +106,8 @@ const SETTLED: f64 = 0.3;
 /// joint's clearance of 0.05 mm more.
 const AWAY: f64 = 10.0;
 
-/// Drop of cost within which two hypotheses are as good as each other: chance gives one of two rivals as much.
-const APART: f64 = 10.0;
-
 impl Search<'_> {
-    fn target<'b>(&'b self, baseline: &'b Baseline, held: bool) -> Target<'b> {
+    pub(super) fn target<'b>(&'b self, baseline: &'b Baseline, held: bool) -> Target<'b> {
         let on = if held { &self.split.hold } else { &self.split.on };
         Target { problem: self.problem, baseline, on }
     }
@@ -319,6 +316,7 @@ impl Search<'_> {
             }
         }
         self.again(model, &mut found, &mut tried)?;
+        found.retain(|rival| !rival.fit.effects.last().is_some_and(at_a_limit));
         // What residuals see is tried before what they hardly see.
         let seen =
             |tried: &Tried| tried.simulated && tried.gain > price(model) && tried.share > MOSTLY;
@@ -440,7 +438,7 @@ impl Search<'_> {
             }
             let cost = next[0].cost();
             round.added = next[0].fit.effects.last().cloned();
-            let near = next.iter().skip(1).filter(|model| model.cost() < cost + APART);
+            let near = next.iter().skip(1).filter(|model| model.cost() < cost + TWINS);
             round.as_good = near.filter_map(|model| model.fit.effects.last().cloned()).collect();
             rounds.push(round);
             let before = best.cost();
@@ -472,6 +470,7 @@ impl Search<'_> {
                 let settled = self.settle(&best.fit.effects, 4)?;
                 best = settled.filter(|model| model.misfit < best.misfit).unwrap_or(best);
             }
+            best = self.simplified(best)?;
             best = self.needed(best)?;
             if !is_noise(&self.left(&best)) {
                 best = self.refined(best)?;
@@ -513,6 +512,18 @@ impl Search<'_> {
         }
         Ok(model)
     }
+}
+
+/// Whether a value of an effect lies at the end of what makes sense, where the effect is not its neutral self: it
+/// imitates another one.
+fn at_a_limit(effect: &Setting) -> bool {
+    let phase = effect.kind.scan.map(|scan| scan.phase);
+    effect.values().any(|(name, value)| {
+        let Some(parameter) = effect.kind.parameter(name) else { return false };
+        let near = |bound: f64| (value - bound).abs() < parameter.step;
+        let ends = parameter.bounds.into_iter().filter(|bound| *bound != 0.0);
+        Some(name) != phase && ends.into_iter().any(near)
+    })
 }
 
 /// Drop of cost that one more effect has to bring.

@@ -55,6 +55,9 @@ pub const GAIN_PER_VALUE: f64 = 2.0;
 /// Most effects that are added: more than any machine was seen to need, so that a search ends.
 pub const EFFECTS: usize = 5;
 
+/// Drop of cost within which two hypotheses are as good as each other: chance gives one of two rivals as much.
+pub const TWINS: f64 = 10.0;
+
 /// Hypotheses that are followed at once; candidates of each that are fitted by more than one linear step, and of
 /// these that are simulated.
 pub const HYPOTHESES: usize = 4;

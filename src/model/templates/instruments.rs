@@ -39,3 +39,28 @@ pub(super) fn of(scenario: &Scenario, output: &mut Body, joints: &[&str]) -> Vec
     }
     sensors
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::model::{expand, parts_of};
+    use crate::scenario::Scenario;
+
+    #[test]
+    fn a_rig_has_a_sensor_for_each_column_of_its_recordings() {
+        let text =
+            "[mechanism]\nkind = \"3rpr\"\n[sensors]\nangle_std = 3e-5\nforce_lowpass = 400.0\n";
+        let rig = Scenario::from_text(text, "rig.toml", &[]).unwrap();
+        let sensors = parts_of(&rig).unwrap().sensors;
+        let columns: Vec<&str> = sensors.iter().map(|sensor| sensor.column.as_str()).collect();
+        let expected = "q1_cmd q2_cmd q3_cmd q1 q2 q3 F1 F2 F3 x y phi";
+        assert_eq!(columns.join(" "), expected);
+        assert_eq!((sensors[6].lowpass, sensors[11].std), (400.0, 3e-5));
+        // The file that it stands for says so itself.
+        let written = expand(&rig).unwrap().to_toml();
+        let again = parts_of(&Scenario::from_text(&written, "written.toml", &[]).unwrap()).unwrap();
+        assert_eq!(again.sensors.len(), sensors.len());
+        // Nobody measures a machine without the section.
+        let bare = Scenario::from_text("[mechanism]\nkind = \"3rpr\"\n", "bare.toml", &[]).unwrap();
+        assert!(parts_of(&bare).unwrap().sensors.is_empty());
+    }
+}
