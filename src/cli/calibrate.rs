@@ -29,7 +29,8 @@ use std::path::{Path, PathBuf};
 ///
 /// The results go into a new folder: index.html (look at this first), report.json, calibrated.toml (the
 /// rig with what was found: a scenario like any other), predicted-RUN.csv for each log, and pictures.
-/// It takes a minute or two for runs of three seconds.
+/// It takes a minute or two for runs of three seconds. Measured columns may be missing: what is there is
+/// looked at through its own sensor, as those of described mechanisms are.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
