@@ -267,8 +267,9 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     let mut ranked = Vec::new();
     for (i, round) in outcome.rounds.iter().enumerate() {
         let added = |tried: &&Tried| round.added.as_ref().is_some_and(|a| a.is(&tried.effect));
-        // Of the variants of one effect the one that was simulated, which comes first.
+        // Of the variants of one effect the one that was simulated, if any was.
         let own = round.tried.iter().position(|tried| tried.simulated && added(&tried));
+        let own = own.or_else(|| round.tried.iter().position(|tried| added(&tried)));
         for (place, tried) in round.tried.iter().enumerate() {
             let added = own == Some(place);
             ranked.push(Ranked {

@@ -552,7 +552,7 @@ fn credited(rounds: &mut [Round], kept: &[Setting]) {
         }
         let free = |round: &&mut Round| {
             let own = |added: &Setting| kept.iter().any(|kept| kept.is(added));
-            let tried = round.tried.iter().any(|t| t.simulated && t.effect.is(effect));
+            let tried = round.tried.iter().any(|tried| tried.effect.is(effect));
             tried && !round.added.as_ref().is_some_and(own)
         };
         if let Some(round) = rounds.iter_mut().find(free) {

@@ -1,10 +1,10 @@
-//! Simpler variants of the effects that were found: values that bring no more than chance does are not given.
+//! Simpler variants of the effects that were found, and effects that they contain: values that bring no more than chance does are not given.
 
 use super::fit::Fit;
 use super::problem::Stopped;
 use super::search::{Model, Search, name};
 use super::thresholds::{GAIN_PER_VALUE, TWINS};
-use crate::effects::{Setting, Target as On};
+use crate::effects::{CONTAINS, Kind, Setting};
 
 impl Search<'_> {
     /// The model with variants of its effects that have fewer values where they do as well: on data that they
@@ -41,18 +41,26 @@ impl Search<'_> {
         Ok(best)
     }
 
-    /// The variants of an effect with fewer values than it has, those with the fewest first.
+    /// The variants of an effect, and of those that it contains, with fewer values than it has, those with the
+    /// fewest first.
     fn variants(&self, effect: &Setting) -> Vec<Setting> {
-        let target: &On = &effect.target;
-        let mut variants = effect.kind.variants_of(&self.problem.declared, target);
-        variants.retain(|names| names.len() < effect.values().count());
-        variants.sort_by_key(|names| names.len());
-        let with = |names: &[&'static str]| {
+        let inner = CONTAINS.iter().filter(|(outer, _)| outer.name == effect.kind.name);
+        let kinds = inner.map(|(_, inner)| *inner).chain([effect.kind]);
+        let with = |kind: &'static Kind, names: &[&'static str]| {
             let values: Vec<(&'static str, f64)> =
                 names.iter().map(|name| (*name, effect.value(name).unwrap_or(0.0))).collect();
-            Setting::on(effect.kind, effect.target.clone(), &values)
+            Setting::on(kind, effect.target.clone(), &values)
         };
-        variants.into_iter().map(with).collect()
+        let mut simpler: Vec<Setting> = kinds
+            .flat_map(|kind| {
+                let variants = kind.variants_of(&self.problem.declared, &effect.target);
+                variants.into_iter().map(move |names| with(kind, names))
+            })
+            .filter(|simpler| simpler.better_known_as(&self.problem.declared).is_none())
+            .filter(|simpler| simpler.values().count() < effect.values().count())
+            .collect();
+        simpler.sort_by_key(|simpler| simpler.values().count());
+        simpler
     }
 }
 
