@@ -267,7 +267,7 @@ fn estimates(model: &Settled, on: &[Segment]) -> Vec<Vec<Estimate>> {
 }
 
 /// `(JᵀJ)⁻¹`, of values of very different size.
-fn inverse_normal(jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+pub(super) fn inverse_normal(jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale: Vec<f64> = jacobian.column_iter().map(|c| c.norm().max(1e-300)).collect();
     let scaled = |matrix: DMatrix<f64>| {
         DMatrix::from_fn(scale.len(), scale.len(), |r, c| matrix[(r, c)] / (scale[r] * scale[c]))
@@ -278,7 +278,7 @@ fn inverse_normal(jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 /// Mean square of what draws of noise do to values, in units of `(JᵀJ)⁻¹`: the noise is known frequency
 /// by frequency, and a rattle that hangs together over several pulls a value that all of them tell of
 /// further (a parametric bootstrap; Efron and Tibshirani, *An Introduction to the Bootstrap*, 1993, §6.5).
-fn pull(jacobian: &DMatrix<f64>, inverse: &DMatrix<f64>, draws: &[DVector<f64>]) -> f64 {
+pub(super) fn pull(jacobian: &DMatrix<f64>, inverse: &DMatrix<f64>, draws: &[DVector<f64>]) -> f64 {
     let squares = draws.iter().map(|draw| {
         let along = jacobian.transpose() * draw;
         along.dot(&(inverse * &along))

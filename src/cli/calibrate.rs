@@ -7,9 +7,9 @@ use super::self_test::SelfTest;
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::outcome::MOST;
 use crate::calibrate::report::EffectReport;
-use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare};
+use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare, refuse};
 use crate::calibrate::single::{self, Adjusted, Machine};
-use crate::calibrate::{quantity, recording, sensed};
+use crate::calibrate::{plausibility, quantity, recording, sensed};
 use crate::effects::{ALL, named};
 use crate::measure::spelling::nearest;
 use crate::report::{known_to, number};
@@ -29,7 +29,8 @@ use std::path::{Path, PathBuf};
 ///
 /// The results go into a new folder: index.html (look at this first), report.json, calibrated.toml (the
 /// rig with what was found: a scenario like any other), predicted-RUN.csv for each log, and pictures.
-/// It takes a minute or two for runs of three seconds.
+/// It takes a minute or two for runs of three seconds. Measured columns may be missing: what is there is
+/// looked at through its own sensor, as those of described mechanisms are.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
@@ -92,6 +93,10 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         return any_mechanism(arguments, rig, &paths, &without);
     }
     let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
+    if !recordings.iter().all(plausibility::is_complete) {
+        refuse(plausibility::incomplete(&rig, &recordings))?;
+        return any_mechanism(arguments, rig, &paths, &without);
+    }
     let name = rig.name.clone();
     let prepared = prepare(rig, recordings)?;
     let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;

@@ -48,6 +48,7 @@ mod target;
 mod tether;
 mod torque_ripple;
 mod tracker_frame;
+mod twins;
 mod unbalance;
 mod unnamed;
 mod unnamed_efforts;

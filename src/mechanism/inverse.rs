@@ -9,24 +9,24 @@ use nalgebra::{DMatrix, DVector, UnitComplex, Vector2, Vector3};
 /// What a motion takes at one instant.
 #[derive(Clone, Debug)]
 pub struct Taken {
-    /// Effort along the coordinate of each drive that imposes the motion, in N or N·m.
+    /// Effort along the coordinate of each drive, in N or N·m.
     pub efforts: Vec<f64>,
     /// Force of each revolute joint on its journal's body in N, world directions.
     pub reactions: Vec<Vector2<f64>>,
-    /// States with journals that lean on their rings as the forces say, the imposed coordinates as they are.
+    /// States with journals that lean on their rings as the forces say, what imposes the motion as it is.
     pub leaning: Vec<BodyState>,
 }
 
 impl Tracker {
-    /// What the present state of a motion that drives impose takes of `mechanism`, the machine with its
+    /// What the present state of a motion takes of `mechanism`, the machine with its
     /// clearances and loads: with M, the masses, a, the accelerations, w, gravity and loads, J and B, the rows
-    /// of the joints and of the imposed coordinates, `M a = w + Jᵀ λ + Bᵀ τ`, τ being the efforts.
+    /// of the joints and of the drives' coordinates, `M a = w + Jᵀ λ + Bᵀ τ`, τ being the efforts.
     ///
     /// Joint forces are those λ that fit best when the `measured` efforts (N, N·m; of each drive) act in place
     /// of τ: what acts on the machine beside them turns fewer of them. Friction in joints with clearance
     /// depends on λ: it is looked at without, then with it.
     ///
-    /// `t` is the time in s that loads see; `applied` are efforts at joints beside the imposed ones. None in a
+    /// `t` is the time in s that loads see; `applied` are efforts at joints beside those of the drives. None in a
     /// singular pose.
     pub fn taken(
         &self,
@@ -73,17 +73,24 @@ impl Tracker {
                 }
             }
         }
-        let mut gaps = DVector::zeros(closure.rows.len());
+        // What is imposed stays where it is.
+        let imposed = match self.by_drives() {
+            true => rows,
+            false => matrix(&self.determining(), bodies),
+        };
+        let mut gaps = DVector::zeros(imposed.nrows());
         let mut next = 0;
-        for &row in &joints {
+        for (place, &row) in joints.iter().enumerate() {
             if let JointIndex::Revolute(i) = closure.joints[row] {
-                gaps[row] = lean(&mechanism.revolutes[i], taken.reactions[i])[next % 2];
+                // By a target the rows of joints stand first, without those of drives among them.
+                let place = if self.by_drives() { row } else { place };
+                gaps[place] = lean(&mechanism.revolutes[i], taken.reactions[i])[next % 2];
                 next += 1;
             }
         }
-        let shift = match rows.is_square() {
-            true => rows.lu().solve(&gaps)?,
-            false => rows.svd(true, true).solve(&gaps, 1e-10).ok()?,
+        let shift = match imposed.is_square() {
+            true => imposed.lu().solve(&gaps)?,
+            false => imposed.svd(true, true).solve(&gaps, 1e-10).ok()?,
         };
         taken.leaning = states.to_vec();
         for (i, state) in taken.leaning.iter_mut().enumerate() {

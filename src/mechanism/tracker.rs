@@ -174,6 +174,16 @@ impl Tracker {
         Some(())
     }
 
+    /// The rows that determine the present state: those of joints in their order, then what is imposed.
+    pub(super) fn determining(&self) -> Vec<Row> {
+        self.system(&self.states, self.t).rows
+    }
+
+    /// Whether drives impose the motion.
+    pub(super) fn by_drives(&self) -> bool {
+        matches!(self.imposed, Imposed::Drives)
+    }
+
     fn system(&self, states: &[BodyState], t: f64) -> System {
         let mut commands = vec![Command::default(); self.mechanism.actuators.len()];
         self.mechanism.true_commands(t, &mut commands);

@@ -3,6 +3,7 @@
 
 #[path = "../cli_common/mod.rs"]
 mod cli_common;
+mod incomplete;
 mod predictions;
 mod recording;
 mod refusals;

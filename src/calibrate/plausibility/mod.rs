@@ -11,6 +11,7 @@ pub use forces::forces;
 pub use geometry::start_pose;
 
 use super::recording::Recording;
+use super::sensed::thresholds::LOWEST_RATE;
 use crate::measure::log::{Channel, Log, LogError};
 use crate::scenario::{Law, Mechanism, Problem, Scenario};
 use geometry::geometry;
@@ -36,6 +37,14 @@ pub const CALIBRATE: Need = Need {
     because: "it looks at residuals up to 150 Hz",
 };
 
+/// `calibrate` of recordings that lack some of what was measured, with the sensors that they have.
+pub const SENSED: Need = Need {
+    command: "calibrate",
+    measured: false,
+    rate: LOWEST_RATE,
+    because: "it looks at residuals up to 90 Hz",
+};
+
 /// `predict`: errors are looked at through a low-pass of 25 Hz; four samples a period.
 pub const PREDICT: Need = Need {
     command: "predict",
@@ -50,6 +59,20 @@ const SHORTEST: f64 = 1.0;
 /// Change of a command in m below which a measured column may stand still: far above any encoder's
 /// step.
 const MOVES: f64 = 1e-4;
+
+/// Whether a recording has every column that the machine has instruments for.
+pub fn is_complete(recording: &Recording) -> bool {
+    Channel::all(3).into_iter().all(|channel| recording.log.get(channel).is_some())
+}
+
+/// What keeps recordings that are not complete from being calibrated with what they have.
+pub fn incomplete(scenario: &Scenario, recordings: &[Recording]) -> Vec<String> {
+    let mut found: Vec<String> = rig(scenario).iter().map(Problem::to_string).collect();
+    for one in recordings {
+        found.extend(recording(scenario, one, SENSED).iter().map(LogError::to_string));
+    }
+    found
+}
 
 /// What keeps a rig from being calibrated.
 pub fn rig(rig: &Scenario) -> Vec<Problem> {

@@ -20,6 +20,8 @@ struct Part {
     segment: Segment,
     bias: Vec<Vec<f64>>,
     noise: Noise,
+    /// What noise alone may look like in units of itself, draw by draw.
+    draws: Vec<DVector<f64>>,
     /// What the noise has more of, as a logarithm of its determinant, for a recorded swing that is not the
     /// model's.
     lost: f64,
@@ -92,8 +94,10 @@ impl Baseline {
                 [MISSED, SQRT_2].map(|share| Noise::from_draws(&draws, &swing(share)));
             let likelihood = |noise: &Noise| noise.whiten(&left).norm_squared() + noise.swinging();
             let price = lost.swinging() - near.swinging();
-            let part =
-                |noise, lost| Part { segment: segment.clone(), bias: bias.clone(), noise, lost };
+            let part = |noise: Noise, lost| {
+                let draws = draws.iter().map(|draw| noise.whiten(draw)).collect();
+                Part { segment: segment.clone(), bias: bias.clone(), noise, draws, lost }
+            };
             parts.push(match likelihood(&lost) < likelihood(&near) {
                 true => part(lost, price),
                 false => part(near, 0.0),
@@ -146,6 +150,13 @@ impl Baseline {
             all.extend(part.noise.whiten(&difference(&seen, &own)).iter());
         }
         Ok(Some(DVector::from_vec(all)))
+    }
+
+    /// What noise alone may be like on segments: as [`white`](Self::white) would see it, draw by draw.
+    pub fn draws(&self, segments: &[Segment]) -> Vec<DVector<f64>> {
+        let parts = || self.parts.iter().filter(|part| segments.contains(&part.segment));
+        let of = |draw: usize| parts().flat_map(move |part| part.draws[draw].iter().copied());
+        (0..DRAWS).map(|draw| DVector::from_vec(of(draw).collect())).collect()
     }
 
     /// What a model pays on segments for having lost the recorded swing: its noise is larger.

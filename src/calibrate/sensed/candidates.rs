@@ -8,15 +8,16 @@ use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
-/// Every effect that lasts on everything that it can act on, at its neutral values; none of the kinds `without`,
-/// nor what contains them.
+/// Every effect that lasts on everything that it can act on, at its neutral values, under one of its names; none
+/// of the kinds `without`, nor what contains them.
 pub fn candidates(mechanism: &Mechanism, without: &[&str]) -> Vec<Setting> {
     let ruled_out = |kind: &Kind| {
         let inner = CONTAINS.iter().filter(|(outer, _)| outer.name == kind.name);
         inner.map(|(_, inner)| *inner).chain([kind]).any(|kind| without.contains(&kind.name))
     };
     let kinds = ALL.iter().filter(|kind| kind.lasts() && !ruled_out(kind));
-    kinds.flat_map(|kind| kind.candidates(mechanism)).collect()
+    let all = kinds.flat_map(|kind| kind.candidates(mechanism));
+    all.filter(|effect| effect.better_known_as(mechanism).is_none()).collect()
 }
 
 /// Starts of a candidate that are fitted.

@@ -1,54 +1,11 @@
-//! How a recorded machine moved: the joints whose readings determine it, and their smoothed coordinates.
+//! Recordings prepared for looking at: every sensor's samples, smoothed as they are needed.
 
 use super::recording::Recording;
 use super::thresholds::{CORNER, LEAN_CORNER, PREFILTER, RATE, TRIM};
 use crate::calibrate::spectrum::fast_length;
-use crate::measure::filter::{ZeroPhase, derivative};
-use crate::mechanism::{
-    Actuator, BodyState, Command, Commands, Drive, JointIndex, Mechanism, Reads, Sensor,
-};
+use crate::measure::filter::ZeroPhase;
+use crate::mechanism::{JointIndex, Mechanism, Reads, Sensor};
 use std::ops::Range;
-use std::sync::Arc;
-
-/// The sensors of joints' coordinates that together determine how a machine without clearance stands.
-#[derive(Clone, Debug)]
-pub struct Basis {
-    /// Index of each sensor, and its joint.
-    pub sensors: Vec<(usize, JointIndex)>,
-}
-
-impl Basis {
-    /// Sensors of a recording that determine the machine: those of driven joints first, then others, each if it
-    /// adds something. None where they do not determine it.
-    pub fn of(mechanism: &Mechanism, recording: &Recording) -> Option<Self> {
-        let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
-        let mut ideal = mechanism.without_clearance();
-        let driven = |joint| mechanism.actuators.iter().any(|drive| drive.joint == joint);
-        let positions = |(i, joint): (usize, JointIndex)| recording.get(i).map(|_| (i, joint));
-        let mut found: Vec<(usize, JointIndex)> = mechanism
-            .sensors
-            .iter()
-            .enumerate()
-            .filter_map(|(i, sensor)| match sensor.reads {
-                Reads::Position(joint) => positions((i, joint)),
-                _ => None,
-            })
-            .collect();
-        found.sort_by_key(|(_, joint)| !driven(*joint));
-        ideal.actuators.clear();
-        let mut sensors = Vec::new();
-        for (i, joint) in found {
-            ideal.actuators.push(Actuator::new("", joint, Drive::Prescribed));
-            if ideal.freedoms(&states).overdriven.is_empty() {
-                sensors.push((i, joint));
-            } else {
-                ideal.actuators.pop();
-            }
-        }
-        let freedoms = ideal.freedoms(&states);
-        (freedoms.driven == freedoms.free).then_some(Self { sensors })
-    }
-}
 
 /// A recording prepared for looking at through models.
 #[derive(Clone, Debug)]
@@ -107,29 +64,6 @@ impl View {
         self.slow[sensor].as_deref()
     }
 
-    /// The machine without clearance, moved as the basis was measured: readings are corrected for what the
-    /// mechanism's sensors and drives are known to get wrong.
-    pub fn moved(&self, mechanism: &Mechanism, basis: &Basis) -> Mechanism {
-        let mut ideal = mechanism.without_clearance();
-        ideal.loads.clear();
-        ideal.epoch = 0.0;
-        let (mut actuators, mut columns) = (Vec::new(), Vec::new());
-        for &(sensor, joint) in &basis.sensors {
-            let drive = mechanism.actuators.iter().position(|drive| drive.joint == joint);
-            let mut actuator = drive.map_or_else(
-                || Actuator::new("", joint, Drive::Prescribed),
-                |drive| mechanism.actuators[drive].clone(),
-            );
-            columns.push(self.coordinate(mechanism, sensor, drive, &actuator));
-            actuator.drive = Drive::Prescribed;
-            actuator.transmission = None;
-            actuators.push(actuator);
-        }
-        ideal.actuators = actuators;
-        ideal.commands = Arc::new(Measured { interval: self.interval, columns });
-        ideal
-    }
-
     /// What a sensor looked at, out of what it shows: its delay, offset, scale and waves taken out.
     pub fn shown(&self, errors: &Sensor, series: &[f64], row: usize) -> f64 {
         let last = series.len().saturating_sub(1);
@@ -139,28 +73,6 @@ impl View {
         let read = (value - errors.offset) / errors.scale;
         let waves = errors.waves.iter();
         waves.fold(read, |q, [amplitude, phase]| q - amplitude * (read + phase).sin())
-    }
-
-    /// Coordinate, rate and acceleration that a sensor of the basis shows at each row.
-    fn coordinate(
-        &self,
-        mechanism: &Mechanism,
-        sensor: usize,
-        drive: Option<usize>,
-        actuator: &Actuator,
-    ) -> [Vec<f64>; 3] {
-        let errors = &mechanism.sensors[sensor];
-        let read = self.smooth[sensor].as_deref().unwrap_or_default();
-        let mut position: Vec<f64> =
-            (0..read.len()).map(|row| self.shown(errors, read, row)).collect();
-        let effort = drive.and_then(|drive| self.smooth(effort_sensor(mechanism, drive)?));
-        if let (Some(link), Some(effort)) = (&actuator.transmission, effort) {
-            // The encoder sits at the drive's end of what gives way.
-            position.iter_mut().zip(effort).for_each(|(q, force)| *q -= link.pressed(*force));
-        }
-        let rate = derivative(&position, self.interval);
-        let acceleration = derivative(&rate, self.interval);
-        [position, rate, acceleration]
     }
 }
 
@@ -176,25 +88,4 @@ pub fn effort_sensor(mechanism: &Mechanism, drive: usize) -> Option<usize> {
 pub fn position_sensor(mechanism: &Mechanism, joint: JointIndex) -> Option<usize> {
     let mut sensors = mechanism.sensors.iter();
     sensors.position(|sensor| matches!(sensor.reads, Reads::Position(of) if of == joint))
-}
-
-/// Measured coordinates as commands.
-#[derive(Debug)]
-struct Measured {
-    interval: f64,
-    columns: Vec<[Vec<f64>; 3]>,
-}
-
-impl Commands for Measured {
-    fn at(&self, t: f64, commands: &mut [Command]) {
-        let place = (t / self.interval).max(0.0);
-        for (command, columns) in commands.iter_mut().zip(&self.columns) {
-            let last = columns[0].len().saturating_sub(1);
-            let i = (place as usize).min(last);
-            let (next, share) = ((i + 1).min(last), place - i as f64);
-            let [position, rate, acceleration] =
-                columns.each_ref().map(|c| c[i] + (c[next] - c[i]) * share.min(1.0));
-            *command = Command { position, rate, acceleration };
-        }
-    }
 }

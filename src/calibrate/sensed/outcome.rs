@@ -3,13 +3,13 @@
 use super::candidates::candidates;
 use super::errors::of_run;
 use super::fit::Fit;
-use super::problem::{Problem, Stopped};
+use super::problem::{Problem, Segment, Stopped};
 use super::recording::Recording;
 use super::residual::Name;
 use super::search::{Found, Left, Model, Round, Search, is_noise};
-use super::thresholds::MET;
+use super::thresholds::{MET, PREDICTING};
 use crate::calibrate::errors::{ChannelError, judged};
-use crate::calibrate::outcome::Verdict;
+use crate::calibrate::outcome::{Verdict, inverse_normal, pull};
 use crate::calibrate::report::Fitted;
 use crate::effects::Setting;
 
@@ -75,9 +75,12 @@ pub fn calibrate(
     tell("predicting");
     let noise = is_noise(&after);
     let effects = if noise { best.fit.effects.clone() } else { Vec::new() };
-    let [plain, calibrated] = [&[], effects.as_slice()]
-        .map(|effects: &[Setting]| problem.simulated(effects, problem.replicas));
-    let (plain, calibrated) = (plain?, calibrated?);
+    let replicas = if problem.replicas > 1 { PREDICTING } else { 1 };
+    let calibrated = problem.simulated(&effects, replicas)?;
+    let plain = match effects.is_empty() {
+        true => calibrated.clone(),
+        false => problem.simulated(&[], problem.replicas)?,
+    };
     let mut errors = Vec::new();
     for index in 0..problem.runs.len() {
         let role = if index == 0 { "calibration" } else { "validation" };
@@ -94,7 +97,11 @@ pub fn calibrate(
         logs.iter().map(|logs| super::errors::mean(logs, sensors)).collect::<Vec<_>>()
     };
     Ok(Outcome {
-        effects: if verdict == Verdict::Explained { estimated(&best) } else { Vec::new() },
+        effects: if verdict == Verdict::Explained {
+            estimated(&best, &split.on)
+        } else {
+            Vec::new()
+        },
         verdict,
         tried: best.fit.effects.clone(),
         before,
@@ -107,17 +114,19 @@ pub fn calibrate(
     })
 }
 
-/// Values with standard deviations: `(JᵀJ)⁻¹`, J in units of noise.
-fn estimated(model: &Model) -> Vec<Estimated> {
-    let Fit { effects, jacobian, .. } = &model.fit;
+/// Values with standard deviations: `(JᵀJ)⁻¹`, J in units of noise; wider where the fit's own residual is larger
+/// than noise, and where rattle pulls values further than noise of one frequency by itself.
+fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
+    let Fit { effects, jacobian, chi2, white } = &model.fit;
     let deviations = jacobian.as_ref().and_then(|jacobian| {
-        let scales: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
-        let mut unit = jacobian.clone();
-        for (mut column, scale) in unit.column_iter_mut().zip(&scales) {
-            column /= scale.max(f64::MIN_POSITIVE);
-        }
-        let inverse = (unit.transpose() * unit).try_inverse()?;
-        Some((0..scales.len()).map(|i| inverse[(i, i)].sqrt() / scales[i]).collect::<Vec<_>>())
+        let inverse = inverse_normal(jacobian)?;
+        let spare = white.len().saturating_sub(jacobian.ncols()).max(1);
+        let pulled = match model.baseline.rattles {
+            true => pull(jacobian, &inverse, &model.baseline.draws(on)),
+            false => 1.0,
+        };
+        let factor = (chi2 / spare as f64).max(pulled).max(1.0).sqrt();
+        Some(inverse.diagonal().map(|square| square.max(0.0).sqrt() * factor))
     });
     let mut next = 0;
     effects

@@ -1,6 +1,7 @@
 //! A rig and the runs that it is held against.
 
-use super::estimate::{Basis, View};
+use super::basis::Basis;
+use super::estimate::View;
 use super::recording::Recording;
 use super::residual::{Residuals, residuals};
 use super::start::{StartError, machine, released, still};
@@ -91,8 +92,8 @@ impl Problem {
     ) -> Result<Self, Stopped> {
         let declared = machine(&rig, &[], &recordings[0])?;
         let basis = Basis::of(&declared, &recordings[0]).ok_or_else(|| {
-            let message = "do not say how the machine stands: fewer joints are measured than it has \
-                           freedoms";
+            let message = "do not say how the machine stands: no body's place and angle are measured, and \
+                           fewer joints than it has freedoms";
             let help = "add a [[sensor]] of quantity \"position\" for each freedom";
             rig.problem("sensor", message, help)
         })?;

@@ -71,7 +71,8 @@ pub struct Prepared {
 /// Everything that is wrong with them.
 pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateError> {
     let mut wrong: Vec<String> = Vec::new();
-    if rig.mechanism.described().is_none_or(|described| described.sensors.is_empty()) {
+    let built: Mechanism = crate::model::parts_of(&rig)?;
+    if built.sensors.is_empty() {
         let help = "describe each column of the recordings by a [[sensor]]";
         let message = "is missing: nobody knows what the columns of the recordings are".to_owned();
         wrong.push(rig.problem("sensor", message, help).to_string());
@@ -83,7 +84,6 @@ pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateErro
         wrong.push(rig.problem("effect", message, help).to_string());
     }
     refuse(wrong)?;
-    let built: Mechanism = crate::model::parts_of(&rig)?;
     let mut recordings = Vec::new();
     let mut errors: Vec<LogError> = Vec::new();
     for path in paths {
@@ -110,6 +110,16 @@ pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateErro
         if names.iter().filter(|name| **name == recording.name).count() > 1 {
             recording.name.clone_from(&recording.path);
         }
+    }
+    // One look serves all runs: it is through the sensors that all of them have.
+    let common: Vec<bool> =
+        (0..built.sensors.len()).map(|i| recordings.iter().all(|r| r.get(i).is_some())).collect();
+    for recording in &mut recordings {
+        let columns = common
+            .iter()
+            .enumerate()
+            .map(|(i, common)| recording.get(i).filter(|_| *common).map(<[f64]>::to_vec));
+        *recording = recording.with(columns.collect());
     }
     // What the machine cannot be at a recording's first row is told before anything is written.
     for recording in &recordings {
@@ -256,8 +266,12 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     let kept = |tried: &Tried| outcome.effects.iter().any(|(effect, _)| effect.is(&tried.effect));
     let mut ranked = Vec::new();
     for (i, round) in outcome.rounds.iter().enumerate() {
-        for tried in &round.tried {
-            let added = round.added.as_ref().is_some_and(|added| added.is(&tried.effect));
+        let added = |tried: &&Tried| round.added.as_ref().is_some_and(|a| a.is(&tried.effect));
+        // Of the variants of one effect the one that was simulated, if any was.
+        let own = round.tried.iter().position(|tried| tried.simulated && added(&tried));
+        let own = own.or_else(|| round.tried.iter().position(|tried| added(&tried)));
+        for (place, tried) in round.tried.iter().enumerate() {
+            let added = own == Some(place);
             ranked.push(Ranked {
                 kind: tried.effect.kind.name,
                 on: ActsOn::of(&tried.effect),

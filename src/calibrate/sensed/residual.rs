@@ -1,12 +1,13 @@
 //! What a recording says against a model without simulating it: residuals with names, as many as there are.
 //!
 //! * **law** of a drive: its measured effort less what its command and the measured coordinate make it;
-//! * **dynamics** of each coordinate of the [`Basis`]: the effort that acts on it less what the measured
+//! * **dynamics** of each joint of the [`Basis`]: the effort that acts on it less what the measured
 //!   motion takes by inverse dynamics; where no drive acts that is an effort of zero;
 //! * **closure**: each other measured position less where the bodies are, journals leaning on their rings;
 //! * **acceleration**: each measured one less that of the measured motion.
 
-use super::estimate::{Basis, View, effort_sensor, position_sensor};
+use super::basis::Basis;
+use super::estimate::{View, effort_sensor, position_sensor};
 use super::thresholds::{DYNAMICS_BAND, PLAIN_BAND};
 use crate::calibrate::spectrum::Signal;
 use crate::measure::filter::derivative;
@@ -92,10 +93,10 @@ pub fn residuals(
     let look = Look { view, mechanism, basis, rates: rates(view, mechanism) };
     let mut found = Residuals::default();
     look.names(&mut found);
-    let ideal = view.moved(mechanism, basis);
+    let (ideal, imposed) = basis.moved(view, mechanism);
     let starts = ideal.bodies.iter().map(|body| body.start).collect();
     let first = rows.start as f64 * view.interval;
-    let mut tracker = tracker_at(ideal, starts, first)?;
+    let mut tracker = tracker_at(ideal, imposed, starts, first)?;
     let mut angles: Vec<f64> = mechanism.bodies.iter().map(|body| body.angle).collect();
     let mut now = Evaluation::new(mechanism);
     for row in rows.step_by(view.stride) {
@@ -109,10 +110,11 @@ pub fn residuals(
 /// A tracker at time `t` s of a motion whose starts are near its pose at the first row.
 fn tracker_at(
     ideal: Mechanism,
+    imposed: Imposed,
     starts: Vec<crate::mechanism::BodyState>,
     t: f64,
 ) -> Option<Tracker> {
-    let mut tracker = Tracker::new(ideal, Imposed::Drives, starts, 0.0).ok()?;
+    let mut tracker = Tracker::new(ideal, imposed, starts, 0.0).ok()?;
     tracker.advance(t).ok()?;
     Some(tracker)
 }
@@ -148,8 +150,7 @@ impl<'a> Look<'a> {
         (0..self.mechanism.sensors.len()).filter(|&i| {
             let reads = self.mechanism.sensors[i].reads;
             let position = !matches!(reads, Reads::Command(_) | Reads::Effort(_));
-            let needed = self.basis.sensors.iter().any(|(sensor, _)| *sensor == i);
-            position && !needed && self.view.plain(i).is_some()
+            position && !self.basis.needs(i) && self.view.plain(i).is_some()
         })
     }
 
@@ -180,7 +181,7 @@ impl<'a> Look<'a> {
             let actuator = &self.mechanism.actuators[drive];
             add(Kind::Law, &actuator.name, unit(actuator.joint), PLAIN_BAND);
         }
-        for &(_, joint) in &self.basis.sensors {
+        for &joint in &self.basis.joints {
             if self.effort(joint).is_some() {
                 let name = self.mechanism.joint_name(joint);
                 add(Kind::Dynamics, name, unit(joint), DYNAMICS_BAND);
@@ -249,9 +250,9 @@ impl<'a> Look<'a> {
         }
         let efforts: Vec<Option<[f64; 2]>> = self
             .basis
-            .sensors
+            .joints
             .iter()
-            .map(|&(_, joint)| {
+            .map(|&joint| {
                 Some(match self.effort(joint)? {
                     Effort::Measured(sensor, smooth, slow) => {
                         [smooth, slow].map(|series| self.looked_at(sensor, series, row))
@@ -291,7 +292,7 @@ impl<'a> Look<'a> {
     fn applied(&self, t: f64, row: usize) -> Vec<(JointIndex, f64)> {
         let outside = |drive: &usize| {
             let joint = self.mechanism.actuators[*drive].joint;
-            !self.basis.sensors.iter().any(|(_, of)| *of == joint)
+            !self.basis.joints.contains(&joint)
         };
         let drives = (0..self.mechanism.actuators.len()).filter(outside);
         drives

@@ -7,7 +7,8 @@ use super::fit::{Fit, Target};
 use super::problem::{Problem, Split, Stopped};
 use super::residual::{Kind, Name};
 use super::thresholds::{
-    BUDGET, CLOSER, EFFECTS, GAIN, GAIN_PER_VALUE, HYPOTHESES, LARGEST, NOISE, SIMULATED,
+    BUDGET, CLOSER, EFFECTS, GAIN, GAIN_PER_VALUE, HYPOTHESES, LARGEST, MOSTLY, NOISE, PROMISING,
+    SIMULATED, TWINS,
 };
 use super::trajectory::fitted;
 use crate::effects::{Joints, Setting, Targets};
@@ -105,11 +106,8 @@ const SETTLED: f64 = 0.3;
 /// joint's clearance of 0.05 mm more.
 const AWAY: f64 = 10.0;
 
-/// Drop of cost within which two hypotheses are as good as each other: chance gives one of two rivals as much.
-const APART: f64 = 10.0;
-
 impl Search<'_> {
-    fn target<'b>(&'b self, baseline: &'b Baseline, held: bool) -> Target<'b> {
+    pub(super) fn target<'b>(&'b self, baseline: &'b Baseline, held: bool) -> Target<'b> {
         let on = if held { &self.split.hold } else { &self.split.on };
         Target { problem: self.problem, baseline, on }
     }
@@ -297,31 +295,74 @@ impl Search<'_> {
     fn beside(&self, model: &Model) -> Result<(Round, Vec<Model>), Stopped> {
         (self.tell)(&format!("trying every effect{}", beside(&model.fit.effects)));
         let mut tried = self.screened(model);
-        let mut found = Vec::new();
-        let mut kinds: Vec<Setting> = Vec::new();
+        let mut found: Vec<Model> = Vec::new();
         for candidate in tried.iter_mut() {
-            if kinds.len() >= SIMULATED || candidate.gain < 0.5 * GAIN {
+            if found.len() >= SIMULATED || candidate.gain < 0.5 * GAIN[0] {
                 break;
             }
             // Variants of one effect are one hypothesis.
-            if kinds.iter().any(|known| known.is(&candidate.effect)) {
+            let last =
+                |model: &Model| model.fit.effects.last().is_some_and(|e| e.is(&candidate.effect));
+            if found.iter().any(last) {
                 continue;
             }
-            kinds.push(candidate.effect.clone());
             let effects =
                 [model.fit.effects.as_slice(), std::slice::from_ref(&candidate.effect)].concat();
             (self.tell)(&format!("simulating with {}", names(&effects)));
-            if let Some(settled) = self.settle(&effects, 2)? {
+            if let Some(settled) = self.settle(&effects, 1)? {
                 candidate.simulated = true;
                 candidate.gain = model.cost() - settled.cost();
                 found.push(settled);
             }
         }
-        if !found.iter().any(|model| is_noise(&self.left(model))) {
+        self.again(model, &mut found, &mut tried)?;
+        found.retain(|rival| !rival.fit.effects.last().is_some_and(at_a_limit));
+        // What residuals see is tried before what they hardly see.
+        let seen =
+            |tried: &Tried| tried.simulated && tried.gain > price(model) && tried.share > MOSTLY;
+        let noise = |model: &Model| is_noise(&self.left(model));
+        if !tried.iter().any(seen) && !found.iter().any(noise) {
             found.extend(self.unseen(model, &mut tried)?);
         }
         found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         Ok((Round { tried, ..Round::default() }, found))
+    }
+
+    /// Simulates rivals again at the values that their first simulations led to, those that promise nearly as much
+    /// as the best of them.
+    fn again(
+        &self,
+        model: &Model,
+        found: &mut [Model],
+        tried: &mut [Tried],
+    ) -> Result<(), Stopped> {
+        let best = found.iter().map(Model::cost).fold(model.cost(), f64::min);
+        let enough = model.cost() - PROMISING * (model.cost() - best);
+        for rival in found.iter_mut().filter(|rival| rival.cost() <= enough) {
+            let Some(settled) = self.settle(&rival.fit.effects, 1)? else { continue };
+            if !settled.baseline.rattles || settled.misfit < rival.misfit {
+                *rival = settled;
+            }
+            let last = rival.fit.effects.last();
+            let own = |tried: &&mut Tried| {
+                tried.simulated && last.is_some_and(|effect| effect.is(&tried.effect))
+            };
+            if let Some(tried) = tried.iter_mut().find(own) {
+                tried.gain = model.cost() - rival.cost();
+            }
+        }
+        Ok(())
+    }
+
+    /// The model with an effect that left nothing but noise beside another one, which may have been mistaken for
+    /// an effect of this one.
+    fn also(&self, model: &Model, effect: &Setting) -> Result<Vec<Model>, Stopped> {
+        if model.fit.effects.iter().any(|own| own.is(effect)) {
+            return Ok(Vec::new());
+        }
+        let effects = [model.fit.effects.as_slice(), std::slice::from_ref(effect)].concat();
+        (self.tell)(&format!("simulating with {}", names(&effects)));
+        Ok(self.settle(&effects, 2)?.into_iter().collect())
     }
 
     /// Models with one more effect of the joints' bearings, which residuals hardly see without a simulation: how
@@ -334,23 +375,18 @@ impl Search<'_> {
         let of_bearings = |tried: &&mut Tried| {
             let targets = tried.effect.kind.targets;
             let bearing = [Targets::Joint, Targets::JointOrAll].map(|of| of(Joints::Bearing));
-            bearing.contains(&targets) && tried.gain < GAIN
+            bearing.contains(&targets) && tried.gain < GAIN[0]
         };
         for candidate in tried.iter_mut().filter(of_bearings) {
             if self.problem.simulations() > BUDGET {
                 break;
             }
-            let away = candidate.effect.values().map(|(name, value)| {
-                let parameter = candidate.effect.kind.parameter(name);
-                parameter.map_or(value, |p| (value + AWAY * p.step).clamp(p.bounds[0], p.bounds[1]))
-            });
-            let away = candidate.effect.with(&away.collect::<Vec<_>>());
-            let effects = [model.fit.effects.as_slice(), &[away]].concat();
+            let effects = [model.fit.effects.as_slice(), &[away(&candidate.effect)]].concat();
             (self.tell)(&format!("simulating with {}", names(&effects)));
             let Some(settled) = self.settle(&effects, 1)? else { continue };
             candidate.simulated = true;
             candidate.gain = model.cost() - settled.cost();
-            if candidate.gain > GAIN {
+            if candidate.gain > GAIN[0] {
                 found.push(self.refined(settled)?);
             }
         }
@@ -377,26 +413,32 @@ impl Search<'_> {
         {
             let mut next: Vec<Model> = Vec::new();
             let mut round = Round::default();
+            let mut enough: Option<Setting> = None;
             for (i, model) in hypotheses.iter().enumerate() {
-                if i > 0 && self.problem.simulations() > BUDGET {
-                    break;
-                }
-                let (own, found) = self.beside(model)?;
+                let (own, found) = match &enough {
+                    _ if i > 0 && self.problem.simulations() > BUDGET => break,
+                    Some(effect) => (Round::default(), self.also(model, effect)?),
+                    None => self.beside(model)?,
+                };
                 if i == 0 {
                     round = own;
+                }
+                if enough.is_none() {
+                    let last = found.iter().find(|model| is_noise(&self.left(model)));
+                    enough = last.and_then(|model| model.fit.effects.last().cloned());
                 }
                 next.extend(found);
             }
             next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
             next.dedup_by(|a, b| same(&a.fit.effects, &b.fit.effects));
-            let won = next.first().is_some_and(|first| first.cost() < best.cost() - GAIN);
+            let won = next.first().is_some_and(|first| first.cost() < best.cost() - price(&best));
             if !won {
                 rounds.push(round);
                 break;
             }
             let cost = next[0].cost();
             round.added = next[0].fit.effects.last().cloned();
-            let near = next.iter().skip(1).filter(|model| model.cost() < cost + APART);
+            let near = next.iter().skip(1).filter(|model| model.cost() < cost + TWINS);
             round.as_good = near.filter_map(|model| model.fit.effects.last().cloned()).collect();
             rounds.push(round);
             let before = best.cost();
@@ -410,6 +452,17 @@ impl Search<'_> {
             next.truncate(HYPOTHESES);
             hypotheses = next;
         }
+        // What is noise already is not explained any better; that recorded joints rattle less than a model's does
+        // not show in what is left, only in its size.
+        while best.baseline.rattles
+            && best.fit.effects.len() < EFFECTS
+            && is_noise(&self.left(&best))
+        {
+            let (round, calmer) = self.calmer(&best)?;
+            rounds.push(round);
+            let Some(calmer) = calmer else { break };
+            best = calmer;
+        }
         if !best.fit.effects.is_empty() {
             // Values that leave noise are left alone: looks alone do not find them as well again.
             if !is_noise(&self.left(&best)) {
@@ -417,11 +470,13 @@ impl Search<'_> {
                 let settled = self.settle(&best.fit.effects, 4)?;
                 best = settled.filter(|model| model.misfit < best.misfit).unwrap_or(best);
             }
+            best = self.simplified(best)?;
             best = self.needed(best)?;
             if !is_noise(&self.left(&best)) {
                 best = self.refined(best)?;
             }
         }
+        credited(&mut rounds, &best.fit.effects);
         Ok(Found { best, declared, rounds })
     }
 
@@ -451,11 +506,58 @@ impl Search<'_> {
             let dropped = fewer.remove(i);
             (self.tell)(&format!("simulating without {}", name(&dropped)));
             match self.settle(&fewer, 2)? {
-                Some(simpler) if simpler.cost() < model.cost() + GAIN => model = simpler,
+                Some(simpler) if simpler.cost() < model.cost() + price(&model) => model = simpler,
                 _ => i += 1,
             }
         }
         Ok(model)
+    }
+}
+
+/// Whether a value of an effect lies at the end of what makes sense, where the effect is not its neutral self: it
+/// imitates another one.
+fn at_a_limit(effect: &Setting) -> bool {
+    let phase = effect.kind.scan.map(|scan| scan.phase);
+    effect.values().any(|(name, value)| {
+        let Some(parameter) = effect.kind.parameter(name) else { return false };
+        let near = |bound: f64| (value - bound).abs() < parameter.step;
+        let ends = parameter.bounds.into_iter().filter(|bound| *bound != 0.0);
+        Some(name) != phase && ends.into_iter().any(near)
+    })
+}
+
+/// Drop of cost that one more effect has to bring.
+fn price(model: &Model) -> f64 {
+    GAIN[usize::from(model.baseline.rattles)]
+}
+
+/// An effect some way from its values, for what only simulations show.
+pub(super) fn away(effect: &Setting) -> Setting {
+    let values = effect.values().map(|(name, value)| {
+        let parameter = effect.kind.parameter(name);
+        parameter.map_or(value, |p| (value + AWAY * p.step).clamp(p.bounds[0], p.bounds[1]))
+    });
+    effect.with(&values.collect::<Vec<_>>())
+}
+
+/// Gives each effect that was kept the round in which it was tried first, where another hypothesis was the better
+/// one at that time.
+fn credited(rounds: &mut [Round], kept: &[Setting]) {
+    let added = |rounds: &[Round], effect: &Setting| {
+        rounds.iter().any(|round| round.added.as_ref().is_some_and(|added| added.is(effect)))
+    };
+    for effect in kept {
+        if added(rounds, effect) {
+            continue;
+        }
+        let free = |round: &&mut Round| {
+            let own = |added: &Setting| kept.iter().any(|kept| kept.is(added));
+            let tried = round.tried.iter().any(|tried| tried.effect.is(effect));
+            tried && !round.added.as_ref().is_some_and(own)
+        };
+        if let Some(round) = rounds.iter_mut().find(free) {
+            round.added = Some(effect.clone());
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod double_pendulum;
 mod drive_stage;
 mod five_bar;
 mod four_bar;
+mod instruments;
 mod parts;
 mod pendulum;
 mod platform;

@@ -2,7 +2,7 @@
 
 use super::parts::{body, described, ground, plain_output};
 use crate::model::motion;
-use crate::scenario::{Body, Described, Joint, JointDrive, Problem, Scenario, Target};
+use crate::scenario::{Body, Described, Joint, JointDrive, Problem, Scenario, Sensor, Target};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -40,17 +40,19 @@ impl Platform {
     }
 }
 
-/// The scenario about a machine that moves its platform, its legs anchored at these points of the ground.
+/// The scenario about a machine that moves its platform, its legs anchored at these points of the ground, with
+/// its drives and the sensors that look at it.
 pub(super) fn on_three_legs(
     scenario: &Scenario,
     anchors: [(&str, [f64; 2]); 3],
     bodies: Vec<Body>,
     joints: Vec<Joint>,
-    drives: Vec<JointDrive>,
+    (drives, sensors): (Vec<JointDrive>, Vec<Sensor>),
 ) -> Scenario {
     let ground = ground(&anchors);
     let outputs = plain_output("platform");
-    let machine = Described { ground, bodies, joints, drives, outputs, ..Described::default() };
+    let machine =
+        Described { ground, bodies, joints, drives, outputs, sensors, ..Described::default() };
     let target = Some(Target::Body("platform".to_owned()));
     described(scenario, machine, scenario.motion.clone(), target)
 }

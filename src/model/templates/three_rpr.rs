@@ -1,5 +1,6 @@
 //! The 3-RPR: a platform on three telescopic legs between A1 A2 A3 on the ground and its corners C1 C2 C3.
 
+use super::instruments;
 use super::parts::{body, drive, prismatic, revolute};
 use super::platform::{Platform, on_three_legs, triangle};
 use crate::mechanism::motion::Motion;
@@ -45,7 +46,9 @@ pub(super) fn expand(scenario: &Scenario, machine: &ThreeRpr) -> Result<Scenario
         let name = format!("rod {}", leg + 1);
         bodies.push(body(&name, round_bar(density, rod), &[("C", [half[1], 0.0])], start));
     }
-    bodies.push(platform.body((machine.platform_mass, machine.platform_inertia())));
+    let mut moved = platform.body((machine.platform_mass, machine.platform_inertia()));
+    let sensors = instruments::of(scenario, &mut moved, &["P1", "P2", "P3"]);
+    bodies.push(moved);
     let mut joints = Vec::new();
     for leg in 0..3 {
         let (ring, journal) = (format!("ground.A{}", leg + 1), format!("cylinder {}.A", leg + 1));
@@ -62,5 +65,5 @@ pub(super) fn expand(scenario: &Scenario, machine: &ThreeRpr) -> Result<Scenario
         drives.push(drive(scenario, &format!("P{leg}"), Some(&leg.to_string())));
     }
     let anchors = [("A1", anchors[0]), ("A2", anchors[1]), ("A3", anchors[2])];
-    Ok(on_three_legs(scenario, anchors, bodies, joints, drives))
+    Ok(on_three_legs(scenario, anchors, bodies, joints, (drives, sensors)))
 }

@@ -45,5 +45,5 @@ pub(super) fn expand(scenario: &Scenario, m: &ThreeRrr) -> Result<Scenario, Prob
         }
     }
     let anchors = [("O1", anchors[0]), ("O2", anchors[1]), ("O3", anchors[2])];
-    Ok(on_three_legs(scenario, anchors, bodies, joints, drives))
+    Ok(on_three_legs(scenario, anchors, bodies, joints, (drives, Vec::new())))
 }

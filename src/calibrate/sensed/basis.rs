@@ -1,0 +1,342 @@
+//! Which sensors say how a machine stands, and how the machine without clearance moves as they show.
+//!
+//! A body whose place and angle a tracker shows, and that leaves the machine no other freedom, is known better
+//! than the joints' encoders know it: between them lies the play of joints, and a body that floats in it
+//! accelerates otherwise than any encoder does. Without one the coordinates of joints say it.
+
+use super::estimate::{View, effort_sensor};
+use super::recording::Recording;
+use crate::measure::filter::derivative;
+use crate::mechanism::motion::{Motion, PathPoint};
+use crate::mechanism::{
+    Actuator, Bearing, BodyState, Command, Commands, Drive, Idle, Imposed, JointIndex, Mark,
+    Mechanism, Reads, Tracker, TrackerFrame,
+};
+use nalgebra::{UnitComplex, Vector2, Vector3};
+use std::sync::Arc;
+
+/// What says how a machine without clearance stands, and the coordinates along which efforts are looked at.
+#[derive(Clone, Debug)]
+pub struct Basis {
+    /// As many joints as the machine has freedoms: those with drives first.
+    pub joints: Vec<JointIndex>,
+    /// What shows the motion.
+    shown: Shown,
+}
+
+#[derive(Clone, Debug)]
+enum Shown {
+    /// A sensor of each of the joints.
+    Coordinates(Vec<usize>),
+    /// Sensors of x, y and angle of one body.
+    Pose([usize; 3]),
+}
+
+impl Basis {
+    /// What of a recording determines the machine; none where nothing does.
+    pub fn of(mechanism: &Mechanism, recording: &Recording) -> Option<Self> {
+        Self::tracked(mechanism, recording).or_else(|| Self::measured(mechanism, recording))
+    }
+
+    /// Sensors of joints: those of driven joints first, then others, each if it adds something.
+    fn measured(mechanism: &Mechanism, recording: &Recording) -> Option<Self> {
+        let sensors = mechanism.sensors.iter().enumerate();
+        let read = sensors.filter_map(|(i, sensor)| match sensor.reads {
+            Reads::Position(joint) => recording.get(i).map(|_| (joint, i)),
+            _ => None,
+        });
+        let found = independent(mechanism, read.collect())?;
+        let (joints, sensors) = found.into_iter().unzip();
+        Some(Self { joints, shown: Shown::Coordinates(sensors) })
+    }
+
+    /// A tracked body that determines a machine whose joints have play.
+    fn tracked(mechanism: &Mechanism, recording: &Recording) -> Option<Self> {
+        let play = |bearing: &Bearing| !matches!(bearing, Bearing::Ideal);
+        if !mechanism.revolutes.iter().any(|joint| play(&joint.bearing)) {
+            return None;
+        }
+        let joints = mechanism.joints().map(|(_, joint)| (joint, ())).collect();
+        let joints: Vec<JointIndex> =
+            independent(mechanism, joints)?.into_iter().map(|(joint, ())| joint).collect();
+        let read = |reads: &dyn Fn(&Reads) -> bool| {
+            let mut sensors = mechanism.sensors.iter().enumerate();
+            let found = |(i, sensor): &(usize, &crate::mechanism::Sensor)| {
+                recording.get(*i).is_some() && reads(&sensor.reads)
+            };
+            sensors.find(found).map(|(i, _)| i)
+        };
+        let mut bodies = 0..mechanism.bodies.len();
+        let pose = bodies.find_map(|body| {
+            let of = |mark: &Mark| mark.body == Some(body);
+            let x = read(&|reads| matches!(reads, Reads::X(mark) if of(mark)))?;
+            let Reads::X(point) = mechanism.sensors[x].reads else { return None };
+            let same = |mark: &Mark| of(mark) && mark.point == point.point;
+            let y = read(&|reads| matches!(reads, Reads::Y(mark) if same(mark)))?;
+            let angle = read(&|reads| matches!(reads, Reads::Angle(Some(of), _) if *of == body))?;
+            Some([x, y, angle])
+        })?;
+        let basis = Self { joints, shown: Shown::Pose(pose) };
+        // Three numbers determine three freedoms, if they can be imposed.
+        (basis.joints.len() == 3 && basis.holds(mechanism)).then_some(basis)
+    }
+
+    /// Whether the machine can be put at its own first pose by what is shown of it.
+    fn holds(&self, mechanism: &Mechanism) -> bool {
+        let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
+        let Some((point, angle, offset)) = self.target(mechanism) else { return false };
+        let place = point.attachment(mechanism).frame(&states).centre;
+        let rotation = states[offset].rotation * UnitComplex::new(angle);
+        let at = place.push(rotation.angle());
+        let still = Series {
+            interval: 1.0,
+            columns: [0, 1, 2].map(|k| [vec![at[k]; 2], vec![0.0; 2], vec![0.0; 2]]),
+        };
+        let ideal = self.ideal(mechanism);
+        let imposed = imposed(mechanism, point, angle, still);
+        Tracker::new(ideal, imposed, states, 0.0).is_ok()
+    }
+
+    /// Point, angle (rad) of the written axes in the body's, and the body of what is tracked.
+    fn target(&self, mechanism: &Mechanism) -> Option<(Mark, f64, usize)> {
+        let Shown::Pose([x, _, angle]) = &self.shown else { return None };
+        match (mechanism.sensors[*x].reads, mechanism.sensors[*angle].reads) {
+            (Reads::X(point), Reads::Angle(Some(body), angle)) => Some((point, angle, body)),
+            _ => None,
+        }
+    }
+
+    /// Whether the motion is taken from a sensor.
+    pub fn needs(&self, sensor: usize) -> bool {
+        match &self.shown {
+            Shown::Coordinates(sensors) => sensors.contains(&sensor),
+            Shown::Pose(sensors) => sensors.contains(&sensor),
+        }
+    }
+
+    /// The machine without clearance, its joints of the basis prescribed.
+    fn ideal(&self, mechanism: &Mechanism) -> Mechanism {
+        let mut ideal = mechanism.without_clearance();
+        ideal.loads.clear();
+        ideal.epoch = 0.0;
+        ideal.commands = Arc::new(Idle);
+        let actuator = |&joint: &JointIndex| {
+            let drive = mechanism.actuators.iter().find(|drive| drive.joint == joint);
+            let mut actuator =
+                drive.cloned().unwrap_or_else(|| Actuator::new("", joint, Drive::Prescribed));
+            actuator.drive = Drive::Prescribed;
+            actuator.transmission = None;
+            actuator
+        };
+        ideal.actuators = self.joints.iter().map(actuator).collect();
+        ideal
+    }
+
+    /// The machine without clearance and what moves it as a view shows: readings are corrected for what the
+    /// mechanism's sensors and drives are known to get wrong.
+    pub fn moved(&self, view: &View, mechanism: &Mechanism) -> (Mechanism, Imposed) {
+        let mut ideal = self.ideal(mechanism);
+        match &self.shown {
+            Shown::Coordinates(sensors) => {
+                let joints = self.joints.iter().zip(sensors);
+                let columns =
+                    joints.map(|(joint, sensor)| coordinate(view, mechanism, *joint, *sensor));
+                ideal.commands =
+                    Arc::new(Measured { interval: view.interval, columns: columns.collect() });
+                (ideal, Imposed::Drives)
+            }
+            Shown::Pose(sensors) => {
+                // A pose has a target: `tracked` found it.
+                let Some((point, angle, _)) = self.target(mechanism) else {
+                    return (ideal, Imposed::Drives);
+                };
+                let imposed = imposed(mechanism, point, angle, pose(view, mechanism, *sensors));
+                (ideal, imposed)
+            }
+        }
+    }
+}
+
+/// As many of these joints, driven ones first, as determine the machine; none where they do not.
+fn independent<T>(
+    mechanism: &Mechanism,
+    mut from: Vec<(JointIndex, T)>,
+) -> Option<Vec<(JointIndex, T)>> {
+    let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
+    let mut ideal = mechanism.without_clearance();
+    let driven = |joint| mechanism.actuators.iter().any(|drive| drive.joint == joint);
+    from.sort_by_key(|(joint, _)| !driven(*joint));
+    ideal.actuators.clear();
+    let mut found = Vec::new();
+    for (joint, of) in from {
+        ideal.actuators.push(Actuator::new("", joint, Drive::Prescribed));
+        if ideal.freedoms(&states).overdriven.is_empty() {
+            found.push((joint, of));
+        } else {
+            ideal.actuators.pop();
+        }
+    }
+    let freedoms = ideal.freedoms(&states);
+    (freedoms.driven == freedoms.free).then_some(found)
+}
+
+/// Coordinate, rate and acceleration that the sensor of a joint shows at each row.
+fn coordinate(
+    view: &View,
+    mechanism: &Mechanism,
+    joint: JointIndex,
+    sensor: usize,
+) -> [Vec<f64>; 3] {
+    let mut position = shown(view, mechanism, sensor);
+    let drive = mechanism.actuators.iter().position(|drive| drive.joint == joint);
+    let link = drive.and_then(|drive| mechanism.actuators[drive].transmission);
+    let effort = drive.and_then(|drive| view.smooth(effort_sensor(mechanism, drive)?));
+    if let (Some(link), Some(effort)) = (link, effort) {
+        // The encoder sits at the drive's end of what gives way.
+        position.iter_mut().zip(effort).for_each(|(q, force)| *q -= link.pressed(*force));
+    }
+    derived(position, view.interval)
+}
+
+/// What a sensor looked at, smoothed, at each row.
+fn shown(view: &View, mechanism: &Mechanism, sensor: usize) -> Vec<f64> {
+    let errors = &mechanism.sensors[sensor];
+    let read = view.smooth(sensor).unwrap_or_default();
+    (0..read.len()).map(|row| view.shown(errors, read, row)).collect()
+}
+
+fn derived(position: Vec<f64>, interval: f64) -> [Vec<f64>; 3] {
+    let rate = derivative(&position, interval);
+    let acceleration = derivative(&rate, interval);
+    [position, rate, acceleration]
+}
+
+/// The pose that sensors of x, y and angle show, in the world's axes.
+fn pose(view: &View, mechanism: &Mechanism, sensors: [usize; 3]) -> Series {
+    let [x, y, angle] = sensors.map(|sensor| shown(view, mechanism, sensor));
+    let frames = &mechanism.sensors[sensors[0]].frames;
+    let turned: f64 = mechanism.sensors[sensors[2]].frames.iter().map(|f| f.rotation).sum();
+    let places = x.iter().zip(&y).map(|(x, y)| {
+        frames.iter().rev().fold(Vector2::new(*x, *y), |point, frame| of_world(frame, point))
+    });
+    let (x, y) = places.map(|point| (point.x, point.y)).unzip();
+    let angle = angle.iter().map(|angle| angle - turned).collect();
+    let columns = [x, y, angle].map(|column| derived(column, view.interval));
+    Series { interval: view.interval, columns }
+}
+
+/// The point of the world that a tracker's frame shows at `point` (m).
+fn of_world(frame: &TrackerFrame, point: Vector2<f64>) -> Vector2<f64> {
+    UnitComplex::new(-frame.rotation) * (point - frame.shift) / frame.scale
+}
+
+fn imposed(mechanism: &Mechanism, point: Mark, angle: f64, motion: Series) -> Imposed {
+    let point = point.attachment(mechanism);
+    Imposed::Target { point, angle: Some(angle), motion: Arc::new(motion) }
+}
+
+/// Position, rate and acceleration of each row, between rows on straight lines.
+fn between(columns: &[Vec<f64>; 3], place: f64) -> [f64; 3] {
+    let last = columns[0].len().saturating_sub(1);
+    let i = (place.max(0.0) as usize).min(last);
+    let (next, share) = ((i + 1).min(last), (place.max(0.0) - i as f64).min(1.0));
+    columns.each_ref().map(|c| c[i] + (c[next] - c[i]) * share)
+}
+
+/// Measured coordinates as commands.
+#[derive(Debug)]
+struct Measured {
+    interval: f64,
+    columns: Vec<[Vec<f64>; 3]>,
+}
+
+impl Commands for Measured {
+    fn at(&self, t: f64, commands: &mut [Command]) {
+        for (command, columns) in commands.iter_mut().zip(&self.columns) {
+            let [position, rate, acceleration] = between(columns, t / self.interval);
+            *command = Command { position, rate, acceleration };
+        }
+    }
+}
+
+/// A measured pose as a motion.
+#[derive(Debug)]
+struct Series {
+    interval: f64,
+    columns: [[Vec<f64>; 3]; 3],
+}
+
+impl Motion for Series {
+    fn at(&self, t: f64) -> PathPoint {
+        let now = self.columns.each_ref().map(|columns| between(columns, t / self.interval));
+        let of = |k: usize| Vector3::from(now.map(|values| values[k]));
+        PathPoint { pose: of(0), rate: of(1), acceleration: of(2) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::residual::{Kind, residuals};
+    use super::super::start::machine;
+    use super::*;
+    use crate::scenario::Scenario;
+    use std::path::Path;
+
+    /// A recorded 3-RPR that lacks nothing, without some of its columns.
+    fn recorded(without: &[&str]) -> (Mechanism, Recording) {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs/rig-4");
+        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
+        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
+        let whole = Recording::read(&folder.join("run-a.csv"), &sensors).unwrap();
+        let kept = |(i, sensor): (usize, &crate::mechanism::Sensor)| {
+            let kept = !without.contains(&sensor.column.as_str());
+            whole.get(i).filter(|_| kept).map(<[f64]>::to_vec)
+        };
+        let recording = whole.with(sensors.iter().enumerate().map(kept).collect());
+        (machine(&rig, &[], &recording).unwrap(), recording)
+    }
+
+    fn needed(mechanism: &Mechanism, recording: &Recording) -> Option<Vec<String>> {
+        let basis = Basis::of(mechanism, recording)?;
+        let sensors = mechanism.sensors.iter().enumerate();
+        let needed = sensors.filter(|(i, _)| basis.needs(*i));
+        Some(needed.map(|(_, sensor)| sensor.column.clone()).collect())
+    }
+
+    #[test]
+    fn a_tracked_body_comes_before_encoders_and_too_few_sensors_are_no_basis() {
+        for (without, expected) in [
+            (&[][..], Some("x y phi")),
+            (&["q1", "q2", "q3"], Some("x y phi")),
+            (&["phi"], Some("q1 q2 q3")),
+            (&["q2", "y"], None),
+        ] {
+            let (mechanism, recording) = recorded(without);
+            let needed = needed(&mechanism, &recording).map(|columns| columns.join(" "));
+            assert_eq!(needed.as_deref(), expected, "without {without:?}");
+        }
+    }
+
+    /// By either way of knowing the motion the rest of what was measured is where the bodies are, journals
+    /// leaning on their rings: within a tenth of the play of 0.1 mm on each side, though they swing in it.
+    #[test]
+    fn what_the_basis_does_not_need_closes() {
+        for (without, of) in [(&[][..], "q1 q2 q3"), (&["phi"][..], "x y")] {
+            let (mechanism, recording) = recorded(without);
+            let basis = Basis::of(&mechanism, &recording).unwrap();
+            let view = View::new(&recording, mechanism.sensors.len());
+            let found = residuals(&view, &mechanism, &basis, view.rows()).unwrap();
+            let closures = found.names.iter().zip(&found.signals);
+            let closures: Vec<_> =
+                closures.filter(|(name, _)| name.kind == Kind::Closure).collect();
+            let columns: Vec<&str> = closures.iter().map(|(name, _)| name.of.as_str()).collect();
+            assert_eq!(columns.join(" "), of);
+            for (name, signal) in closures {
+                let squares: f64 = signal.values.iter().map(|v| v * v).sum();
+                let rms = (squares / signal.values.len() as f64).sqrt();
+                println!("closure of {}: {rms:.2e} m", name.of);
+                assert!(rms < 2e-5, "closure of {}: {rms:e} m", name.of);
+            }
+        }
+    }
+}

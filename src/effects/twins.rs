@@ -1,0 +1,81 @@
+//! Effects that go by two names on some machines: a search tries one of the two, under the name that says more.
+
+use super::{Setting, Target};
+use crate::mechanism::{JointIndex, Mechanism, Reads, Use};
+
+impl Setting {
+    /// The name under which another kind in the catalogue says the same of `mechanism`, if that is the name to
+    /// use:
+    ///
+    /// * friction in a prismatic joint is `actuator-friction` where a drive moves it, `joint-friction` where none
+    ///   does: both are −(F_c sign(q̇) + F_v q̇) along its axis;
+    /// * a point of the ground that carries one bearing and nothing else is moved by `anchor-offset`;
+    /// * the wrong zero of a driven prismatic joint's encoder is `sensor-offset`, with the other sign.
+    pub fn better_known_as(&self, mechanism: &Mechanism) -> Option<&'static str> {
+        let index = |name: &str| mechanism.joints().find(|(joint, _)| *joint == name);
+        let driven = |joint| mechanism.actuators.iter().any(|drive| drive.joint == joint);
+        let prismatic = |joint: JointIndex| matches!(joint, JointIndex::Prismatic(_));
+        let joint = self.joint().and_then(index).map(|(_, joint)| joint);
+        match (self.kind.name, &self.target) {
+            ("joint-friction", _) => {
+                joint.filter(|j| prismatic(*j) && driven(*j)).map(|_| "actuator-friction")
+            }
+            ("actuator-friction", _) => {
+                joint.filter(|j| prismatic(*j) && !driven(*j)).map(|_| "joint-friction")
+            }
+            ("point-offset", Target::Point(name)) => {
+                let point = mechanism.names.points.get(name)?;
+                let bearing = matches!(point.uses[..], [Use::Ring(_)]);
+                (bearing && point.mark.body.is_none()).then_some("anchor-offset")
+            }
+            ("encoder-zero", Target::Sensors(columns)) => {
+                let [column] = &columns[..] else { return None };
+                let sensor = mechanism.sensors.iter().find(|sensor| sensor.column == *column)?;
+                let Reads::Position(joint) = sensor.reads else { return None };
+                (prismatic(joint) && driven(joint)).then_some("sensor-offset")
+            }
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ALL;
+    use super::super::rigs::{SLIDER_CRANK, closed};
+    use crate::mechanism::Mechanism;
+    use crate::model::parts_of;
+    use crate::scenario::Scenario;
+
+    fn left_out(mechanism: &Mechanism) -> Vec<String> {
+        let all = ALL.iter().flat_map(|kind| kind.candidates(mechanism));
+        let twins = all.filter_map(|effect| {
+            effect.better_known_as(mechanism).map(|name| format!("{effect}: {name}"))
+        });
+        let mut twins: Vec<String> = twins.collect();
+        twins.dedup();
+        twins
+    }
+
+    #[test]
+    fn of_two_names_the_one_that_says_more_is_left() {
+        let text = "[mechanism]\nkind = \"3rpr\"\n[sensors]\n";
+        let legs = parts_of(&Scenario::from_text(text, "rig", &[]).unwrap()).unwrap();
+        let expected = [
+            [
+                "point-offset at ground.A1: anchor-offset",
+                "point-offset at ground.A2: anchor-offset",
+            ],
+            ["point-offset at ground.A3: anchor-offset", "joint-friction at P1: actuator-friction"],
+            ["joint-friction at P2: actuator-friction", "joint-friction at P3: actuator-friction"],
+            ["encoder-zero at q1: sensor-offset", "encoder-zero at q2: sensor-offset"],
+        ];
+        let expected = expected.concat().into_iter().chain(["encoder-zero at q3: sensor-offset"]);
+        assert_eq!(left_out(&legs), expected.collect::<Vec<_>>());
+        let crank = left_out(&closed(SLIDER_CRANK).mechanism);
+        assert_eq!(
+            crank,
+            ["actuator-friction at S: joint-friction", "point-offset at ground.O: anchor-offset"]
+        );
+    }
+}
