@@ -154,7 +154,7 @@ fn equations(report: &Report) -> Vec<String> {
 }
 
 /// What an effect is and what it rests on, in whole sentences.
-fn why(effect: &EffectReport) -> String {
+pub fn why(effect: &EffectReport) -> String {
     let joint = effect.on.words();
     // Evidence of an effect with a name says what it does, that of a map names what does it.
     let evidence = match (effect.evidence.as_str(), effect.depends_on) {
@@ -333,6 +333,7 @@ fn provenance(case: &Case, report: &Report) -> Vec<(String, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::calibrate::report::Depends;
     use crate::effects::DependsOn;
 
     fn map(depends_on: DependsOn, components: usize, features: usize) -> Map {
@@ -365,7 +366,7 @@ mod tests {
             equation: "f = 0",
         };
         assert_eq!(why(&effect(None, "removes it")), "kind: f = 0. It removes it.");
-        let map = effect(Some(DependsOn::Velocity), "a force that varies removes it");
+        let map = effect(Some(Depends::Map(DependsOn::Velocity)), "a force that varies removes it");
         assert_eq!(why(&map), "kind: f = 0. What speaks for it: a force that varies removes it.");
         assert_eq!(why(&effect(None, "")), "kind: f = 0.");
     }

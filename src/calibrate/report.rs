@@ -7,7 +7,7 @@ use super::model::Case;
 use super::outcome::{MET, Outcome, Verdict};
 use super::rattle::Rattle;
 use super::way::name;
-use crate::effects::{DependsOn, Setting, Target};
+use crate::effects::{DependsOn, Over, Setting, Target};
 use crate::engine::StepControl;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -87,6 +87,24 @@ impl Serialize for ActsOn {
     }
 }
 
+/// What an effect without a name is a function of.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(untagged)]
+pub enum Depends {
+    /// A map of forces.
+    Map(DependsOn),
+    /// A table of efforts in joints.
+    Efforts(Over),
+}
+
+impl Depends {
+    /// Of an effect, if it has no name.
+    pub fn of(effect: &Setting) -> Option<Self> {
+        let map = effect.map().map(|map| Self::Map(map.depends_on));
+        map.or(effect.efforts().map(|table| Self::Efforts(table.depends_on)))
+    }
+}
+
 /// An effect that was found.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffectReport {
@@ -97,7 +115,7 @@ pub struct EffectReport {
     pub on: ActsOn,
     /// What it is a function of, if it has no name.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub depends_on: Option<DependsOn>,
+    pub depends_on: Option<Depends>,
     /// Its fitted values.
     #[serde(serialize_with = "by_name")]
     pub params: Vec<(&'static str, Fitted)>,
@@ -262,7 +280,7 @@ fn effect_report(outcome: &Outcome, effect: &Setting) -> EffectReport {
     EffectReport {
         kind: effect.kind.name,
         on: ActsOn::of(effect),
-        depends_on: effect.map().map(|map| map.depends_on),
+        depends_on: Depends::of(effect),
         params: params.collect(),
         evidence: evidence(outcome, effect),
         as_good: as_good(outcome, effect).into_iter().map(name).collect(),

@@ -8,10 +8,11 @@ use super::recording::Recording;
 use super::residual::Name;
 use super::search::{Found, Left, Model, Round, Search, is_noise};
 use super::thresholds::{MET, PREDICTING};
+use super::unnamed::{Described, describe};
 use crate::calibrate::errors::{ChannelError, judged};
 use crate::calibrate::outcome::{Verdict, inverse_normal, pull};
 use crate::calibrate::report::Fitted;
-use crate::effects::Setting;
+use crate::effects::{Setting, UNNAMED};
 
 /// An effect with its estimates by name.
 pub type Estimated = (Setting, Vec<(&'static str, Fitted)>);
@@ -21,8 +22,11 @@ pub type Estimated = (Setting, Vec<(&'static str, Fitted)>);
 pub struct Outcome {
     /// What it comes to.
     pub verdict: Verdict,
-    /// The effects that were found; where the verdict is `unexplained` none.
+    /// The effects that were found; where the verdict is `unexplained`, a table of efforts alone, if there is
+    /// one.
     pub effects: Vec<Estimated>,
+    /// What stands in for what has no name.
+    pub described: Option<Described>,
     /// What the search held for the best, whatever the verdict.
     pub tried: Vec<Setting>,
     /// What is left of the residuals under the declared and under the best model.
@@ -74,7 +78,19 @@ pub fn calibrate(
     let (before, after) = (search.left(&declared), search.left(&best));
     tell("predicting");
     let noise = is_noise(&after);
-    let effects = if noise { best.fit.effects.clone() } else { Vec::new() };
+    let described = match noise || without.contains(&UNNAMED) {
+        true => None,
+        false => {
+            tell("looking for what the residual depends on");
+            describe(&search, &declared)?
+        }
+    };
+    let effects = match &described {
+        _ if noise => best.fit.effects.clone(),
+        Some((described, _)) => vec![described.effect.clone()],
+        None => Vec::new(),
+    };
+    let after = described.as_ref().map_or(after, |(_, model)| search.left(model));
     let replicas = if problem.replicas > 1 { PREDICTING } else { 1 };
     let calibrated = problem.simulated(&effects, replicas)?;
     let plain = match effects.is_empty() {
@@ -97,11 +113,12 @@ pub fn calibrate(
         logs.iter().map(|logs| super::errors::mean(logs, sensors)).collect::<Vec<_>>()
     };
     Ok(Outcome {
-        effects: if verdict == Verdict::Explained {
-            estimated(&best, &split.on)
-        } else {
-            Vec::new()
+        effects: match (verdict, &described) {
+            (Verdict::Explained, _) => estimated(&best, &split.on),
+            (_, Some((described, _))) => vec![(described.effect.clone(), Vec::new())],
+            (_, None) => Vec::new(),
         },
+        described: described.map(|(described, _)| described),
         verdict,
         tried: best.fit.effects.clone(),
         before,

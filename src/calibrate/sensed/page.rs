@@ -4,7 +4,7 @@ use super::outcome::Outcome;
 use super::problem::Problem;
 use super::report::Report;
 use crate::calibrate::charts::{POINTS, panel, thinned};
-use crate::calibrate::page::{errors_table, verdict};
+use crate::calibrate::page::{errors_table, verdict, why};
 use crate::mechanism::Reads;
 use crate::report::{
     Curve, Part, Picture, ReportError, Style, Table, document, known_to, number, panels_svg,
@@ -138,11 +138,7 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
             .collect(),
         note: "Of what stands above noise on data that a candidate was not fitted to.".into(),
     };
-    let equations: Vec<String> = report
-        .effects
-        .iter()
-        .map(|effect| format!("{}: {}. It {}.", effect.kind, effect.equation, effect.evidence))
-        .collect();
+    let equations: Vec<String> = report.effects.iter().map(why).collect();
     let more = [
         ("Figures", "report.json beside this page".to_owned()),
         ("Simulations", report.simulations.to_string()),

@@ -9,7 +9,9 @@ use super::start::machine;
 use crate::calibrate::errors::{ChannelError, worst};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::recording::stem_of;
-use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, ResidualReport, Seeds};
+use crate::calibrate::report::{
+    ActsOn, Depends, EffectReport, Ranked, RattleReport, ResidualReport, Seeds,
+};
 use crate::calibrate::result::{
     CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, refuse, to_json,
 };
@@ -230,7 +232,15 @@ fn summary(outcome: &Outcome) -> String {
         ),
         Verdict::Unexplained => format!(
             "What the declared model misses stands above noise, and no effect with a name that was tried \
-             explains it{worst}."
+             explains it{worst}.{}",
+            match &outcome.described {
+                Some(described) => format!(
+                    " It varies with {}: a fitted table of efforts stands in for it, which predicts and \
+                     explains nothing.",
+                    described.words()
+                ),
+                None => String::new(),
+            }
         ),
     }
 }
@@ -247,14 +257,16 @@ fn effects(outcome: &Outcome) -> Vec<EffectReport> {
         EffectReport {
             kind: effect.kind.name,
             on: ActsOn::of(effect),
-            depends_on: None,
+            depends_on: Depends::of(effect),
             params: params.clone(),
-            evidence: gain.map_or_else(String::new, |gain| {
-                format!(
+            evidence: match (&outcome.described, gain) {
+                (Some(described), _) => described.evidence(),
+                (None, Some(gain)) => format!(
                     "takes {gain:.0} off the sum of squares, in units of noise, on data that it was not \
                      fitted to"
-                )
-            }),
+                ),
+                (None, None) => String::new(),
+            },
             as_good: round.map_or_else(Vec::new, |round| round.as_good.iter().map(name).collect()),
             equation: effect.kind.equation,
         }

@@ -1,5 +1,6 @@
 //! What remains when no effect explains it: efforts in the measured joints as a table of what they depend on.
 
+use super::estimate::position_sensor;
 use super::fit::Target;
 use super::problem::{Problem, Segment, Split, Stopped};
 use super::residual::{Kind, Name};
@@ -19,6 +20,28 @@ pub struct Described {
     pub share: f64,
     /// The same of every class, the best first.
     pub others: Vec<(Over, f64)>,
+}
+
+impl Described {
+    /// What it depends on, in words.
+    pub fn words(&self) -> &'static str {
+        self.effect.efforts().map_or("something unknown", |table| table.depends_on.words())
+    }
+
+    /// What speaks for it.
+    pub fn evidence(&self) -> String {
+        let others = self.others.iter().skip(1).map(|(over, share)| {
+            format!("{} {:.0} %", over.words(), 100.0 * share.clamp(0.0, 1.0))
+        });
+        let others: Vec<String> = others.collect();
+        format!(
+            "efforts that vary with {} remove {:.0} % of what stands above noise on data that they were not \
+             fitted to ({})",
+            self.words(),
+            100.0 * self.share,
+            others.join(", ")
+        )
+    }
 }
 
 /// Ridges that are tried, as shares of the mean square of a joint's columns.
@@ -130,11 +153,11 @@ fn motion(problem: &Problem, split: &Split, names: &[Name]) -> Option<Moved> {
 
 /// Middle, half range and largest rate of a joint's coordinate as its own sensor shows it.
 fn range(problem: &Problem, on: &[Segment], joint: JointIndex) -> Option<[f64; 3]> {
-    let (sensor, _) = problem.basis.sensors.iter().find(|(_, of)| *of == joint)?;
+    let sensor = position_sensor(&problem.declared, joint)?;
     let (mut low, mut high, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
     for segment in on {
         let view = &problem.runs[segment.run].view;
-        let values = view.smooth(*sensor)?.get(segment.rows.clone())?;
+        let values = view.smooth(sensor)?.get(segment.rows.clone())?;
         for pair in values.windows(2) {
             (low, high) = (low.min(pair[0]), high.max(pair[0]));
             fastest = fastest.max((pair[1] - pair[0]).abs() / view.interval);
