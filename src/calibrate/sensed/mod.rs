@@ -22,5 +22,6 @@ pub mod simulate;
 pub mod start;
 pub mod thresholds;
 pub mod trajectory;
+pub mod windows;
 
 pub use report::{into_folder, prepare};

@@ -1,0 +1,13 @@
+//! Calibration of machines that nothing holds: without clearance, free or driven by efforts alone.
+//!
+//! Whole runs of such machines cannot be simulated: their starts are unknown, and errors grow. [`window`] cuts
+//! runs into windows and fits the start in each; [`roll`] moves a machine along one; [`shooting`] fits values of
+//! effects, zeros of runs and starts together; [`sought`] says which values; [`score`] by how much predictions
+//! miss; [`outcome`] is the whole way, [`predict`] that of a prediction.
+
+pub mod inputs;
+pub mod pose;
+pub mod roll;
+pub mod shooting;
+pub mod sought;
+pub mod window;
