@@ -5,9 +5,14 @@
 //! effects, zeros of runs and starts together; [`sought`] says which values; [`score`] by how much predictions
 //! miss; [`outcome`] is the whole way, [`predict`] that of a prediction.
 
+pub mod bench;
 pub mod inputs;
+pub mod outcome;
 pub mod pose;
+pub mod predict;
+pub mod report;
 pub mod roll;
+pub mod score;
 pub mod shooting;
 pub mod sought;
 pub mod window;
