@@ -102,14 +102,12 @@ pub fn calibrate(
     let mut model = bench.declared.clone();
     let fitted = first.is_some();
     if let Some(values) = first {
-        let gains = search.gains(&everything, &values);
-        let dropped: Vec<usize> =
-            gains.iter().filter(|(_, gain)| *gain < CERTAIN).map(|(i, _)| *i).collect();
+        let gains = search.eliminated(&everything, &values);
+        let dropped: Vec<usize> = gains.iter().map(|(i, _)| *i).collect();
         let named = everything.settings(&values);
         left_out.extend(
             gains
                 .iter()
-                .filter(|(i, _)| dropped.contains(i))
                 .map(|&(i, gain)| LeftOut { effect: named[i].clone(), gain }),
         );
         let rest = everything.without(&dropped, &values);
@@ -286,6 +284,12 @@ impl Search<'_> {
             }
             done = true;
             let share = missed * self.scales[0] / motion[0];
+            if std::env::var("H1_DEBUG").is_ok() {
+                for (i, effect) in sought.settings(&values).iter().enumerate() {
+                    eprintln!("{effect} {:?} gain {:?}", effect.values().collect::<Vec<_>>(), self.gains(sought, &values).iter().find(|(k, _)| *k == i));
+                }
+                eprintln!("length {length} missed {missed} share {share} zeros {:?} squares {}", self.zeros, fitted.squares);
+            }
             (self.tell)(&format!("windows of {length} s: {:.2} % of the motion is missed", 100.0 * share));
             if length > WINDOWS[0] && share > PHASE {
                 break;
@@ -300,20 +304,60 @@ impl Search<'_> {
 
     /// What each effect's change from what is declared takes off, as windows vary: `θᵀ C⁻¹ θ`.
     fn gains(&self, sought: &Sought, values: &[f64]) -> Vec<(usize, f64)> {
-        let gain = |effect: usize| {
-            let places = sought.of(effect);
-            let change = DVector::from_fn(places.len(), |i, _| {
-                let k = places[i];
-                (values[k] - sought.values[k].prior[0]) / self.deviation(k).max(f64::MIN_POSITIVE)
-            });
-            let block = DMatrix::from_fn(places.len(), places.len(), |i, j| {
-                let (a, b) = (places[i], places[j]);
-                self.covariance[(a, b)] / (self.deviation(a) * self.deviation(b)).max(f64::MIN_POSITIVE)
-                    + if i == j { 1e-9 } else { 0.0 }
-            });
-            block.cholesky().map_or(0.0, |factor| change.dot(&factor.solve(&change)))
-        };
-        let effects = 0..sought.effects.len();
-        effects.filter(|&i| !sought.of(i).is_empty()).map(|i| (i, gain(i))).collect()
+        let change = self.change(sought, values);
+        let effects = (0..sought.effects.len()).filter(|&i| !sought.of(i).is_empty());
+        effects.map(|i| (i, gain(&self.covariance, &change, &sought.of(i)))).collect()
     }
+
+    /// By how much values differ from what is declared; zeros of runs are no change.
+    fn change(&self, sought: &Sought, values: &[f64]) -> DVector<f64> {
+        DVector::from_fn(self.covariance.nrows(), |k, _| {
+            sought.values.get(k).map_or(0.0, |value| values[k] - value.prior[0])
+        })
+    }
+
+    /// Effects that are not certain, the least certain first: each is taken back to what is declared, and the
+    /// others become what they then are, `θ − C_d C_dd⁻¹ θ_d` with covariance `C − C_d C_dd⁻¹ C_dᵀ`.
+    fn eliminated(&self, sought: &Sought, values: &[f64]) -> Vec<(usize, f64)> {
+        let mut change = self.change(sought, values);
+        let mut covariance = self.covariance.clone();
+        let mut left: Vec<usize> =
+            (0..sought.effects.len()).filter(|&i| !sought.of(i).is_empty()).collect();
+        let mut out = Vec::new();
+        while let Some((least, lost)) = left
+            .iter()
+            .map(|&i| (i, gain(&covariance, &change, &sought.of(i))))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|(_, gain)| *gain < CERTAIN)
+        {
+            out.push((least, lost));
+            left.retain(|i| *i != least);
+            let places = sought.of(least);
+            let across = covariance.select_columns(&places);
+            let block = across.select_rows(&places);
+            let part = change.select_rows(&places);
+            let Some(inverse) = inverse(&block) else { continue };
+            change -= &across * (&inverse * part);
+            covariance -= &across * inverse * across.transpose();
+        }
+        out
+    }
+}
+
+/// Inverse of a covariance, in units of its deviations; values that are not known at all are left alone.
+fn inverse(block: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let scale: Vec<f64> =
+        (0..block.nrows()).map(|i| block[(i, i)].max(1e-300).sqrt()).collect();
+    let unit = DMatrix::from_fn(block.nrows(), block.ncols(), |i, j| {
+        block[(i, j)] / (scale[i] * scale[j]) + if i == j { 1e-9 } else { 0.0 }
+    });
+    let inverse = unit.try_inverse()?;
+    Some(DMatrix::from_fn(block.nrows(), block.ncols(), |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
+}
+
+/// `θᵀ C⁻¹ θ` of some places.
+fn gain(covariance: &DMatrix<f64>, change: &DVector<f64>, places: &[usize]) -> f64 {
+    let block = covariance.select_columns(places).select_rows(places);
+    let part = change.select_rows(places);
+    inverse(&block).map_or(0.0, |inverse| part.dot(&(inverse * &part)))
 }

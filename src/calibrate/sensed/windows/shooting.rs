@@ -273,7 +273,7 @@ impl Shooting<'_> {
         Some((change, steps))
     }
 
-    /// `H⁻¹ (Σ g gᵀ) H⁻¹`, g each window's pull (White, *Econometrica* 48, 1980): errors within a window belong
+    /// `H⁻¹ (Σ g gᵀ + P) H⁻¹`, g each window's pull, P that of the priors (White, *Econometrica* 48, 1980): errors within a window belong
     /// together, those of different windows do not.
     fn covariance(
         &self,
@@ -295,6 +295,9 @@ impl Shooting<'_> {
             let inverse = unit.try_inverse()?;
             let inverse = DMatrix::from_fn(unknowns, unknowns, |i, j| inverse[(i, j)] / scale[i] / scale[j]);
             let mut meat = DMatrix::zeros(unknowns, unknowns);
+            for (k, prior) in priors.iter().enumerate() {
+                meat[(k, k)] = prior.map_or(0.0, |[_, weight]| weight);
+            }
             for part in parts {
                 let factor = part.aa.clone().cholesky()?;
                 let pull = (&part.br - part.ab.transpose() * factor.solve(&part.ar)) * part.weight;

@@ -22,6 +22,9 @@ const OFFSET: f64 = 0.02;
 /// show how steep it is at rest.
 const STEEP: f64 = 0.01;
 
+/// Share of the distance of a centre of mass that an axis has to have of it for a moment along it to be sought.
+const BESIDE: f64 = 0.05;
+
 /// Steps of derivatives in expected sizes.
 const STEP: f64 = 1e-4;
 
@@ -30,6 +33,8 @@ const STEP: f64 = 1e-4;
 pub struct Sought {
     /// All effects.
     pub effects: Vec<Setting>,
+    /// How many of them, the first ones, the rig declares.
+    declared: usize,
     /// Effect and value of it of each value that is sought.
     places: Vec<(usize, usize)>,
     /// The values.
@@ -61,19 +66,27 @@ impl Sought {
         self.of(effect).into_iter().map(|k| names[self.places[k].1]).collect()
     }
 
-    /// The same without some effects; values start at `values`.
+    /// The same without some effects, or, of those that the rig declares, as it declares them; values start at
+    /// `values`.
     pub fn without(&self, dropped: &[usize], values: &[f64]) -> Self {
-        let mut left = Self { effects: Vec::new(), places: Vec::new(), values: Vec::new(), start: Vec::new() };
-        let settings = self.settings(values);
-        for (i, effect) in settings.into_iter().enumerate() {
-            if dropped.contains(&i) {
+        let mut kept = values.to_vec();
+        for k in dropped.iter().flat_map(|&effect| self.of(effect)) {
+            kept[k] = self.values[k].prior[0];
+        }
+        let mut left = Self { effects: Vec::new(), declared: 0, ..self.clone() };
+        (left.places, left.values, left.start) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, effect) in self.settings(&kept).into_iter().enumerate() {
+            let declared = i < self.declared;
+            if !dropped.contains(&i) {
+                for k in self.of(i) {
+                    left.places.push((left.effects.len(), self.places[k].1));
+                    left.values.push(self.values[k].clone());
+                    left.start.push(kept[k]);
+                }
+            } else if !declared {
                 continue;
             }
-            for k in self.of(i) {
-                left.places.push((left.effects.len(), self.places[k].1));
-                left.values.push(self.values[k].clone());
-                left.start.push(values[k]);
-            }
+            left.declared += usize::from(declared);
             left.effects.push(effect);
         }
         left
@@ -123,6 +136,7 @@ pub fn sought(
 ) -> Sought {
     let mut sought = Sought {
         effects: declared.to_vec(),
+        declared: declared.len(),
         places: Vec::new(),
         values: Vec::new(),
         start: Vec::new(),
@@ -138,12 +152,16 @@ pub fn sought(
         let body = &mechanism.bodies[index];
         let moment = MASS * body.mass * size;
         let inertia = INERTIA * (body.inertia + body.mass * size * size);
-        let sizes = [
-            ("mass_kg", MASS * body.mass),
-            ("moment_x_kg_m", moment),
-            ("moment_y_kg_m", moment),
-            ("inertia_kg_m2", inertia),
-        ];
+        // A centre of mass beside its declared line is no different from wrong zeros of sensors.
+        let centre = axes.centre.point - axes.origin.point;
+        let turn = nalgebra::UnitComplex::new(-axes.angle);
+        let line = turn * centre / centre.norm().max(f64::MIN_POSITIVE);
+        let mut sizes = vec![("mass_kg", MASS * body.mass), ("inertia_kg_m2", inertia)];
+        for (name, share) in [("moment_x_kg_m", line.x.abs()), ("moment_y_kg_m", line.y.abs())] {
+            if share > BESIDE {
+                sizes.push((name, share * moment));
+            }
+        }
         if allowed("mass-properties") {
             sought.add("mass-properties", Target::Body(name.clone()), &sizes, &[]);
         }

@@ -60,7 +60,7 @@ pub fn cut(
     let interval = recording.interval * stride as f64;
     let count = (length / interval).round().max(1.0) as usize;
     let step = ((step / interval).round().max(1.0) as usize) * stride;
-    let last = recording.samples.min((until / recording.interval) as usize + 1);
+    let last = recording.samples.min(((until / recording.interval) as usize).saturating_add(1));
     let mut row = (from / recording.interval).round() as usize;
     let mut windows = Vec::new();
     while row + count * stride < last {
