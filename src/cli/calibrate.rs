@@ -90,7 +90,8 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         return any_mechanism(arguments, rig, &paths, &without);
     }
     if arguments.data.len() > 1 {
-        let message = "--data: this machine takes one run to calibrate on; give the others as --validate";
+        let message =
+            "--data: this machine takes one run to calibrate on; give the others as --validate";
         return Err(Failure::Input(vec![message.to_owned()]));
     }
     if let Some(machine) = Machine::of(&rig) {

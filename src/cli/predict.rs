@@ -68,8 +68,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         return single_joint(arguments, &model, machine);
     }
     if model.mechanism.described().is_some() {
-        let asked =
-            Asked { window: arguments.window, fit: arguments.fit, from: arguments.from };
+        let asked = Asked { window: arguments.window, fit: arguments.fit, from: arguments.from };
         if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {
             return by_windows(arguments, &model, &prepared);
         }
@@ -123,8 +122,10 @@ fn by_windows(
         for remark in &p.remarks {
             let _ = writeln!(text, "{remark}");
         }
-        let heads =
-            format!("  {:<9}{:>17}{:>14}{:>14}\n", "channel", "without effects", "predicted", "floor");
+        let heads = format!(
+            "  {:<9}{:>17}{:>14}{:>14}\n",
+            "channel", "without effects", "predicted", "floor"
+        );
         let page = predicted.folder.join("index.html");
         let name = &p.provenance.scenario_name;
         format!(

@@ -59,8 +59,14 @@ mod tests {
     #[test]
     fn a_rotor_is_an_inertia_of_its_joint() {
         let text = TURNTABLE
-            .replace("kind = \"servo\"\nstiffness = 400.0\ndamping = 1.5", "kind = \"force\"\nvalue = 0.4")
-            .replace("[[motion]]\njoint = \"O\"\nkind = \"line\"\nstart = 0.5\nvelocity = 0.0\n", "");
+            .replace(
+                "kind = \"servo\"\nstiffness = 400.0\ndamping = 1.5",
+                "kind = \"force\"\nvalue = 0.4",
+            )
+            .replace(
+                "[[motion]]\njoint = \"O\"\nkind = \"line\"\nstart = 0.5\nvelocity = 0.0\n",
+                "",
+            );
         let rotor = "[[effect]]\nkind = \"rotor-inertia\"\njoint = \"O\"\ninertia_kg_m2 = 0.03\n";
         for (text, inertia) in [(text.clone(), 0.01), (format!("{text}{rotor}"), 0.04)] {
             let rig = closed(&text);

@@ -178,12 +178,12 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
 
 /// Errors of all runs by windows.
 fn horizons(windows: &Windows) -> Table {
-    let head = ["run", "role", "window", "fitted to", "from", "column", "declared", "calibrated", "floor"];
+    let head =
+        ["run", "role", "window", "fitted to", "from", "column", "declared", "calibrated", "floor"];
     let rows = windows.horizons.iter().flat_map(|of| {
         of.errors.iter().map(|e| {
             let horizon = of.horizon;
-            let times =
-                [horizon.window_s, horizon.fit_s, horizon.from_s].map(|t| format!("{t} s"));
+            let times = [horizon.window_s, horizon.fit_s, horizon.from_s].map(|t| format!("{t} s"));
             let errors = [e.before, e.after, e.floor].map(number);
             let run = [of.run.clone(), of.role.to_owned()];
             run.into_iter().chain(times).chain([e.channel.clone()]).chain(errors).collect()

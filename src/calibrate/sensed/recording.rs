@@ -93,7 +93,16 @@ impl Recording {
             }
         };
         let name = path.file_name().map_or(file.clone(), |n| n.to_string_lossy().into_owned());
-        Ok(Self { path: file, name, start: times[0], interval, samples: times.len(), columns, ignored, jitter })
+        Ok(Self {
+            path: file,
+            name,
+            start: times[0],
+            interval,
+            samples: times.len(),
+            columns,
+            ignored,
+            jitter,
+        })
     }
 
     /// Samples of sensor `index`, if the recording has them.

@@ -96,7 +96,8 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
         wrong.push(rig.problem("effect", message, help).to_string());
     }
     if !by_windows && fits > 1 {
-        let message = "--data: several runs are fitted together of machines that nothing holds alone";
+        let message =
+            "--data: several runs are fitted together of machines that nothing holds alone";
         wrong.push(format!("{message}; give this one a --data and the others as --validate"));
     }
     refuse(wrong)?;

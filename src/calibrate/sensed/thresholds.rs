@@ -90,7 +90,7 @@ pub const WINDOWS: [f64; 4] = [0.2, 0.5, 1.2, 2.5];
 
 /// Share of a motion that a model may miss over windows of one length for the next to be fitted: of a model that
 /// lacks more, longer windows say how its errors grow.
-pub const PHASE: f64 = 2e-3;
+pub const PHASE: f64 = 4e-3;
 
 /// Time in s that windows of one fit cover together, at most: what two slow cores fit in a minute.
 pub const COVERED: f64 = 45.0;

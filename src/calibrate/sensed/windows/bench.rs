@@ -7,9 +7,7 @@ use super::window::{Shooter, Start, Window, compared, cut};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::{OWN, ZERO};
 use crate::effects::Setting;
-use crate::mechanism::{
-    Bearing, Command, Commands, Drive, Idle, JointIndex, Mechanism, Reads,
-};
+use crate::mechanism::{Bearing, Command, Commands, Drive, Idle, JointIndex, Mechanism, Reads};
 use crate::model::recorded;
 use crate::scenario::{Problem, Scenario};
 use nalgebra::DMatrix;
@@ -57,7 +55,9 @@ impl Bench {
         let coordinates = Coordinates::of(&mechanism).ok_or_else(|| {
             wrong("are not enough: bodies hang loose", "joints have to hold every body")
         })?;
-        for (run, drive) in runs.iter().flat_map(|run| (0..mechanism.actuators.len()).map(move |d| (run, d))) {
+        for (run, drive) in
+            runs.iter().flat_map(|run| (0..mechanism.actuators.len()).map(move |d| (run, d)))
+        {
             if input_sensor(&mechanism, run, drive).is_none() {
                 let message = format!(
                     "of the force or command of {} have no column in {}",

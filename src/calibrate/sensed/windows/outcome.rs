@@ -7,12 +7,10 @@ use super::sought::{Sought, sought};
 use super::window::{Window, cut};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::report::Fitted as Estimate;
-use crate::calibrate::sensed::thresholds::{
-    CERTAIN, COVERED, HORIZONS, MET, OWN, PHASE, WINDOWS,
-};
+use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::thresholds::{CERTAIN, COVERED, HORIZONS, MET, OWN, PHASE, WINDOWS};
 use crate::effects::{Setting, Target, named};
 use crate::scenario::{Problem, Scenario};
-use crate::calibrate::sensed::recording::Recording;
 use nalgebra::{DMatrix, DVector};
 
 /// An effect, estimates of its values, and what it takes off Σ of squares as windows vary.
@@ -105,14 +103,11 @@ pub fn calibrate(
         let gains = search.eliminated(&everything, &values);
         let dropped: Vec<usize> = gains.iter().map(|(i, _)| *i).collect();
         let named = everything.settings(&values);
-        left_out.extend(
-            gains
-                .iter()
-                .map(|&(i, gain)| LeftOut { effect: named[i].clone(), gain }),
-        );
+        left_out.extend(gains.iter().map(|&(i, gain)| LeftOut { effect: named[i].clone(), gain }));
         let rest = everything.without(&dropped, &values);
         let longest = search.lengths.last().copied().unwrap_or(WINDOWS[0]);
-        let again = search.stages(&rest, rest.start.clone(), &[longest]).unwrap_or(rest.start.clone());
+        let again =
+            search.stages(&rest, rest.start.clone(), &[longest]).unwrap_or(rest.start.clone());
         model = rest.settings(&again);
         let gains = search.gains(&rest, &again);
         for (i, gain) in gains {
@@ -126,7 +121,7 @@ pub fn calibrate(
         }
     }
     tell("finding the zeros of runs");
-    let found = zeros_of_all(&all, &model, &names);
+    let found = zeros_of_all(&all, &model, &names, &search.zeros_known());
     effects.extend(found.iter().cloned());
     model.extend(found.into_iter().map(|certain| certain.effect));
     tell("predicting");
@@ -169,7 +164,8 @@ pub fn horizons(bench: &Bench) -> Vec<Horizon> {
 
 /// All runs under the model of a bench and under the rig as declared, and the zeros of runs.
 fn judge(bench: &Bench, rig: &Scenario) -> Result<(Vec<Judged>, Vec<Vec<[f64; 2]>>), Problem> {
-    let problem = || rig.problem("mechanism", "cannot be rolled along its runs", "check its masses");
+    let problem =
+        || rig.problem("mechanism", "cannot be rolled along its runs", "check its masses");
     let zeros = bench.own_zeros(&bench.declared, &bench.zeros_of_runs()).ok_or_else(problem)?;
     let declared = Bench::new(rig, bench.runs.clone())?;
     let [before, after] = [&declared, bench].map(|bench| bench.machines(&bench.declared));
@@ -190,12 +186,21 @@ fn judge(bench: &Bench, rig: &Scenario) -> Result<(Vec<Judged>, Vec<Vec<[f64; 2]
     Ok((judged, zeros))
 }
 
-/// Zeros that are certainly off, as effects: where they differ from run to run by more than they are known by,
+/// Zeros that are certainly off, as effects; `known` are those of the first runs, by all of them. Where they differ from run to run by more than they are known by,
 /// with how much.
-fn zeros_of_all(all: &Bench, model: &[Setting], stds: &[f64]) -> Vec<Certain> {
+fn zeros_of_all(
+    all: &Bench,
+    model: &[Setting],
+    stds: &[f64],
+    known: &[Vec<[f64; 2]>],
+) -> Vec<Certain> {
     /// Standard deviations of few runs' zeros are known to some tens of per cent.
     const FEW: f64 = 1.5;
-    let Some(zeros) = all.own_zeros(model, stds) else { return Vec::new() };
+    let Some(mut zeros) = all.own_zeros(model, stds) else { return Vec::new() };
+    for (zeros, known) in zeros.iter_mut().zip(known) {
+        // Whole runs say more than their first seconds.
+        zeros.clone_from(known);
+    }
     let Some(kind) = named("encoder-zero") else { return Vec::new() };
     let count = zeros.len() as f64;
     let mut found = Vec::new();
@@ -252,7 +257,12 @@ impl Search<'_> {
     }
 
     /// Values that fit windows of these lengths, one after another, as long as the model keeps the phase.
-    fn stages(&mut self, sought: &Sought, mut values: Vec<f64>, lengths: &[f64]) -> Option<Vec<f64>> {
+    fn stages(
+        &mut self,
+        sought: &Sought,
+        mut values: Vec<f64>,
+        lengths: &[f64],
+    ) -> Option<Vec<f64>> {
         let motion = self.bench.motion();
         let mut done = false;
         for &length in lengths {
@@ -286,16 +296,34 @@ impl Search<'_> {
             let share = missed * self.scales[0] / motion[0];
             if std::env::var("H1_DEBUG").is_ok() {
                 for (i, effect) in sought.settings(&values).iter().enumerate() {
-                    eprintln!("{effect} {:?} gain {:?}", effect.values().collect::<Vec<_>>(), self.gains(sought, &values).iter().find(|(k, _)| *k == i));
+                    eprintln!(
+                        "{effect} {:?} gain {:?}",
+                        effect.values().collect::<Vec<_>>(),
+                        self.gains(sought, &values).iter().find(|(k, _)| *k == i)
+                    );
                 }
-                eprintln!("length {length} missed {missed} share {share} zeros {:?} squares {}", self.zeros, fitted.squares);
+                eprintln!(
+                    "length {length} missed {missed} share {share} zeros {:?} squares {}",
+                    self.zeros, fitted.squares
+                );
             }
-            (self.tell)(&format!("windows of {length} s: {:.2} % of the motion is missed", 100.0 * share));
+            (self.tell)(&format!(
+                "windows of {length} s: {:.2} % of the motion is missed",
+                100.0 * share
+            ));
             if length > WINDOWS[0] && share > PHASE {
                 break;
             }
         }
         done.then_some(values)
+    }
+
+    /// Zeros of the runs that were fitted, and their standard deviations.
+    fn zeros_known(&self) -> Vec<Vec<[f64; 2]>> {
+        let n = self.bench.sensors.len();
+        let first = self.covariance.nrows().saturating_sub(n * self.zeros.len());
+        let zero = |run: usize, i: usize| [self.zeros[run][i], self.deviation(first + run * n + i)];
+        (0..self.zeros.len()).map(|run| (0..n).map(|i| zero(run, i)).collect()).collect()
     }
 
     fn deviation(&self, k: usize) -> f64 {
@@ -346,13 +374,14 @@ impl Search<'_> {
 
 /// Inverse of a covariance, in units of its deviations; values that are not known at all are left alone.
 fn inverse(block: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale: Vec<f64> =
-        (0..block.nrows()).map(|i| block[(i, i)].max(1e-300).sqrt()).collect();
+    let scale: Vec<f64> = (0..block.nrows()).map(|i| block[(i, i)].max(1e-300).sqrt()).collect();
     let unit = DMatrix::from_fn(block.nrows(), block.ncols(), |i, j| {
         block[(i, j)] / (scale[i] * scale[j]) + if i == j { 1e-9 } else { 0.0 }
     });
     let inverse = unit.try_inverse()?;
-    Some(DMatrix::from_fn(block.nrows(), block.ncols(), |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
+    Some(DMatrix::from_fn(block.nrows(), block.ncols(), |i, j| {
+        inverse[(i, j)] / (scale[i] * scale[j])
+    }))
 }
 
 /// `θᵀ C⁻¹ θ` of some places.

@@ -89,7 +89,8 @@ impl Coordinates {
         for _ in 0..self.0.len() {
             for (joint, value) in self.0.iter().zip(values) {
                 let JointIndex::Revolute(i) = *joint else { continue };
-                let place = |body: Option<usize>| body.map_or(Some(0.0), |b| known[b].then(|| angles[b]));
+                let place =
+                    |body: Option<usize>| body.map_or(Some(0.0), |b| known[b].then(|| angles[b]));
                 let [ring, journal] = mechanism.revolutes[i].bodies();
                 match (place(ring), place(journal), ring, journal) {
                     (Some(angle), None, _, Some(body)) => {

@@ -10,7 +10,7 @@ use crate::calibrate::errors::ChannelError;
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
 use crate::calibrate::result::{CalibrateError, publish, refuse, to_json};
 use crate::calibrate::sensed::recording::Recording;
-use crate::report::{Style, Part, Table, document, number};
+use crate::report::{Part, Style, Table, document, number};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE};
@@ -78,7 +78,11 @@ pub struct Prepared {
 ///
 /// # Errors
 /// What is wrong with the model, the recording, or what is asked for.
-pub fn prepare(model: &Scenario, path: &Path, asked: Asked) -> Result<Option<Prepared>, CalibrateError> {
+pub fn prepare(
+    model: &Scenario,
+    path: &Path,
+    asked: Asked,
+) -> Result<Option<Prepared>, CalibrateError> {
     let parts = crate::model::parts_of(model)?;
     if !suits(&parts) {
         return Ok(None);
@@ -125,10 +129,10 @@ pub fn into_folder(
 ) -> Result<Predicted, CalibrateError> {
     let started = Clock::now();
     let Prepared { bench, horizons } = prepared;
-    let problem = || model.problem("mechanism", "cannot be rolled along this run", "check its masses");
+    let problem =
+        || model.problem("mechanism", "cannot be rolled along this run", "check its masses");
     tell("finding what belongs to the run");
-    let zeros =
-        bench.own_zeros(&bench.declared, &bench.zeros_of_runs()).ok_or_else(problem)?;
+    let zeros = bench.own_zeros(&bench.declared, &bench.zeros_of_runs()).ok_or_else(problem)?;
     let own: Vec<f64> = zeros[0].iter().map(|[zero, _]| *zero).collect();
     let none = vec![0.0; bench.sensors.len()];
     let machine = bench.machines(&bench.declared).ok_or_else(problem)?;
@@ -144,7 +148,8 @@ pub fn into_folder(
     let mut first = None;
     for &horizon in horizons {
         let after = score(bench, &machine[0], &own, 0, horizon);
-        let before = plain.as_ref().map(|(plain, machine)| score(plain, &machine[0], &none, 0, horizon));
+        let before =
+            plain.as_ref().map(|(plain, machine)| score(plain, &machine[0], &none, 0, horizon));
         let errors = channel_errors(bench, 0, "prediction", before.as_ref(), &after);
         let run = bench.runs[0].name.clone();
         let count = after.windows;
@@ -185,7 +190,8 @@ fn page(p: &Prediction, pictures: &[crate::report::Picture]) -> String {
         format!("with {}", p.effects.join(", "))
     };
     let lead = format!("{} {effects}, against {}.", p.provenance.scenario_name, p.run);
-    let head = ["window", "fitted to", "from", "column", "unit", "without effects", "predicted", "floor"];
+    let head =
+        ["window", "fitted to", "from", "column", "unit", "without effects", "predicted", "floor"];
     let rows = p.windows.iter().flat_map(|of| {
         of.errors.iter().map(|e| {
             let Horizon { window_s, fit_s, from_s } = of.horizon;
@@ -210,7 +216,10 @@ fn page(p: &Prediction, pictures: &[crate::report::Picture]) -> String {
     let provenance = p.provenance.lines("model", None, more);
     let mut parts = vec![Part::Table(errors), Part::Pictures(pictures)];
     if !p.remarks.is_empty() {
-        parts.insert(1, Part::Text { id: "remarks", title: "The recording", paragraphs: &p.remarks });
+        parts.insert(
+            1,
+            Part::Text { id: "remarks", title: "The recording", paragraphs: &p.remarks },
+        );
     }
     parts.push(Part::Provenance(&provenance));
     document(&format!("Prediction of {}", p.run), &lead, &parts)

@@ -221,10 +221,8 @@ pub fn into_folder(
             let sensors = &bench.mechanism.sensors;
             let text = predicted(&bench, *run, after).to_csv(sensors);
             files.push((format!("predicted-{}.csv", stem_of(&bench.runs[*run].name)), text));
-            let models = [
-                ("declared", Style::Reference, before),
-                ("calibrated", Style::Solid, after),
-            ];
+            let models =
+                [("declared", Style::Reference, before), ("calibrated", Style::Solid, after)];
             drawn.extend(pictures(&bench, *run, role, &models)?);
         }
         let name = bench.runs[*run].name.clone();

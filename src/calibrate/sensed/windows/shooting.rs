@@ -11,9 +11,10 @@ use rayon::prelude::*;
 const STEPS: usize = 14;
 const ENOUGH: f64 = 1e-3;
 
-/// In units of the median: root mean squares of windows above which they count less (Huber 1964): some hold
-/// what no model knows, as somebody's push.
-const OUTLIER: f64 = 3.0;
+/// In units of the median: root mean squares of windows above which they count less (Huber, *Ann. Math. Stat.* 35,
+/// 1964): large swings miss more than small ones, and some windows hold what no
+/// model knows, as somebody's push.
+const OUTLIER: f64 = 2.0;
 
 /// A value that is sought.
 #[derive(Clone, Debug)]
@@ -70,7 +71,12 @@ struct Part {
 }
 
 impl Shooting<'_> {
-    fn shooter<'b>(&'b self, machines: &'b [Mechanism], zeros: &'b [Vec<f64>], run: usize) -> Shooter<'b> {
+    fn shooter<'b>(
+        &'b self,
+        machines: &'b [Mechanism],
+        zeros: &'b [Vec<f64>],
+        run: usize,
+    ) -> Shooter<'b> {
         Shooter { mechanism: &machines[run], zeros: &zeros[run], ..self.shooter }
     }
 
@@ -92,12 +98,7 @@ impl Shooting<'_> {
         Some(DVector::from_iterator(shown.len(), left.map(|(k, (s, m))| (m - s) / scales[k % n])))
     }
 
-    fn part(
-        &self,
-        all: &[Vec<Mechanism>],
-        fitted: &Fitted,
-        index: usize,
-    ) -> Option<Part> {
+    fn part(&self, all: &[Vec<Mechanism>], fitted: &Fitted, index: usize) -> Option<Part> {
         let (window, start) = (&self.windows[index], &fitted.starts[index]);
         let n = fitted.scales.len();
         let shooter = self.shooter(&all[0], &fitted.zeros, window.run);
@@ -110,8 +111,12 @@ impl Shooting<'_> {
         let r = scaled(DVector::from_column_slice(&window.measured) - &shown);
         let mut b = DMatrix::zeros(rows, self.unknowns());
         for (k, value) in self.sought.iter().enumerate() {
-            let there = self.shooter(&all[k + 1], &fitted.zeros, window.run).shot(start, window.rows)?;
-            b.set_column(k, &scaled((DVector::from_vec(there) - &shown) / self.step(fitted, k, value)));
+            let there =
+                self.shooter(&all[k + 1], &fitted.zeros, window.run).shot(start, window.rows)?;
+            b.set_column(
+                k,
+                &scaled((DVector::from_vec(there) - &shown) / self.step(fitted, k, value)),
+            );
         }
         for sensor in 0..n {
             let column = self.sought.len() + window.run * n + sensor;
@@ -158,7 +163,8 @@ impl Shooting<'_> {
                 beside[k] += self.step(&fitted, k, value);
                 all.push((self.machines)(&beside)?);
             }
-            let parts = (0..self.windows.len()).into_par_iter().map(|i| self.part(&all, &fitted, i));
+            let parts =
+                (0..self.windows.len()).into_par_iter().map(|i| self.part(&all, &fitted, i));
             let mut parts = parts.collect::<Option<Vec<Part>>>()?;
             let mut sizes: Vec<f64> = parts.iter().map(|part| part.squares.sqrt()).collect();
             sizes.sort_by(f64::total_cmp);
@@ -196,7 +202,8 @@ impl Shooting<'_> {
                 let tried = (self.machines)(&there.values).and_then(|machines| {
                     let squares = (0..self.windows.len()).into_par_iter().map(|i| {
                         let (window, start) = (&self.windows[i], &there.starts[i]);
-                        let left = self.residual(&machines, &there.zeros, window, start, &there.scales)?;
+                        let left =
+                            self.residual(&machines, &there.zeros, window, start, &there.scales)?;
                         Some(parts[i].weight * left.norm_squared())
                     });
                     let squares = squares.sum::<Option<f64>>()?;
@@ -268,7 +275,9 @@ impl Shooting<'_> {
         let change = unit.cholesky()?.solve(&right.component_div(&scale)).component_div(&scale);
         let steps = parts
             .iter()
-            .map(|part| Some(damped(&part.aa, damping).cholesky()?.solve(&(&part.ar - &part.ab * &change))))
+            .map(|part| {
+                Some(damped(&part.aa, damping).cholesky()?.solve(&(&part.ar - &part.ab * &change)))
+            })
             .collect::<Option<Vec<_>>>()?;
         Some((change, steps))
     }
@@ -291,9 +300,11 @@ impl Shooting<'_> {
                 }
             }
             let scale = DVector::from_fn(unknowns, |k, _| matrix[(k, k)].sqrt());
-            let unit = DMatrix::from_fn(unknowns, unknowns, |i, j| matrix[(i, j)] / scale[i] / scale[j]);
+            let unit =
+                DMatrix::from_fn(unknowns, unknowns, |i, j| matrix[(i, j)] / scale[i] / scale[j]);
             let inverse = unit.try_inverse()?;
-            let inverse = DMatrix::from_fn(unknowns, unknowns, |i, j| inverse[(i, j)] / scale[i] / scale[j]);
+            let inverse =
+                DMatrix::from_fn(unknowns, unknowns, |i, j| inverse[(i, j)] / scale[i] / scale[j]);
             let mut meat = DMatrix::zeros(unknowns, unknowns);
             for (k, prior) in priors.iter().enumerate() {
                 meat[(k, k)] = prior.map_or(0.0, |[_, weight]| weight);
@@ -305,7 +316,8 @@ impl Shooting<'_> {
             }
             Some(&inverse * meat * &inverse)
         });
-        found.unwrap_or_else(|| DMatrix::from_element(unknowns, unknowns, f64::NAN + fitted.squares))
+        found
+            .unwrap_or_else(|| DMatrix::from_element(unknowns, unknowns, f64::NAN + fitted.squares))
     }
 }
 

@@ -62,7 +62,8 @@ impl Sought {
 
     /// Names of the sought values of an effect, in the order of [`of`](Self::of).
     pub fn names(&self, effect: usize) -> Vec<&'static str> {
-        let names: Vec<&'static str> = self.effects[effect].values().map(|(name, _)| name).collect();
+        let names: Vec<&'static str> =
+            self.effects[effect].values().map(|(name, _)| name).collect();
         self.of(effect).into_iter().map(|k| names[self.places[k].1]).collect()
     }
 
@@ -92,9 +93,16 @@ impl Sought {
         left
     }
 
-    fn add(&mut self, kind: &str, target: Target, sizes: &[(&'static str, f64)], fixed: &[(&'static str, f64)]) {
+    fn add(
+        &mut self,
+        kind: &str,
+        target: Target,
+        sizes: &[(&'static str, f64)],
+        fixed: &[(&'static str, f64)],
+    ) {
         let Some(kind) = named(kind) else { return };
-        let neutral: Vec<(&'static str, f64)> = sizes.iter().map(|(name, _)| (*name, 0.0)).collect();
+        let neutral: Vec<(&'static str, f64)> =
+            sizes.iter().map(|(name, _)| (*name, 0.0)).collect();
         let all = [neutral.as_slice(), fixed].concat();
         let mut effect = Setting::on(kind, target, &all);
         let declared = self.effects.iter().position(|known| known.is(&effect));
@@ -107,8 +115,12 @@ impl Sought {
                 .values()
                 .filter(|(name, _)| all.iter().all(|(other, _)| other != name))
                 .collect();
-            let names: Vec<(&'static str, f64)> =
-                all.iter().zip(values).map(|((name, _), value)| (*name, value)).chain(extra).collect();
+            let names: Vec<(&'static str, f64)> = all
+                .iter()
+                .zip(values)
+                .map(|((name, _), value)| (*name, value))
+                .chain(extra)
+                .collect();
             effect = Setting::on(kind, effect.target.clone(), &names);
         }
         let index = declared.unwrap_or(self.effects.len());
