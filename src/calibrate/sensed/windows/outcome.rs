@@ -294,19 +294,6 @@ impl Search<'_> {
             }
             done = true;
             let share = missed * self.scales[0] / motion[0];
-            if std::env::var("H1_DEBUG").is_ok() {
-                for (i, effect) in sought.settings(&values).iter().enumerate() {
-                    eprintln!(
-                        "{effect} {:?} gain {:?}",
-                        effect.values().collect::<Vec<_>>(),
-                        self.gains(sought, &values).iter().find(|(k, _)| *k == i)
-                    );
-                }
-                eprintln!(
-                    "length {length} missed {missed} share {share} zeros {:?} squares {}",
-                    self.zeros, fitted.squares
-                );
-            }
             (self.tell)(&format!(
                 "windows of {length} s: {:.2} % of the motion is missed",
                 100.0 * share
