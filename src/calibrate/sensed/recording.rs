@@ -31,12 +31,13 @@ pub struct Recording {
 const TIME: [&str; 2] = ["t", "t_s"];
 
 impl Recording {
-    /// Reads the columns of `sensors`; measured ones may be missing, commands may not.
+    /// Reads the columns of `sensors`; measured ones may be missing, commands may not, unless `efforts` drive the
+    /// machine and theirs were measured.
     ///
     /// # Errors
     /// A file that cannot be read, columns that no sensor has or that stand there twice, missing commands,
     /// values that are no numbers, time that does not advance by a constant step.
-    pub fn read(path: &Path, sensors: &[Sensor]) -> Result<Self, LogError> {
+    pub fn read(path: &Path, sensors: &[Sensor], efforts: bool) -> Result<Self, LogError> {
         let file = path.display().to_string();
         let wrong = |line: Option<u64>, message: String, help: String| LogError {
             place: line.map_or_else(|| file.clone(), |line| format!("{file}:{line}")),
@@ -51,8 +52,8 @@ impl Recording {
         let mut reader =
             csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(unread)?;
         let heads = reader.headers().map_err(unread)?.clone();
-        let Places { time, places, ignored } =
-            choose(&heads, sensors).map_err(|(message, help)| wrong(Some(1), message, help))?;
+        let Places { time, places, ignored } = choose(&heads, sensors, efforts)
+            .map_err(|(message, help)| wrong(Some(1), message, help))?;
         let mut times = Vec::new();
         let mut columns: Vec<Option<Vec<f64>>> =
             places.iter().map(|place| place.map(|_| Vec::new())).collect();
@@ -185,7 +186,11 @@ struct Places {
 
 /// Finds the columns by the header; what is wrong with it and what would be right. A column that no sensor has is
 /// left alone, unless it looks like the misspelt name of a sensor's column that is missing.
-fn choose(heads: &csv::StringRecord, sensors: &[Sensor]) -> Result<Places, (String, String)> {
+fn choose(
+    heads: &csv::StringRecord,
+    sensors: &[Sensor],
+    efforts: bool,
+) -> Result<Places, (String, String)> {
     let known: Vec<&str> = sensors.iter().map(|sensor| sensor.column.as_str()).collect();
     let expected = format!("expected `t` and any of {}", known.join(", "));
     let (mut time, mut places) = (None, vec![None; sensors.len()]);
@@ -224,9 +229,10 @@ fn choose(heads: &csv::StringRecord, sensors: &[Sensor]) -> Result<Places, (Stri
     // What was measured of a drive's effort stands in for its command.
     let replaced = |drive: usize| {
         let mut sensors = sensors.iter().zip(&places);
-        sensors.any(|(s, place)| {
-            place.is_some() && matches!(s.reads, Reads::Effort(of) if of == drive)
-        })
+        efforts
+            && sensors.any(|(s, place)| {
+                place.is_some() && matches!(s.reads, Reads::Effort(of) if of == drive)
+            })
     };
     let missing = commands
         .filter(|(sensor, place)| {

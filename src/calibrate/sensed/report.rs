@@ -104,7 +104,7 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     let mut recordings = Vec::new();
     let mut errors: Vec<LogError> = Vec::new();
     for path in paths {
-        match Recording::read(path, &built.sensors) {
+        match Recording::read(path, &built.sensors, by_windows) {
             Ok(recording) => recordings.push(recording),
             Err(error) => errors.push(error),
         }

@@ -147,6 +147,9 @@ pub fn calibrate(
     Ok((calibrated, Outcome { verdict, effects, model, left_out, judged, zeros, lengths, fitted }))
 }
 
+/// Zeros of each run's sensors, with their standard deviations.
+type Zeros = Vec<Vec<[f64; 2]>>;
+
 /// A rig with other effects.
 pub fn with(rig: &Scenario, effects: &[Setting]) -> Scenario {
     let mut rig = rig.clone();
@@ -163,7 +166,7 @@ pub fn horizons(bench: &Bench) -> Vec<Horizon> {
 }
 
 /// All runs under the model of a bench and under the rig as declared, and the zeros of runs.
-fn judge(bench: &Bench, rig: &Scenario) -> Result<(Vec<Judged>, Vec<Vec<[f64; 2]>>), Problem> {
+fn judge(bench: &Bench, rig: &Scenario) -> Result<(Vec<Judged>, Zeros), Problem> {
     let problem =
         || rig.problem("mechanism", "cannot be rolled along its runs", "check its masses");
     let zeros = bench.own_zeros(&bench.declared, &bench.zeros_of_runs()).ok_or_else(problem)?;

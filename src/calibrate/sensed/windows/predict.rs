@@ -87,7 +87,7 @@ pub fn prepare(
     if !suits(&parts) {
         return Ok(None);
     }
-    let recording = Recording::read(path, &parts.sensors);
+    let recording = Recording::read(path, &parts.sensors, true);
     let recording = recording.map_err(|error| CalibrateError::Input(vec![error.to_string()]))?;
     let duration = recording.duration();
     let bench = Bench::new(model, vec![recording])?;

@@ -32,6 +32,9 @@ pub struct Score {
     pub predicted: Vec<Vec<f64>>,
 }
 
+/// Predicted readings of a window, and mean squares that noise leaves, where they were asked for.
+type Shot = (Vec<f64>, Option<Vec<f64>>);
+
 /// Windows that floors are taken from, at most.
 const FLOORS: usize = 16;
 
@@ -60,7 +63,7 @@ pub fn score(
     let shooter = bench.shooter(machine, zeros);
     let head = |window: &Window| (fit_s / window.rows.interval).round() as usize;
     let step = windows.len().div_ceil(FLOORS).max(1);
-    let predicted: Vec<Option<(Vec<f64>, Option<Vec<f64>>)>> = windows
+    let predicted: Vec<Option<Shot>> = windows
         .par_iter()
         .zip(guesses)
         .enumerate()
