@@ -38,8 +38,9 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "RIG.toml", required_unless_present = "self_test")]
     rig: Option<PathBuf>,
     /// Recorded run to calibrate on (CSV; t in s, q1_cmd… q1… in m, F1… in N, x y in m, phi in rad)
+    /// of a machine that nothing holds it may be given many times, all are fitted together
     #[arg(long, value_name = "RUN.csv", required_unless_present = "self_test")]
-    data: Option<PathBuf>,
+    data: Vec<PathBuf>,
     /// Another recorded run, to validate on; may be given many times
     #[arg(long, value_name = "RUN.csv")]
     validate: Vec<PathBuf>,
@@ -75,7 +76,7 @@ Examples:
   freeplay calibrate --rig rig.toml --data run-a.csv --json --quiet | jq .verdict";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
-    let (Some(rig), Some(data)) = (&arguments.rig, &arguments.data) else {
+    let (Some(rig), false) = (&arguments.rig, arguments.data.is_empty()) else {
         let PrintOptions { json, quiet } = arguments.print;
         let Arguments { hidden: only, seed, trials, .. } = arguments;
         let test = SelfTest { only, seed: *seed, table: trials.as_deref(), json, quiet };
@@ -85,12 +86,17 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let rig = Scenario::load(Some(rig), &arguments.sets.sets)?;
     warn_of_unused(&rig);
     let paths: Vec<&Path> =
-        std::iter::once(data).chain(&arguments.validate).map(PathBuf::as_path).collect();
-    if let Some(machine) = Machine::of(&rig) {
-        return single_joint(arguments, rig, machine, &paths, &without);
-    }
+        arguments.data.iter().chain(&arguments.validate).map(PathBuf::as_path).collect();
     if rig.mechanism.described().is_some() {
         return any_mechanism(arguments, rig, &paths, &without);
+    }
+    if arguments.data.len() > 1 {
+        let message =
+            "--data: this machine takes one run to calibrate on; give the others as --validate";
+        return Err(Failure::Input(vec![message.to_owned()]));
+    }
+    if let Some(machine) = Machine::of(&rig) {
+        return single_joint(arguments, rig, machine, &paths, &without);
     }
     let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
     if !recordings.iter().all(plausibility::is_complete) {
@@ -125,7 +131,7 @@ fn any_mechanism(
     without: &[&'static str],
 ) -> Result<(), Failure> {
     let name = rig.name.clone();
-    let prepared = sensed::prepare(rig, paths)?;
+    let prepared = sensed::prepare(rig, paths, arguments.data.len())?;
     let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
     let calibrated = Spinner::during(arguments.print.quiet, |tell| {
         sensed::into_folder(prepared, without, folder, tell)
@@ -137,7 +143,10 @@ fn any_mechanism(
         effects: &report.effects,
         parameters: &[],
         errors: &report.errors,
-        simulated: format!("{} simulations in ", report.simulations),
+        simulated: match report.windows {
+            Some(_) => String::new(),
+            None => format!("{} simulations in ", report.simulations),
+        },
         seconds: report.wall_s,
         folder: &calibrated.folder,
     };

@@ -216,6 +216,7 @@ fn rule(targets: Targets) -> &'static str {
                 "the column of a sensor, or a list of some that share a clock; commands are not measured"
             }
             Senses::Coordinate => "the column of a sensor of a joint's position",
+            Senses::Zeroed => "the column of a sensor of a joint's position or of a body's angle",
             Senses::Angle => "the column of a sensor of a revolute joint's position",
             Senses::Effort => "the column of a sensor of a drive's force or torque",
         },
@@ -241,7 +242,7 @@ fn described(kind: &Kind) -> Value {
     };
     let sensors = match kind.targets {
         Targets::Sensor(Senses::Any) => Some("any"),
-        Targets::Sensor(Senses::Coordinate) => Some("position"),
+        Targets::Sensor(Senses::Coordinate | Senses::Zeroed) => Some("position"),
         Targets::Sensor(Senses::Angle) => Some("angle"),
         Targets::Sensor(Senses::Effort) => Some("force"),
         _ => None,

@@ -6,6 +6,7 @@ use super::progress::Spinner;
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::predict::{ERRORS_FILE, check, into_folder};
 use crate::calibrate::result::CalibrateError;
+use crate::calibrate::sensed::windows::predict::{self as windows, Asked};
 use crate::calibrate::single::{self, Machine};
 use crate::calibrate::{quantity, recording};
 use crate::scenario::Scenario;
@@ -35,6 +36,15 @@ pub(super) struct Arguments {
     /// Recorded run (CSV; t in s, q1_cmd… in m, and any of q1… in m, F1… in N, x y in m, phi in rad)
     #[arg(long, value_name = "RUN.csv")]
     data: PathBuf,
+    /// Of a machine that nothing holds: length in s of the windows that are predicted, each from its own start
+    #[arg(long, value_name = "S")]
+    window: Option<f64>,
+    /// First part in s of each window, which its start is fitted to
+    #[arg(long, value_name = "S")]
+    fit: Option<f64>,
+    /// Where in s after the first row the first window begins
+    #[arg(long, value_name = "S")]
+    from: Option<f64>,
     #[command(flatten)]
     sets: Sets,
     #[command(flatten)]
@@ -57,6 +67,12 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(machine) = Machine::of(&model) {
         return single_joint(arguments, &model, machine);
     }
+    if model.mechanism.described().is_some() {
+        let asked = Asked { window: arguments.window, fit: arguments.fit, from: arguments.from };
+        if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {
+            return by_windows(arguments, &model, &prepared);
+        }
+    }
     let read = recording::read_one(&arguments.data);
     let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
     check(&model, &recording)?;
@@ -67,6 +83,57 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let p = &predicted.prediction;
     Ok(arguments.print.result(&predicted.json, || {
         text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder)
+    })?)
+}
+
+/// The same of a machine that nothing holds, which is predicted over windows.
+fn by_windows(
+    arguments: &Arguments,
+    model: &Scenario,
+    prepared: &windows::Prepared,
+) -> Result<(), Failure> {
+    let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
+    let predicted = Spinner::during(arguments.print.quiet, |tell| {
+        windows::into_folder(model, prepared, folder, tell)
+    })?;
+    let p = &predicted.prediction;
+    Ok(arguments.print.result(&predicted.json, || {
+        let mut text = String::new();
+        for of in &p.windows {
+            let horizon = of.horizon;
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{} windows of {} s from {} s on, starts fitted to the first {} s:",
+                of.windows, horizon.window_s, horizon.from_s, horizon.fit_s
+            );
+            for e in &of.errors {
+                let cell = |value: f64| quantity(value, e.unit);
+                let _ = writeln!(
+                    text,
+                    "  {:<9}{:>17}{:>14}{:>14}",
+                    e.channel,
+                    cell(e.before),
+                    cell(e.after),
+                    cell(e.floor)
+                );
+            }
+        }
+        for remark in &p.remarks {
+            let _ = writeln!(text, "{remark}");
+        }
+        let heads = format!(
+            "  {:<9}{:>17}{:>14}{:>14}\n",
+            "channel", "without effects", "predicted", "floor"
+        );
+        let page = predicted.folder.join("index.html");
+        let name = &p.provenance.scenario_name;
+        format!(
+            "{name} along {}\n{heads}{text}\nWritten to {}; open {}\n",
+            p.run,
+            predicted.folder.display(),
+            page.display()
+        )
     })?)
 }
 

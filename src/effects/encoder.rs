@@ -15,7 +15,10 @@ pub(super) fn give(
 ) -> Result<(), Wrong> {
     let mut given = Vec::new();
     for index in setting.sensors(mechanism)? {
-        let Reads::Position(joint) = mechanism.sensors[index].reads else { continue };
+        let Reads::Position(joint) = mechanism.sensors[index].reads else {
+            of_sensor(&mut mechanism.sensors[index]);
+            continue;
+        };
         let mut drives = mechanism.actuators.iter_mut();
         match drives.find(|drive| drive.joint == joint && drive.drive != Drive::Effort) {
             Some(drive) if !given.contains(&joint) => {

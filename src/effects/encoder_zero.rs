@@ -13,16 +13,27 @@ pub(super) const KIND: Kind = Kind {
     equation: "reads q + offset",
     source: "definition",
     trace: "measured coordinates against each other: the same at all times",
-    targets: Targets::Sensor(Senses::Coordinate),
-    parameters: &[Parameter {
-        name: "offset",
-        unit: "m or rad",
-        about: "what it reads less what is true",
-        // More would be seen with the eye.
-        bounds: [-0.5, 0.5],
-        step: 1e-5,
-        default: Some(0.0),
-    }],
+    targets: Targets::Sensor(Senses::Zeroed),
+    parameters: &[
+        Parameter {
+            name: "offset",
+            unit: "m or rad",
+            about: "what it reads less what is true",
+            // More would be seen with the eye.
+            bounds: [-0.5, 0.5],
+            step: 1e-5,
+            default: Some(0.0),
+        },
+        Parameter {
+            name: "run_std",
+            unit: "m or rad",
+            about: "how much the zero differs from run to run, as where an operator sets it: predict finds that of a \
+                run from its first seconds",
+            bounds: [0.0, 0.5],
+            step: 1e-5,
+            default: Some(0.0),
+        },
+    ],
     variants: &[&["offset"]],
     neutral: defaults,
     starts: linear,

@@ -82,6 +82,8 @@ pub enum Senses {
     Any,
     /// Those of joints' coordinates.
     Coordinate,
+    /// The same and those of bodies' angles; a search looks at joints' alone.
+    Zeroed,
     /// Those of revolute joints' angles.
     Angle,
     /// Those of drives' forces and torques.
@@ -137,6 +139,7 @@ impl Senses {
         match self {
             Senses::Any => !matches!(sensor.reads, Reads::Command(_)),
             Senses::Coordinate => matches!(sensor.reads, Reads::Position(_)),
+            Senses::Zeroed => matches!(sensor.reads, Reads::Position(_) | Reads::Angle(..)),
             Senses::Angle => matches!(sensor.reads, Reads::Position(JointIndex::Revolute(_))),
             Senses::Effort => matches!(sensor.reads, Reads::Effort(_)),
         }
@@ -245,6 +248,7 @@ impl Kind {
                 let used = points.filter(|(_, point)| point.holds_a_joint());
                 used.map(|(name, _)| Target::Point(name.clone())).collect()
             }
+            Targets::Sensor(Senses::Zeroed) => sensors_of(mechanism, Senses::Coordinate),
             Targets::Sensor(senses) => sensors_of(mechanism, senses),
             Targets::Tracker => {
                 let tracked = mechanism.sensors.iter().any(Sensor::tracks);

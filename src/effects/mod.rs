@@ -31,12 +31,14 @@ mod kind;
 mod leg_density;
 mod load_change;
 mod lubricant_film;
+mod mass_properties;
 mod out_of_round;
 mod payload;
 mod pivot_friction;
 mod point_offset;
 #[cfg(test)]
 mod rigs;
+mod rotor_inertia;
 mod screw_ripple;
 mod sensor_latency;
 mod sensor_offset;
@@ -101,6 +103,8 @@ pub const ALL: &[&Kind] = &[
     &tracker_frame::KIND,
     &impulse::KIND,
     &load_change::KIND,
+    &mass_properties::KIND,
+    &rotor_inertia::KIND,
 ];
 
 /// Effects of machines that a search is for which imitate a commoner one: an encoder's wrong zero looks

@@ -19,6 +19,8 @@ pub(super) enum Rigid {
     Revolute(usize),
     /// The prescribed angle of a revolute joint, ideal or not.
     Angle { drive: usize, joint: usize },
+    /// A rotor that a joint spins, by its index: no condition but an inertia.
+    Rotor(usize),
 }
 
 /// The rows of one group and the workspace that solving for their forces needs.
@@ -76,6 +78,7 @@ impl Constraints {
                     }
                 }
             }
+            self.matrix[i * n + i] += row.softness;
             self.weighted.push(weighted);
             self.multipliers.push(rhs);
         }
@@ -116,7 +119,7 @@ impl Constraints {
                     }
                 }
             }
-            sum
+            if i == j { sum + a.softness } else { sum }
         };
         (self.multipliers, self.rank, self.weakest) =
             smallest_solution(n, entry, &self.backup, zero);
@@ -215,6 +218,9 @@ pub(super) fn groups(mechanism: &Mechanism) -> Vec<Vec<Rigid>> {
         let prescribed = actuator.drive == Drive::Prescribed;
         prescribed.then(|| (Rigid::Angle { drive, joint }, mechanism.revolutes[joint].bodies()))
     });
+    let rotors = mechanism.rotors.iter().enumerate();
+    let rotors =
+        rotors.map(|(i, rotor)| (Rigid::Rotor(i), mechanism.revolutes[rotor.joint].bodies()));
     let joints = prismatics
         .map(|(i, joint)| (Rigid::Prismatic(i), joint.bodies()))
         .chain(
@@ -222,7 +228,8 @@ pub(super) fn groups(mechanism: &Mechanism) -> Vec<Vec<Rigid>> {
                 .filter(|(_, joint)| matches!(joint.bearing, Bearing::Ideal))
                 .map(|(i, joint)| (Rigid::Revolute(i), joint.bodies())),
         )
-        .chain(angles);
+        .chain(angles)
+        .chain(rotors);
     let mut groups: Vec<(Vec<usize>, Vec<Rigid>)> = Vec::new();
     for (joint, bodies) in joints {
         let bodies: Vec<usize> = bodies.into_iter().flatten().collect();

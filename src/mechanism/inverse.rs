@@ -117,6 +117,16 @@ impl Tracker {
             let wrench = masses.component_mul(&self.acceleration(i)) - given;
             needed.fixed_rows_mut::<3>(3 * i).copy_from(&wrench);
         }
+        for rotor in &mechanism.rotors {
+            let bodies = mechanism.revolutes[rotor.joint].bodies();
+            let turn = |body: Option<usize>| body.map_or(0.0, |body| self.acceleration(body).z);
+            let torques = rotor.torques(bodies.map(turn));
+            for (body, torque) in bodies.into_iter().zip(torques) {
+                if let Some(body) = body {
+                    needed[3 * body + 2] += torque;
+                }
+            }
+        }
         needed
     }
 

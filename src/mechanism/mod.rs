@@ -27,6 +27,7 @@ mod load;
 mod loops;
 mod names;
 mod reading;
+mod rotor;
 mod rows;
 mod sensor;
 mod spring;
@@ -49,6 +50,7 @@ pub use load::{Load, Memory, Situation};
 pub use loops::Loop;
 pub use names::{Axes, NamedPoint, Names, Use};
 pub use reading::ReadingError;
+pub use rotor::Rotor;
 pub use sensor::{Reads, Sensor, TrackerFrame};
 pub use spring::{JointSpring, Mark, PointSpring, Stop};
 pub use tracker::{Imposed, Stuck, Tracker};
@@ -68,6 +70,8 @@ pub struct Mechanism {
     pub prismatics: Vec<Prismatic>,
     /// The drives, in the order of the result columns.
     pub actuators: Vec<Actuator>,
+    /// Rotors that joints spin through gears.
+    pub rotors: Vec<Rotor>,
     /// What the drives are told.
     pub commands: Arc<dyn Commands>,
     /// What commands and loads take for the time at the start of a run, in s: a recording may begin
@@ -96,6 +100,7 @@ impl Mechanism {
             revolutes: Vec::new(),
             prismatics: Vec::new(),
             actuators: Vec::new(),
+            rotors: Vec::new(),
             commands: Arc::new(Idle),
             epoch: 0.0,
             gravity: Vector2::zeros(),
@@ -130,8 +135,16 @@ impl Mechanism {
         let total = body.mass + mass;
         let shift = from_centre * (mass / total);
         let reduced = body.mass * mass / total;
-        body.inertia += reduced * from_centre.norm_squared();
-        body.mass = total;
+        let inertia = body.inertia + reduced * from_centre.norm_squared();
+        self.set_mass(index, total, shift, inertia);
+    }
+
+    /// Gives body `index` another mass (kg), another centre of mass, `shift` (m, in its own axes) from the one
+    /// that it has, and another inertia about that (kg m²). Its points stay where they are.
+    pub fn set_mass(&mut self, index: usize, mass: f64, shift: Vector2<f64>, inertia: f64) {
+        let body = &mut self.bodies[index];
+        body.mass = mass;
+        body.inertia = inertia;
         body.reference -= shift;
         body.start = body.start.at(shift);
         let revolutes = self.revolutes.iter_mut().flat_map(|j| [&mut j.ring, &mut j.journal]);

@@ -14,6 +14,8 @@ pub(super) struct Row {
     pub jacobians: [Vector3<f64>; 2],
     /// What is left of the condition's second derivative at zero acceleration, less its target.
     pub bias: f64,
+    /// How far it gives way: acceleration for each unit of its force; 0 of what is rigid.
+    pub softness: f64,
 }
 
 fn row(direction: Vector2<f64>, moment: f64) -> Vector3<f64> {
@@ -34,12 +36,14 @@ pub(super) fn prismatic_rows(joint: &Telescope, bodies: [Option<usize>; 2]) -> [
             bodies,
             jacobians: [row(-n, -length), row(n, 0.0)],
             bias: -2.0 * spin * rate.dot(&u) - spin * spin * side,
+            softness: 0.0,
         },
-        Row { bodies, jacobians: [-Vector3::z(), Vector3::z()], bias: 0.0 },
+        Row { bodies, jacobians: [-Vector3::z(), Vector3::z()], bias: 0.0, softness: 0.0 },
         Row {
             bodies,
             jacobians: [row(-u, side), row(u, 0.0)],
             bias: 2.0 * spin * rate.dot(&n) - spin * spin * length,
+            softness: 0.0,
         },
     ]
 }
@@ -53,6 +57,7 @@ pub(super) fn revolute_rows(joint: &Revolute, states: &[BodyState]) -> [Row; 2] 
         bodies: [joint.ring.body, joint.journal.body],
         jacobians: [row(-e, -ring.arm.perp(&e)), row(e, journal.arm.perp(&e))],
         bias: centripetal.dot(&e),
+        softness: 0.0,
     })
 }
 
@@ -63,5 +68,6 @@ pub(super) fn angle_row(joint: &Revolute) -> Row {
         bodies: [joint.ring.body, joint.journal.body],
         jacobians: [-Vector3::z(), Vector3::z()],
         bias: 0.0,
+        softness: 0.0,
     }
 }

@@ -235,7 +235,7 @@ impl Tracker {
 }
 
 fn on(body: Option<usize>, jacobian: Vector3<f64>, bias: f64) -> Row {
-    Row { bodies: [None, body], jacobians: [Vector3::zeros(), jacobian], bias }
+    Row { bodies: [None, body], jacobians: [Vector3::zeros(), jacobian], bias, softness: 0.0 }
 }
 
 /// The motion of `bodies` bodies that meets the rows: exactly where they determine it, else the smallest

@@ -25,7 +25,7 @@ fn recorded(place: &Place, name: &str, effects: &str, waves: [[f64; 2]; 2], seed
         text += &format!("{t:.3},{command:.9},0,0,0\n");
     }
     place.write("commands.csv", &text);
-    let like = Recording::read(&place.path("commands.csv"), &sensors).unwrap();
+    let like = Recording::read(&place.path("commands.csv"), &sensors, false).unwrap();
     let control = StepControl::Tolerance(1e-5);
     // The joints close at the first commands, whatever the columns that were not measured yet hold.
     let machine = start::released(&declared, &truth.effects, &like, control).unwrap();

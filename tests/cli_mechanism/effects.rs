@@ -27,7 +27,9 @@ fn with(kind: &str, keys: &str) -> String {
 }
 
 /// Effects that change the motion, and effects that change what sensors show alone.
-const MOVING: [(&str, &str); 14] = [
+const MOVING: [(&str, &str); 16] = [
+    ("mass-properties", "body = \"crank\"; mass_kg = 0.05; inertia_kg_m2 = 1e-4"),
+    ("rotor-inertia", "joint = \"O\"; inertia_kg_m2 = 1e-3; coupling = -0.1"),
     ("payload", "body = \"coupler\"; mass_kg = 0.2; com_x_m = 0.1; com_y_m = 0.01"),
     ("drag", "body = \"crank\"; torque_Nms = 0.01"),
     ("tether", "body = \"coupler\"; stiffness_N_m = 200; anchor_y_m = 0.3; rest_length_m = 0.05"),

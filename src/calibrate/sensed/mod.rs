@@ -27,5 +27,6 @@ pub mod start;
 pub mod thresholds;
 pub mod trajectory;
 pub mod unnamed;
+pub mod windows;
 
 pub use report::{into_folder, prepare};

@@ -3,6 +3,7 @@
 use super::outcome::Outcome;
 use super::problem::Problem;
 use super::report::Report;
+use super::windows::report::Windows;
 use crate::calibrate::charts::{POINTS, panel, thinned};
 use crate::calibrate::page::{errors_table, verdict, why};
 use crate::mechanism::Reads;
@@ -149,12 +150,46 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
     if !equations.is_empty() {
         parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });
     }
-    parts.push(Part::Table(errors_table(&report.errors, NOTE)));
-    parts.push(Part::Table(residuals));
+    if let Some(windows) = &report.windows {
+        parts.push(Part::Table(errors_table(&report.errors, windows.note)));
+        parts.push(Part::Table(horizons(windows)));
+        if !windows.remarks.is_empty() {
+            parts.push(Part::Text {
+                id: "remarks",
+                title: "The recordings",
+                paragraphs: &windows.remarks,
+            });
+        }
+    } else {
+        parts.push(Part::Table(errors_table(&report.errors, NOTE)));
+        parts.push(Part::Table(residuals));
+    }
     parts.push(Part::Pictures(pictures));
     parts.push(Part::Table(ranking));
     parts.push(Part::Provenance(&provenance));
     let title =
         format!("Calibration of {}: {}", report.provenance.scenario_name, verdict(report.verdict));
     document(&title, &report.summary, &parts)
+}
+
+/// Errors of all runs by windows.
+fn horizons(windows: &Windows) -> Table {
+    let head =
+        ["run", "role", "window", "fitted to", "from", "column", "declared", "calibrated", "floor"];
+    let rows = windows.horizons.iter().flat_map(|of| {
+        of.errors.iter().map(|e| {
+            let horizon = of.horizon;
+            let times = [horizon.window_s, horizon.fit_s, horizon.from_s].map(|t| format!("{t} s"));
+            let errors = [e.before, e.after, e.floor].map(number);
+            let run = [of.run.clone(), of.role.to_owned()];
+            run.into_iter().chain(times).chain([e.channel.clone()]).chain(errors).collect()
+        })
+    });
+    Table {
+        id: "horizons",
+        title: "Errors over windows".into(),
+        header: head.iter().map(|name| (*name).to_owned()).collect(),
+        rows: rows.collect(),
+        note: "Root mean squares in SI units.".into(),
+    }
 }

@@ -1,8 +1,9 @@
 //! Recorded runs of any mechanism: a CSV file with a column for each sensor, one row a sample.
 
-use super::thresholds::{LOWEST_RATE, PLAIN_BAND, SHORTEST};
+use super::thresholds::{LATE, LATE_SHARE, LATE_STEPS, LOWEST_RATE, PLAIN_BAND, SHORTEST};
 use crate::measure::log::{LogError, constant_step};
 use crate::measure::spelling::nearest;
+use crate::measure::spline::CubicSpline;
 use crate::mechanism::{Reads, Sensor};
 use std::path::Path;
 
@@ -20,18 +21,23 @@ pub struct Recording {
     /// Number of rows.
     pub samples: usize,
     columns: Vec<Option<Vec<f64>>>,
+    /// Columns of the file that no sensor has.
+    pub ignored: Vec<String>,
+    /// Share of the rows that came early or late and were put on a grid by splines.
+    pub jitter: f64,
 }
 
 /// Heads that a column of time may have.
 const TIME: [&str; 2] = ["t", "t_s"];
 
 impl Recording {
-    /// Reads the columns of `sensors`; measured ones may be missing, commands may not.
+    /// Reads the columns of `sensors`; measured ones may be missing, commands may not, unless `efforts` drive the
+    /// machine and theirs were measured.
     ///
     /// # Errors
     /// A file that cannot be read, columns that no sensor has or that stand there twice, missing commands,
     /// values that are no numbers, time that does not advance by a constant step.
-    pub fn read(path: &Path, sensors: &[Sensor]) -> Result<Self, LogError> {
+    pub fn read(path: &Path, sensors: &[Sensor], efforts: bool) -> Result<Self, LogError> {
         let file = path.display().to_string();
         let wrong = |line: Option<u64>, message: String, help: String| LogError {
             place: line.map_or_else(|| file.clone(), |line| format!("{file}:{line}")),
@@ -46,8 +52,8 @@ impl Recording {
         let mut reader =
             csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(unread)?;
         let heads = reader.headers().map_err(unread)?.clone();
-        let (time, places) =
-            choose(&heads, sensors).map_err(|(message, help)| wrong(Some(1), message, help))?;
+        let Places { time, places, ignored } = choose(&heads, sensors, efforts)
+            .map_err(|(message, help)| wrong(Some(1), message, help))?;
         let mut times = Vec::new();
         let mut columns: Vec<Option<Vec<f64>>> =
             places.iter().map(|place| place.map(|_| Vec::new())).collect();
@@ -69,13 +75,35 @@ impl Recording {
                 }
             }
         }
-        let interval = constant_step(&times).map_err(|(row, message)| {
-            // The header is line 1.
-            let help = "expected samples at a constant rate, time growing".to_owned();
-            wrong(Some(row as u64 + 2), message, help)
-        })?;
+        let mut jitter = 0.0;
+        let interval = match (constant_step(&times), jittered(&times)) {
+            (Ok(interval), _) => interval,
+            (Err(_), Some(Jitter { interval, share })) => {
+                for column in columns.iter_mut().flatten() {
+                    *column = on_grid(&times, column, interval);
+                }
+                let rows = columns.iter().flatten().map(Vec::len).next();
+                times.truncate(rows.unwrap_or(times.len()));
+                jitter = share;
+                interval
+            }
+            (Err((row, message)), None) => {
+                // The header is line 1.
+                let help = "expected samples at a constant rate, time growing".to_owned();
+                return Err(wrong(Some(row as u64 + 2), message, help));
+            }
+        };
         let name = path.file_name().map_or(file.clone(), |n| n.to_string_lossy().into_owned());
-        Ok(Self { path: file, name, start: times[0], interval, samples: times.len(), columns })
+        Ok(Self {
+            path: file,
+            name,
+            start: times[0],
+            interval,
+            samples: times.len(),
+            columns,
+            ignored,
+            jitter,
+        })
     }
 
     /// Samples of sensor `index`, if the recording has them.
@@ -149,14 +177,24 @@ impl Recording {
     }
 }
 
-/// Where time stands, and where each sensor's column does.
-type Places = (usize, Vec<Option<usize>>);
+/// Where time stands, where each sensor's column does, and what else there is.
+struct Places {
+    time: usize,
+    places: Vec<Option<usize>>,
+    ignored: Vec<String>,
+}
 
-/// Finds the columns by the header; what is wrong with it and what would be right.
-fn choose(heads: &csv::StringRecord, sensors: &[Sensor]) -> Result<Places, (String, String)> {
+/// Finds the columns by the header; what is wrong with it and what would be right. A column that no sensor has is
+/// left alone, unless it looks like the misspelt name of a sensor's column that is missing.
+fn choose(
+    heads: &csv::StringRecord,
+    sensors: &[Sensor],
+    efforts: bool,
+) -> Result<Places, (String, String)> {
     let known: Vec<&str> = sensors.iter().map(|sensor| sensor.column.as_str()).collect();
     let expected = format!("expected `t` and any of {}", known.join(", "));
     let (mut time, mut places) = (None, vec![None; sensors.len()]);
+    let mut ignored = Vec::new();
     for (place, head) in heads.iter().enumerate() {
         let twice = || (format!("column `{head}` twice"), "keep one of them".to_owned());
         if let Some(sensor) = known.iter().position(|column| *column == head) {
@@ -168,22 +206,78 @@ fn choose(heads: &csv::StringRecord, sensors: &[Sensor]) -> Result<Places, (Stri
                 return Err(twice());
             }
         } else {
-            let help = nearest(head, &known).map_or_else(
-                || format!("no [[sensor]] has it; {expected}"),
-                |near| format!("did you mean `{near}`? no [[sensor]] has it; {expected}"),
-            );
-            return Err((format!("unknown column `{head}`"), help));
+            ignored.push(head.to_owned());
         }
     }
-    let time = time.ok_or_else(|| ("no column `t`".to_owned(), expected))?;
+    let missing: Vec<&str> =
+        known.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(k, _)| *k).collect();
+    let near = ignored.iter().find_map(|head| Some((head, nearest(head, &missing)?)));
+    if let Some((head, near)) = near {
+        let help = format!("did you mean `{near}`? no [[sensor]] has it; {expected}");
+        return Err((format!("unknown column `{head}`"), help));
+    }
+    let Some(time) = time else {
+        return Err(match ignored.first() {
+            Some(head) => {
+                let help = format!("no [[sensor]] has it; {expected}");
+                (format!("unknown column `{head}`"), help)
+            }
+            None => ("no column `t`".to_owned(), expected),
+        });
+    };
     let commands = sensors.iter().zip(&places);
+    // What was measured of a drive's effort stands in for its command.
+    let replaced = |drive: usize| {
+        let mut sensors = sensors.iter().zip(&places);
+        efforts
+            && sensors.any(|(s, place)| {
+                place.is_some() && matches!(s.reads, Reads::Effort(of) if of == drive)
+            })
+    };
     let missing = commands
-        .filter(|(sensor, place)| matches!(sensor.reads, Reads::Command(_)) && place.is_none())
+        .filter(|(sensor, place)| {
+            place.is_none() && matches!(sensor.reads, Reads::Command(drive) if !replaced(drive))
+        })
         .map(|(sensor, _)| format!("`{}`", sensor.column))
         .collect::<Vec<_>>();
     if missing.is_empty() {
-        return Ok((time, places));
+        return Ok(Places { time, places, ignored });
     }
     let help = "without its commands nobody knows what the machine was asked to do".to_owned();
     Err((format!("no column {}", missing.join(", ")), help))
+}
+
+/// Rows that came at times of their own.
+struct Jitter {
+    /// Time between two rows in s: the median.
+    interval: f64,
+    /// Share of the steps that are off it.
+    share: f64,
+}
+
+/// Time stamps that a controller's load shifted now and then: growing, few of their steps off the median
+/// ([`LATE_SHARE`]) and none by more than [`LATE_STEPS`]. None of others.
+fn jittered(times: &[f64]) -> Option<Jitter> {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if steps.len() < 3 || steps.iter().any(|step| *step <= 0.0) {
+        return None;
+    }
+    let sorted = {
+        let mut sorted = steps.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted
+    };
+    let interval = sorted[sorted.len() / 2];
+    steps.retain(|step| (step / interval - 1.0).abs() > LATE);
+    let share = steps.len() as f64 / sorted.len() as f64;
+    let worst = sorted.last().map_or(0.0, |step| step / interval);
+    (share <= LATE_SHARE && worst <= LATE_STEPS).then_some(Jitter { interval, share })
+}
+
+/// Values at times of their own on a grid from the first time on.
+fn on_grid(times: &[f64], values: &[f64], interval: f64) -> Vec<f64> {
+    let spline = CubicSpline::not_a_knot(times, values);
+    let first = times[0];
+    let rows = times.last().map_or(0, |last| ((last - first) / interval + 1e-6) as usize + 1);
+    (0..rows).map(|row| spline.at(first + row as f64 * interval)[0]).collect()
 }

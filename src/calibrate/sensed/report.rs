@@ -6,6 +6,8 @@ use super::problem::{Problem, Stopped};
 use super::recording::Recording;
 use super::search::{Left, Tried, name};
 use super::start::machine;
+use super::windows::bench::{Bench, suits};
+use super::windows::report::{Windows, into_folder as by_windows};
 use crate::calibrate::errors::{ChannelError, worst};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::recording::stem_of;
@@ -57,6 +59,9 @@ pub struct Report {
     pub wall_s: f64,
     /// What stands beside this file.
     pub files: Vec<String>,
+    /// Of a machine that forgets its start: what errors are, and by how much predictions miss over windows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub windows: Option<Windows>,
 }
 
 /// A rig and recordings that nothing speaks against, before anything is simulated.
@@ -64,14 +69,18 @@ pub struct Report {
 pub struct Prepared {
     rig: Scenario,
     recordings: Vec<Recording>,
+    /// How many of them, the first ones, values are fitted to.
+    fits: usize,
+    /// Whether the machine is calibrated by windows.
+    by_windows: bool,
 }
 
-/// Reads recordings of a rig whose sensors its file describes, the first to calibrate on, the others to validate
-/// on.
+/// Reads recordings of a rig whose sensors its file describes, the first `fits` to calibrate on, the others to
+/// validate on.
 ///
 /// # Errors
 /// Everything that is wrong with them.
-pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateError> {
+pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, CalibrateError> {
     let mut wrong: Vec<String> = Vec::new();
     let built: Mechanism = crate::model::parts_of(&rig)?;
     if built.sensors.is_empty() {
@@ -79,17 +88,26 @@ pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateErro
         let message = "is missing: nobody knows what the columns of the recordings are".to_owned();
         wrong.push(rig.problem("sensor", message, help).to_string());
     }
-    if !rig.effects.is_empty() {
+    refuse(wrong)?;
+    let built: Mechanism = crate::model::parts_of(&rig)?;
+    let by_windows = suits(&built);
+    let mut wrong: Vec<String> = Vec::new();
+    if !by_windows && !rig.effects.is_empty() {
         let message = format!("holds {} effect(s)", rig.effects.len());
         let help =
             "calibrate starts from what a rig's maker declares: give it the rig without [[effect]]";
         wrong.push(rig.problem("effect", message, help).to_string());
     }
+    if !by_windows && fits > 1 {
+        let message =
+            "--data: several runs are fitted together of machines that nothing holds alone";
+        wrong.push(format!("{message}; give this one a --data and the others as --validate"));
+    }
     refuse(wrong)?;
     let mut recordings = Vec::new();
     let mut errors: Vec<LogError> = Vec::new();
     for path in paths {
-        match Recording::read(path, &built.sensors) {
+        match Recording::read(path, &built.sensors, by_windows) {
             Ok(recording) => recordings.push(recording),
             Err(error) => errors.push(error),
         }
@@ -124,10 +142,14 @@ pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateErro
         *recording = recording.with(columns.collect());
     }
     // What the machine cannot be at a recording's first row is told before anything is written.
-    for recording in &recordings {
-        machine(&rig, &[], recording)?;
+    if by_windows {
+        Bench::new(&rig, recordings.clone())?;
+    } else {
+        for recording in &recordings {
+            machine(&rig, &[], recording)?;
+        }
     }
-    Ok(Prepared { rig, recordings })
+    Ok(Prepared { rig, recordings, fits, by_windows })
 }
 
 /// A finished calibration.
@@ -160,6 +182,10 @@ pub fn into_folder(
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Calibrated, CalibrateError> {
+    if prepared.by_windows {
+        let Prepared { rig, recordings, fits, .. } = prepared;
+        return by_windows(&rig, recordings, fits, without, folder, tell);
+    }
     let started = Clock::now();
     let control = control(&prepared.rig);
     let mut problem = Problem::new(prepared.rig, prepared.recordings, control)?;
@@ -202,6 +228,7 @@ pub fn into_folder(
         simulations: problem.simulations(),
         wall_s: started.elapsed().as_secs_f64(),
         files: files_list,
+        windows: None,
     };
     let json = to_json(&report);
     let mut calibrated = problem.rig.clone();

@@ -102,3 +102,37 @@ pub const TABLE: f64 = 0.05;
 
 /// How often a table is fitted anew, its model simulated in between: what a look is wrong by depends on it.
 pub const TABLE_PASSES: usize = 2;
+
+/// Steps of time that differ from the median by a larger share came late, or early after a late one: an
+/// ordinary clock is off by a thousandth.
+pub const LATE: f64 = 0.02;
+
+/// Share of steps that may do so, and the longest in medians: splines bridge a missing row or two, and of more
+/// nobody knows what happened in between.
+pub const LATE_SHARE: f64 = 0.1;
+/// See [`LATE_SHARE`].
+pub const LATE_STEPS: f64 = 3.5;
+
+/// Lengths in s of the windows of a fit, one after another: a start that is wrong by a hundredth keeps its phase
+/// in the first, and slow effects show in the last.
+pub const WINDOWS: [f64; 4] = [0.2, 0.5, 1.2, 2.5];
+
+/// Share of a motion that a model may miss over windows of one length for the next to be fitted: of a model that
+/// lacks more, longer windows say how its errors grow.
+pub const PHASE: f64 = 4e-3;
+
+/// Time in s that windows of one fit cover together, at most: what two slow cores fit in a minute.
+pub const COVERED: f64 = 45.0;
+
+/// Drop of Σ of squares, as windows vary, that an effect of a fit with windows has to bring: as
+/// [`GAIN`](self::GAIN).
+pub const CERTAIN: f64 = 28.0;
+
+/// First seconds of a run that its own zeros are taken from where a model is judged by the rest.
+pub const OWN: f64 = 3.0;
+
+/// Standard deviation in rad of a zero that nothing is known of: an operator sees a tenth.
+pub const ZERO: f64 = 0.3;
+
+/// Windows that predictions are judged by: length, and the first part that the start is fitted to, in s.
+pub const HORIZONS: [[f64; 2]; 3] = [[0.5, 0.1], [0.3, 0.1], [2.5, 0.25]];

@@ -55,6 +55,10 @@ impl Dynamics {
                     }
                 }
                 Rigid::Revolute(i) => rows.extend(revolute_rows(&mechanism.revolutes[i], states)),
+                Rigid::Rotor(i) => {
+                    let rotor = &mechanism.rotors[i];
+                    rows.push(rotor.row(&mechanism.revolutes[rotor.joint]));
+                }
                 Rigid::Angle { drive, joint } => {
                     let mut row = angle_row(&mechanism.revolutes[joint]);
                     row.bias -= out.commands[drive].acceleration;
@@ -80,6 +84,9 @@ impl Dynamics {
                     let force = Vector2::new(next(), next());
                     out.reactions[i] = force;
                     out.contacts[i].normal_force = force.x.hypot(force.y);
+                }
+                Rigid::Rotor(_) => {
+                    let _torque = next();
                 }
                 Rigid::Angle { drive, .. } => out.drive_forces[drive] = next(),
             }

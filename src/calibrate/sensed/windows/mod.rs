@@ -1,0 +1,18 @@
+//! Calibration of machines that nothing holds: without clearance, free or driven by efforts alone.
+//!
+//! Whole runs of such machines cannot be simulated: their starts are unknown, and errors grow. [`window`] cuts
+//! runs into windows and fits the start in each; [`roll`] moves a machine along one; [`shooting`] fits values of
+//! effects, zeros of runs and starts together; [`sought`] says which values; [`score`] by how much predictions
+//! miss; [`outcome`] is the whole way, [`predict`] that of a prediction.
+
+pub mod bench;
+pub mod inputs;
+pub mod outcome;
+pub mod pose;
+pub mod predict;
+pub mod report;
+pub mod roll;
+pub mod score;
+pub mod shooting;
+pub mod sought;
+pub mod window;

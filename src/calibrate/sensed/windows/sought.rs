@@ -1,0 +1,232 @@
+//! Which values are sought of a machine that nothing holds, and how far they may be from what is declared.
+
+use super::shooting::Value;
+use crate::calibrate::sensed::estimate::{effort_sensor, position_sensor};
+use crate::calibrate::sensed::recording::Recording;
+use crate::effects::{Setting, Target, named};
+use crate::mechanism::{Drive, JointIndex, Mechanism};
+
+/// Shares of the declared ones by which masses and moments, and inertias, are expected to be off: drawings leave
+/// out screws and cables.
+const MASS: f64 = 0.2;
+const INERTIA: f64 = 0.3;
+
+/// Share of what gravity does to the machine that friction is expected to be.
+const FRICTION: f64 = 0.2;
+
+/// Expected share by which the scale of an effort is off, and the offset in shares of what gravity does.
+const SCALE: f64 = 0.1;
+const OFFSET: f64 = 0.02;
+
+/// Share of its joint's rate (root mean square) at which Coulomb friction is near its full value: windows do not
+/// show how steep it is at rest.
+const STEEP: f64 = 0.01;
+
+/// Share of the distance of a centre of mass that an axis has to have of it for a moment along it to be sought.
+const BESIDE: f64 = 0.05;
+
+/// Steps of derivatives in expected sizes.
+const STEP: f64 = 1e-4;
+
+/// Effects whose values are sought, beside those that stay as declared.
+#[derive(Clone, Debug)]
+pub struct Sought {
+    /// All effects.
+    pub effects: Vec<Setting>,
+    /// How many of them, the first ones, the rig declares.
+    declared: usize,
+    /// Effect and value of it of each value that is sought.
+    places: Vec<(usize, usize)>,
+    /// The values.
+    pub values: Vec<Value>,
+    /// Where they start.
+    pub start: Vec<f64>,
+}
+
+impl Sought {
+    /// Effects with these values.
+    pub fn settings(&self, values: &[f64]) -> Vec<Setting> {
+        let mut settings = self.effects.clone();
+        for ((effect, place), value) in self.places.iter().zip(values) {
+            let mut all: Vec<f64> = settings[*effect].values().map(|(_, value)| value).collect();
+            all[*place] = *value;
+            settings[*effect] = settings[*effect].with(&all);
+        }
+        settings
+    }
+
+    /// Places among the sought values of those of an effect.
+    pub fn of(&self, effect: usize) -> Vec<usize> {
+        (0..self.places.len()).filter(|&k| self.places[k].0 == effect).collect()
+    }
+
+    /// Names of the sought values of an effect, in the order of [`of`](Self::of).
+    pub fn names(&self, effect: usize) -> Vec<&'static str> {
+        let names: Vec<&'static str> =
+            self.effects[effect].values().map(|(name, _)| name).collect();
+        self.of(effect).into_iter().map(|k| names[self.places[k].1]).collect()
+    }
+
+    /// The same without some effects, or, of those that the rig declares, as it declares them; values start at
+    /// `values`.
+    pub fn without(&self, dropped: &[usize], values: &[f64]) -> Self {
+        let mut kept = values.to_vec();
+        for k in dropped.iter().flat_map(|&effect| self.of(effect)) {
+            kept[k] = self.values[k].prior[0];
+        }
+        let mut left = Self { effects: Vec::new(), declared: 0, ..self.clone() };
+        (left.places, left.values, left.start) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, effect) in self.settings(&kept).into_iter().enumerate() {
+            let declared = i < self.declared;
+            if !dropped.contains(&i) {
+                for k in self.of(i) {
+                    left.places.push((left.effects.len(), self.places[k].1));
+                    left.values.push(self.values[k].clone());
+                    left.start.push(kept[k]);
+                }
+            } else if !declared {
+                continue;
+            }
+            left.declared += usize::from(declared);
+            left.effects.push(effect);
+        }
+        left
+    }
+
+    fn add(
+        &mut self,
+        kind: &str,
+        target: Target,
+        sizes: &[(&'static str, f64)],
+        fixed: &[(&'static str, f64)],
+    ) {
+        let Some(kind) = named(kind) else { return };
+        let neutral: Vec<(&'static str, f64)> =
+            sizes.iter().map(|(name, _)| (*name, 0.0)).collect();
+        let all = [neutral.as_slice(), fixed].concat();
+        let mut effect = Setting::on(kind, target, &all);
+        let declared = self.effects.iter().position(|known| known.is(&effect));
+        if let Some(declared) = declared {
+            // Values that are declared stay where they are not sought, and are where the others start.
+            let known = &self.effects[declared];
+            let values: Vec<f64> =
+                all.iter().map(|(name, value)| known.value(name).unwrap_or(*value)).collect();
+            let extra: Vec<(&'static str, f64)> = known
+                .values()
+                .filter(|(name, _)| all.iter().all(|(other, _)| other != name))
+                .collect();
+            let names: Vec<(&'static str, f64)> = all
+                .iter()
+                .zip(values)
+                .map(|((name, _), value)| (*name, value))
+                .chain(extra)
+                .collect();
+            effect = Setting::on(kind, effect.target.clone(), &names);
+        }
+        let index = declared.unwrap_or(self.effects.len());
+        for (place, (name, size)) in sizes.iter().enumerate() {
+            let Some(parameter) = kind.parameter(name) else { continue };
+            let start = effect.values().nth(place).map_or(0.0, |(_, value)| value);
+            self.places.push((index, place));
+            let prior = [start, *size];
+            self.values.push(Value { step: STEP * size, bounds: parameter.bounds, prior });
+            self.start.push(start);
+        }
+        match declared {
+            Some(declared) => self.effects[declared] = effect,
+            None => self.effects.push(effect),
+        }
+    }
+}
+
+/// Everything that is sought of a machine, beside effects that its rig declares; none of the kinds `without`.
+pub fn sought(
+    mechanism: &Mechanism,
+    declared: &[Setting],
+    recordings: &[Recording],
+    without: &[&str],
+) -> Sought {
+    let mut sought = Sought {
+        effects: declared.to_vec(),
+        declared: declared.len(),
+        places: Vec::new(),
+        values: Vec::new(),
+        start: Vec::new(),
+    };
+    let allowed = |kind: &str| !without.contains(&kind);
+    let size = mechanism.size();
+    let mass: f64 = mechanism.bodies.iter().map(|body| body.mass).sum();
+    // Without gravity a machine of its size that turns with 3 rad/s sets the scale.
+    let weight = mass * mechanism.gravity.norm().max(9.0 * size);
+    let named_bodies = &mechanism.names.bodies;
+    for (name, axes) in named_bodies {
+        let Some(index) = axes.origin.body else { continue };
+        let body = &mechanism.bodies[index];
+        let moment = MASS * body.mass * size;
+        let inertia = INERTIA * (body.inertia + body.mass * size * size);
+        // A centre of mass beside its declared line is no different from wrong zeros of sensors.
+        let centre = axes.centre.point - axes.origin.point;
+        let turn = nalgebra::UnitComplex::new(-axes.angle);
+        let line = turn * centre / centre.norm().max(f64::MIN_POSITIVE);
+        let mut sizes = vec![("mass_kg", MASS * body.mass), ("inertia_kg_m2", inertia)];
+        for (name, share) in [("moment_x_kg_m", line.x.abs()), ("moment_y_kg_m", line.y.abs())] {
+            if share > BESIDE {
+                sizes.push((name, share * moment));
+            }
+        }
+        if allowed("mass-properties") {
+            sought.add("mass-properties", Target::Body(name.clone()), &sizes, &[]);
+        }
+    }
+    let joints: Vec<(String, JointIndex)> =
+        mechanism.joints().map(|(name, joint)| (name.to_owned(), joint)).collect();
+    for (name, joint) in joints {
+        let effort = match joint {
+            JointIndex::Revolute(_) => weight * size,
+            JointIndex::Prismatic(_) => weight,
+        };
+        let rate = rate(mechanism, recordings, joint);
+        let target = Target::Joints(vec![name]);
+        let friction = FRICTION * effort;
+        let sizes = [("coulomb", friction), ("viscous", friction / rate)];
+        if allowed("joint-friction") {
+            sought.add("joint-friction", target.clone(), &sizes, &[("velocity", STEEP * rate)]);
+        }
+        let drive = mechanism.actuators.iter().position(|drive| drive.joint == joint);
+        let Some(drive) = drive.filter(|&i| mechanism.actuators[i].drive == Drive::Effort) else {
+            continue;
+        };
+        if allowed("rotor-inertia") && matches!(joint, JointIndex::Revolute(_)) {
+            let inertia = INERTIA * mass * size * size;
+            sought.add("rotor-inertia", target, &[("inertia_kg_m2", inertia)], &[]);
+        }
+        let recorded = |sensor: &usize| recordings.iter().all(|r| r.get(*sensor).is_some());
+        if let Some(sensor) = effort_sensor(mechanism, drive).filter(recorded) {
+            let target = Target::Sensors(vec![mechanism.sensors[sensor].column.clone()]);
+            if allowed("force-scale") {
+                sought.add("force-scale", target.clone(), &[("relative", SCALE)], &[]);
+            }
+            if allowed("force-offset") {
+                sought.add("force-offset", target, &[("offset", OFFSET * effort)], &[]);
+            }
+        }
+    }
+    sought
+}
+
+/// Root mean square rate of a joint in recordings; 1 where nobody measured it.
+fn rate(mechanism: &Mechanism, recordings: &[Recording], joint: JointIndex) -> f64 {
+    /// Time in s over which rates are taken: longer than encoders' steps show.
+    const OVER: f64 = 0.02;
+    let Some(sensor) = position_sensor(mechanism, joint) else { return 1.0 };
+    let (mut squares, mut count) = (0.0, 0usize);
+    for recording in recordings {
+        let Some(values) = recording.get(sensor) else { continue };
+        let rows = (OVER / recording.interval).ceil().max(1.0) as usize;
+        for pair in values.windows(rows + 1).step_by(rows) {
+            squares += ((pair[rows] - pair[0]) / (rows as f64 * recording.interval)).powi(2);
+            count += 1;
+        }
+    }
+    if count == 0 { 1.0 } else { (squares / count as f64).sqrt().max(1e-3) }
+}
