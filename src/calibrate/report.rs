@@ -61,7 +61,12 @@ impl ActsOn {
 
     /// Of an effect.
     pub fn of(effect: &Setting) -> Self {
-        Self(effect.target.clone())
+        Self::at(&effect.target)
+    }
+
+    /// What a target names.
+    pub fn at(target: &Target) -> Self {
+        Self(target.clone())
     }
 
     /// In words, as in " at A1"; empty of the whole machine.

@@ -219,7 +219,7 @@ impl Kind {
     }
 
     /// Everything on `mechanism` that the effect can act on, one at a time, then all of them at once where
-    /// it may be given none. Common causes of some of the joints are not listed; of sensors those are that
+    /// it may be given none. Common causes follow: joints of one sort, for they are of one make; sensors that
     /// read the same quantity, for they may share an instrument. Joints without clearance are left out
     /// where the effect would leave them as they are.
     pub fn targets_of(&self, mechanism: &Mechanism) -> Vec<Target> {
@@ -234,8 +234,13 @@ impl Kind {
                 let mut names = self.joints_of(mechanism);
                 names.retain(|name| joints != Joints::Bearing || worn(name));
                 let all = matches!(self.targets, Targets::JointOrAll(_)) && names.len() > 1;
-                let each = names.into_iter().map(|name| Target::Joints(vec![name]));
-                each.chain(all.then_some(Target::Machine)).collect()
+                let groups = if all || !self.has_common_causes() {
+                    Vec::new()
+                } else {
+                    of_one_make(mechanism, &names)
+                };
+                let each = names.into_iter().map(|name| vec![name]).chain(groups);
+                each.map(Target::Joints).chain(all.then_some(Target::Machine)).collect()
             }
             // Parts of one moving body are one target.
             Targets::Body if mechanism.names.bodies.is_empty() => vec![Target::Machine],
@@ -255,6 +260,15 @@ impl Kind {
                 tracked.then_some(Target::Machine).into_iter().collect()
             }
         }
+    }
+
+    /// Whether joints of one make may have it alike: not what is placed otherwise in each, as the phase of a
+    /// wave or the place of a point is.
+    fn has_common_causes(&self) -> bool {
+        let placed = |parameter: &Parameter| parameter.name.contains("phase");
+        self.targets.joints() != Some(Joints::Anchor)
+            && self.scan.is_none()
+            && !self.parameters.iter().any(placed)
     }
 
     /// The variants that make sense on a target: where an effect has numbers for prismatic and for revolute
@@ -296,6 +310,19 @@ impl Parameter {
         let both = self.unit.is_empty() || self.unit.contains(" or ");
         (!both).then(|| !self.unit.contains("rad") && !self.unit.contains("N m"))
     }
+}
+
+/// Those of some joints that are prismatic or revolute and driven or not alike, where they are several.
+fn of_one_make(mechanism: &Mechanism, names: &[String]) -> Vec<Vec<String>> {
+    let make = |name: &String| {
+        let (_, joint) = mechanism.joints().find(|(known, _)| known == name)?;
+        let driven = mechanism.actuators.iter().any(|drive| drive.joint == joint);
+        Some((matches!(joint, JointIndex::Prismatic(_)), driven))
+    };
+    let makes = [(true, true), (true, false), (false, true), (false, false)];
+    let of = |sort| names.iter().filter(|name| make(name) == Some(sort)).cloned().collect();
+    let groups = makes.map(of).into_iter();
+    groups.filter(|group: &Vec<String>| group.len() > 1).collect()
 }
 
 /// Each sensor by itself, and those of one quantity together.

@@ -15,7 +15,9 @@ impl Setting {
         let index = |name: &str| mechanism.joints().find(|(joint, _)| *joint == name);
         let driven = |joint| mechanism.actuators.iter().any(|drive| drive.joint == joint);
         let prismatic = |joint: JointIndex| matches!(joint, JointIndex::Prismatic(_));
-        let joint = self.joint().and_then(index).map(|(_, joint)| joint);
+        // Joints with a common cause are of one make.
+        let first = self.target.names().first().map(String::as_str);
+        let joint = first.and_then(index).map(|(_, joint)| joint);
         match (self.kind.name, &self.target) {
             ("joint-friction", _) => {
                 joint.filter(|j| prismatic(*j) && driven(*j)).map(|_| "actuator-friction")

@@ -38,16 +38,18 @@ pub struct Baseline {
 type Coefficients = Vec<Vec<f64>>;
 
 impl Baseline {
-    /// That of a model with these effects.
+    /// That of a model with these effects; where it rattles, with what their standard `deviations` (none: the
+    /// values are exact) and a hair at the start make of it.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn of(
         problem: &Problem,
         effects: &[Setting],
+        deviations: &[f64],
         segments: &[Segment],
     ) -> Result<Self, Stopped> {
-        let simulated = problem.simulated(effects, problem.replicas)?;
+        let simulated = problem.simulated(effects, deviations, problem.replicas)?;
         let still = problem.still(effects)?;
         let sensors = &problem.declared.sensors;
         let singular = || {

@@ -287,7 +287,7 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs/rig-4");
         let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
         let sensors = crate::model::parts_of(&rig).unwrap().sensors;
-        let whole = Recording::read(&folder.join("run-a.csv"), &sensors).unwrap();
+        let whole = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
         let kept = |(i, sensor): (usize, &crate::mechanism::Sensor)| {
             let kept = !without.contains(&sensor.column.as_str());
             whole.get(i).filter(|_| kept).map(<[f64]>::to_vec)

@@ -4,6 +4,7 @@ use super::baseline::Baseline;
 use super::problem::{Problem, Segment};
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::least_squares::{self, Effort, least_squares};
+use crate::calibrate::outcome::inverse_normal;
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 
@@ -18,6 +19,18 @@ pub struct Fit {
     pub white: DVector<f64>,
     /// Its derivative by each value in a row, where it was asked for.
     pub jacobian: Option<DMatrix<f64>>,
+}
+
+impl Fit {
+    /// Standard deviations of the values as far as sensor noise tells: `(JᵀJ)⁻¹`; none where no derivative is
+    /// known.
+    pub fn deviations(&self) -> Vec<f64> {
+        let some = self.jacobian.as_ref().filter(|jacobian| jacobian.ncols() > 0);
+        let inverse = some.and_then(inverse_normal);
+        inverse.map_or_else(Vec::new, |inverse| {
+            inverse.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
+        })
+    }
 }
 
 /// What is fitted to what.

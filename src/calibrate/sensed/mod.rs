@@ -14,6 +14,8 @@ pub mod candidates;
 pub mod errors;
 pub mod estimate;
 pub mod fit;
+pub mod limits;
+pub mod noise;
 pub mod outcome;
 mod page;
 pub mod problem;

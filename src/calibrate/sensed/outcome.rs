@@ -3,6 +3,8 @@
 use super::candidates::candidates;
 use super::errors::of_run;
 use super::fit::Fit;
+use super::limits::{Limit, limits};
+use super::noise::{self, OtherNoise};
 use super::problem::{Problem, Segment, Stopped};
 use super::recording::Recording;
 use super::residual::Name;
@@ -33,6 +35,10 @@ pub struct Outcome {
     pub before: Vec<Left>,
     /// See there.
     pub after: Vec<Left>,
+    /// Sensors whose noise is not what is declared.
+    pub noises: Vec<OtherNoise>,
+    /// How large each other effect would have to be to be seen; none where what is left is not noise.
+    pub limits: Vec<Limit>,
     /// Round by round.
     pub rounds: Vec<Round>,
     /// Errors, run by run and column by column.
@@ -56,7 +62,9 @@ pub fn calibrate(
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Outcome, Stopped> {
     tell("finding out whether joints rattle");
-    let mut rattle = problem.look_for_rattle(&[])?;
+    let logs = problem.simulated(&[], &[], 2)?;
+    let noises = noise::correct(problem, &logs);
+    let mut rattle = problem.rattle(&logs);
     let split = problem.split();
     let candidates = candidates(&problem.declared, without);
     let names: Vec<Name> = problem.names().unwrap_or_default();
@@ -71,6 +79,7 @@ pub fn calibrate(
             let (candidates, names) = (Vec::new(), names.clone());
             let search = Search { problem: &*problem, split: &split, candidates, names, tell };
             best = search.settle(&best.fit.effects, 2)?.unwrap_or(best);
+            best = search.simplified(best)?;
         }
     }
     let problem = &*problem;
@@ -78,6 +87,7 @@ pub fn calibrate(
     let (before, after) = (search.left(&declared), search.left(&best));
     tell("predicting");
     let noise = is_noise(&after);
+    let limits = limits(&search, &best);
     let described = match noise || without.contains(&UNNAMED) {
         true => None,
         false => {
@@ -92,10 +102,11 @@ pub fn calibrate(
     };
     let after = described.as_ref().map_or(after, |(_, model)| search.left(model));
     let replicas = if problem.replicas > 1 { PREDICTING } else { 1 };
-    let calibrated = problem.simulated(&effects, replicas)?;
+    let deviations = if noise { best.fit.deviations() } else { Vec::new() };
+    let calibrated = problem.simulated(&effects, &deviations, replicas)?;
     let plain = match effects.is_empty() {
         true => calibrated.clone(),
-        false => problem.simulated(&[], problem.replicas)?,
+        false => problem.simulated(&[], &[], problem.replicas)?,
     };
     let mut errors = Vec::new();
     for index in 0..problem.runs.len() {
@@ -123,6 +134,8 @@ pub fn calibrate(
         tried: best.fit.effects.clone(),
         before,
         after,
+        noises,
+        limits,
         rounds,
         errors,
         declared: means(&plain),

@@ -139,6 +139,26 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
             .collect(),
         note: "Of what stands above noise on data that a candidate was not fitted to.".into(),
     };
+    let limits = Table {
+        id: "limits",
+        title: "What would have been seen".into(),
+        header: head(&["effect", "parameter", "from", "unit"]),
+        rows: report
+            .limits
+            .iter()
+            .map(|limit| {
+                vec![
+                    format!("{}{}", limit.kind, limit.on.words()),
+                    limit.parameter.to_owned(),
+                    limit.smallest.map_or_else(|| "not at any size".to_owned(), number),
+                    limit.unit.to_owned(),
+                ]
+            })
+            .collect(),
+        note: "How far from its neutral value a parameter would have to be for these recordings to show it, \
+               by the linearisation of the fit, with 98 % certainty."
+            .into(),
+    };
     let equations: Vec<String> = report.effects.iter().map(why).collect();
     let more = [
         ("Figures", "report.json beside this page".to_owned()),
@@ -166,6 +186,9 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
     }
     parts.push(Part::Pictures(pictures));
     parts.push(Part::Table(ranking));
+    if !report.limits.is_empty() {
+        parts.push(Part::Table(limits));
+    }
     parts.push(Part::Provenance(&provenance));
     let title =
         format!("Calibration of {}: {}", report.provenance.scenario_name, verdict(report.verdict));

@@ -6,11 +6,15 @@ use super::recording::Recording;
 use super::residual::{Residuals, residuals};
 use super::start::{StartError, machine, released, still};
 use super::{simulate, thresholds};
+use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::spectrum::transform;
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
 use crate::mechanism::Mechanism;
 use crate::scenario::{Problem as Wrong, Scenario};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -123,31 +127,34 @@ impl Problem {
         self.simulations.load(Ordering::Relaxed)
     }
 
-    /// Noiseless recordings of a model with these effects, so many replicas of each run.
+    /// Noiseless recordings of a model with these effects, so many replicas of each run: the first with exactly
+    /// these values, the others with values as far away as `deviations` say that nobody knows them (none: all
+    /// exactly).
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn simulated(
         &self,
         effects: &[Setting],
+        deviations: &[f64],
         replicas: usize,
     ) -> Result<Vec<Vec<Recording>>, Stopped> {
-        let machines = self
+        let about: Vec<Vec<Setting>> =
+            (0..replicas as u64).map(|replica| drawn(effects, deviations, replica)).collect();
+        let jobs: Vec<(&Run, u64)> = self
             .runs
             .iter()
-            .map(|run| Ok(released(&self.rig, effects, &run.recording, self.control)?))
-            .collect::<Result<Vec<Mechanism>, Stopped>>()?;
-        let jobs: Vec<(usize, u64)> = (0..machines.len())
             .flat_map(|run| (0..replicas as u64).map(move |replica| (run, replica)))
             .collect();
         self.simulations.fetch_add(jobs.len(), Ordering::Relaxed);
         let recorded = jobs
             .into_par_iter()
             .map(|(run, replica)| {
-                let like = &self.runs[run].recording;
-                simulate::record(&machines[run], self.control, like, replica)
+                let (like, effects) = (&run.recording, &about[replica as usize]);
+                let machine = released(&self.rig, effects, like, self.control)?;
+                Ok(simulate::record(&machine, self.control, like, replica)?)
             })
-            .collect::<Result<Vec<Recording>, Halt>>()?;
+            .collect::<Result<Vec<Recording>, Stopped>>()?;
         Ok(recorded.chunks(replicas).map(<[Recording]>::to_vec).collect())
     }
 
@@ -190,10 +197,15 @@ impl Problem {
     /// # Errors
     /// A run that broke down.
     pub fn look_for_rattle(&mut self, effects: &[Setting]) -> Result<f64, Stopped> {
-        let logs = self.simulated(effects, 2)?;
+        let logs = self.simulated(effects, &[], 2)?;
+        Ok(self.rattle(&logs))
+    }
+
+    /// The same by simulations of two replicas or more of each run.
+    pub fn rattle(&mut self, logs: &[Vec<Recording>]) -> f64 {
         let sensors = &self.declared.sensors;
         let mut largest = 0.0f64;
-        for pair in &logs {
+        for pair in logs {
             for (i, sensor) in sensors.iter().enumerate() {
                 let (Some(a), Some(b)) = (pair[0].get(i), pair[1].get(i)) else { continue };
                 let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
@@ -204,7 +216,7 @@ impl Problem {
         if largest > thresholds::SEEN {
             self.replicas = thresholds::REPLICAS;
         }
-        Ok(largest)
+        largest
     }
 
     /// Residuals of a view of run `segment.run` under a mechanism.
@@ -235,4 +247,19 @@ impl Problem {
         let finite = found.signals.iter().flat_map(|s| &s.values).all(|value| value.is_finite());
         finite.then(|| transform(&found.signals, view.interval * view.stride as f64))
     }
+}
+
+/// Effects with values drawn about their own, within bounds; those of the first replica are exact.
+fn drawn(effects: &[Setting], deviations: &[f64], replica: u64) -> Vec<Setting> {
+    let own = values(effects);
+    if replica == 0 || deviations.len() != own.len() {
+        return effects.to_vec();
+    }
+    let mut random = ChaCha8Rng::seed_from_u64(replica);
+    let drawn = own.iter().zip(deviations).zip(free(effects)).map(|((value, deviation), free)| {
+        let normal: f64 = StandardNormal.sample(&mut random);
+        let away = if deviation.is_finite() { normal * deviation } else { 0.0 };
+        (value + away).clamp(free.bounds[0], free.bounds[1])
+    });
+    with_values(effects, &drawn.collect::<Vec<f64>>())
 }

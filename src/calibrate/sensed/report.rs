@@ -1,5 +1,7 @@
 //! `report.json` and the folder of results.
 
+use super::limits::Limit;
+use super::noise::OtherNoise;
 use super::outcome::{Outcome, calibrate};
 use super::page;
 use super::problem::{Problem, Stopped};
@@ -43,6 +45,11 @@ pub struct Report {
     pub errors: Vec<ChannelError>,
     /// Candidates, round by round, the best first in each.
     pub ranking: Vec<Ranked>,
+    /// Sensors whose noise is not what is declared; all else rests on what was measured.
+    pub noises: Vec<OtherNoise>,
+    /// How large other effects would have to be for these recordings to show them; empty where what is left is
+    /// not noise.
+    pub limits: Vec<LimitReport>,
     /// Residuals on data not used for fits, under the declared and under the calibrated model.
     pub residuals: Vec<ResidualReport>,
     /// Whether the declared machine rattles by more than its sensors see, and what follows.
@@ -205,10 +212,12 @@ pub fn into_folder(
     let report = Report {
         provenance: Provenance::of(&problem.rig),
         verdict: outcome.verdict,
-        summary: summary(&outcome),
+        summary: format!("{}{}", summary(&outcome), noises(&outcome.noises)),
         effects: effects(&outcome),
         errors: outcome.errors.clone(),
         ranking: ranking(&outcome),
+        noises: outcome.noises.clone(),
+        limits: outcome.limits.iter().map(limit).collect(),
         residuals: residuals(&outcome.before, &outcome.after),
         rattle: RattleReport {
             chaotic: problem.replicas > 1,
@@ -272,6 +281,14 @@ fn summary(outcome: &Outcome) -> String {
     }
 }
 
+/// What is said of instruments that are noisier or quieter than declared.
+fn noises(noises: &[OtherNoise]) -> String {
+    let one = |noise: &OtherNoise| {
+        format!(" Noise of {} is {:.2} × declared.", noise.column, noise.measured / noise.declared)
+    };
+    noises.iter().map(one).collect()
+}
+
 fn effects(outcome: &Outcome) -> Vec<EffectReport> {
     let report = |(effect, params): &super::outcome::Estimated| {
         let round = outcome
@@ -299,6 +316,32 @@ fn effects(outcome: &Outcome) -> Vec<EffectReport> {
         }
     };
     outcome.effects.iter().map(report).collect()
+}
+
+/// The smallest size of an effect that would have been seen.
+#[derive(Clone, Debug, Serialize)]
+pub struct LimitReport {
+    /// Its name.
+    pub kind: &'static str,
+    /// What it acts on.
+    #[serde(flatten)]
+    pub on: ActsOn,
+    /// Its parameter.
+    pub parameter: &'static str,
+    /// Unit of that.
+    pub unit: &'static str,
+    /// How far from its neutral value that would have to be; null where no size would show.
+    pub smallest: Option<f64>,
+}
+
+fn limit(limit: &Limit) -> LimitReport {
+    LimitReport {
+        kind: limit.kind.name,
+        on: ActsOn::at(&limit.target),
+        parameter: limit.parameter,
+        unit: limit.unit,
+        smallest: limit.smallest,
+    }
 }
 
 fn ranking(outcome: &Outcome) -> Vec<Ranked> {

@@ -121,7 +121,9 @@ impl Search<'_> {
         let mut effects = effects.to_vec();
         let mut settled: Option<Model> = None;
         for _ in 0..times.max(1) {
-            let baseline = match Baseline::of(self.problem, &effects, &segments) {
+            let deviations = settled.as_ref().map(|model| model.fit.deviations());
+            let deviations = deviations.unwrap_or_default();
+            let baseline = match Baseline::of(self.problem, &effects, &deviations, &segments) {
                 Ok(baseline) => baseline,
                 // What cannot be simulated is no model; what was so far may be one.
                 Err(_) if !effects.is_empty() => break,
@@ -139,6 +141,7 @@ impl Search<'_> {
                 false => 0.0,
             };
             let noise = own + baseline.lost(&self.split.hold);
+            let (rattles, known) = (baseline.rattles, !deviations.is_empty());
             let model = Model { fit, held: held.chi2, misfit: held.chi2 + noise, baseline };
             let worse = settled
                 .as_ref()
@@ -146,7 +149,8 @@ impl Search<'_> {
             if !worse {
                 settled = Some(model);
             }
-            if change < SETTLED {
+            // Where joints rattle the second pass knows how far values may be off.
+            if change < SETTLED && (!rattles || known) {
                 break;
             }
         }
@@ -488,7 +492,7 @@ impl Search<'_> {
         (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
         let effects = fitted(self.problem, &model.fit.effects, &self.split.on)?;
         let segments = [self.split.on.as_slice(), &self.split.hold].concat();
-        let baseline = Baseline::of(self.problem, &effects, &segments)?;
+        let baseline = Baseline::of(self.problem, &effects, &[], &segments)?;
         let on = self.target(&baseline, false);
         let Some(mut fit) = on.look(&effects) else { return Ok(model) };
         fit.jacobian = on.jacobian(&fit);

@@ -136,3 +136,20 @@ pub const ZERO: f64 = 0.3;
 
 /// Windows that predictions are judged by: length, and the first part that the start is fitted to, in s.
 pub const HORIZONS: [[f64; 2]; 3] = [[0.5, 0.1], [0.3, 0.1], [2.5, 0.25]];
+
+/// Standard deviations by which an effect at its detection limit stands above what sees and names it: 49 of 50
+/// are seen.
+pub const SURE: f64 = 2.0;
+
+/// Shares of the rate of sampling between which a sensor's noise is looked at: above what machines do, below
+/// half the rate.
+pub const NOISE_BAND: [f64; 2] = [0.40, 0.48];
+
+/// Draws of the declared noise that it is held against: their mean is known to a tenth of one draw's scatter.
+pub const NOISE_DRAWS: u64 = 8;
+
+/// Ratio of a sensor's noise to what is declared from which it matters: half again in variance.
+pub const OTHER_NOISE: f64 = 1.25;
+
+/// Standard deviations by which it must differ: one of some thousand sensors does so by chance.
+pub const SURE_NOISE: f64 = 4.0;

@@ -28,7 +28,7 @@ pub fn fitted(
     for length in LENGTHS.map(Some).into_iter().chain([None]) {
         let part: Vec<Segment> =
             on.iter().map(|segment| shorter(problem, segment, length)).collect();
-        let baseline = Baseline::of(problem, &effects, &part)?;
+        let baseline = Baseline::of(problem, &effects, &[], &part)?;
         let look = |values: &[f64]| {
             let there = with_values(&effects, values);
             baseline.simulated_white(problem, &there, &part).ok().flatten()

@@ -239,6 +239,8 @@ pub fn into_folder(
         effects: outcome.effects.iter().map(effect).collect(),
         errors,
         ranking: ranking(&outcome),
+        noises: Vec::new(),
+        limits: Vec::new(),
         residuals: Vec::new(),
         rattle: RattleReport {
             chaotic: false,

@@ -1,0 +1,110 @@
+//! Noise of sensors that is not what is declared.
+//!
+//! Near half the rate of sampling machines hardly move, and what a sensor shows there is noise: the power
+//! in a band, less that of a simulated recording without noise, beside what the declared noise has there
+//! (Welch, *IEEE Trans. Audio Electroacoust.* 15 (1967) 70–73, averages a spectrum over a band alike).
+
+use super::problem::Problem;
+use super::recording::Recording;
+use super::simulate::{deviation, with_noise};
+use super::thresholds::{NOISE_BAND, NOISE_DRAWS, OTHER_NOISE, SURE_NOISE};
+use crate::calibrate::spectrum::{Signal, fast_length, transform};
+use crate::mechanism::{Reads, Sensor};
+
+/// A sensor whose noise is not what is declared.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct OtherNoise {
+    /// Its column.
+    pub column: String,
+    /// Standard deviation as declared, rounding among it, in its unit.
+    pub declared: f64,
+    /// The same as measured.
+    pub measured: f64,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+/// Sensors whose noise differs from what is declared by more than chance and by more than it matters; `simulated`
+/// are noiseless recordings of the declared machine, run by run. The problem goes on with what was measured.
+pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<OtherNoise> {
+    let mut found = Vec::new();
+    for i in 0..problem.declared.sensors.len() {
+        let sensor = problem.declared.sensors[i].clone();
+        let noisy = sensor.std > 0.0 || sensor.resolution > 0.0;
+        if matches!(sensor.reads, Reads::Command(_)) || !noisy {
+            continue;
+        }
+        let (mut excess, mut expected, mut count) = (0.0, 0.0, 0usize);
+        for (run, simulated) in problem.runs.iter().zip(simulated) {
+            let (Some(clean), Some(log)) = (simulated.first(), run.recording.get(i)) else {
+                continue;
+            };
+            let Some(values) = clean.get(i) else { continue };
+            let (own, lines) = power(values);
+            let draws = (0..NOISE_DRAWS).filter_map(|seed| {
+                let noisy = with_noise(clean, &problem.declared.sensors, 3000 + seed);
+                noisy.get(i).map(|noisy| power(noisy).0 - own)
+            });
+            excess += power(log).0 - own;
+            expected += draws.sum::<f64>() / NOISE_DRAWS as f64;
+            count += lines;
+        }
+        let ratio = excess / expected;
+        // The power of noise in n lines of a spectrum scatters by √(2/n) of itself.
+        let chance = SURE_NOISE * (2.0 / count.max(1) as f64).sqrt();
+        let other = !(1.0 / OTHER_NOISE.powi(2)..=OTHER_NOISE.powi(2)).contains(&ratio);
+        if !ratio.is_finite() || ratio <= 0.0 || !other || (ratio - 1.0).abs() < chance {
+            continue;
+        }
+        let Some(std) = white(&sensor, ratio) else { continue };
+        let declared = deviation(&sensor, &[]);
+        let unit = sensor.unit(&problem.declared);
+        problem.declared.sensors[i].std = std;
+        let measured = deviation(&problem.declared.sensors[i], &[]);
+        found.push(OtherNoise { column: sensor.column, declared, measured, unit });
+    }
+    found
+}
+
+/// White noise beside its rounding with which a sensor's noise has `ratio` times its power; none where rounding
+/// alone has more.
+fn white(sensor: &Sensor, ratio: f64) -> Option<f64> {
+    let rounding = sensor.resolution.powi(2) / 12.0;
+    let square = ratio * (sensor.std.powi(2) + rounding) - rounding;
+    (square > 0.0).then(|| square.sqrt())
+}
+
+/// Power of a signal in [`NOISE_BAND`], and the number of lines of its spectrum there.
+fn power(values: &[f64]) -> (f64, usize) {
+    // A window that ends at zero keeps what is slow out of the band: Hann's.
+    let count = fast_length(values.len());
+    let window = |k: usize| (std::f64::consts::PI * k as f64 / count as f64).sin().powi(2);
+    let values = values.iter().take(count).enumerate().map(|(k, v)| v * window(k)).collect();
+    // Frequencies as shares of the rate of sampling: k/(2 N).
+    let [low, band] = NOISE_BAND;
+    let spectrum = transform(&[Signal { values, band }], 1.0).concat();
+    let lines = &spectrum[((low * 2.0 * count as f64) as usize).min(spectrum.len())..];
+    (lines.iter().map(|line| line * line).sum(), lines.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of white noise as much lies in the band as the band is wide.
+    #[test]
+    fn power_of_white_noise_is_that_of_its_share_of_the_band() {
+        use rand_chacha::ChaCha8Rng;
+        use rand_chacha::rand_core::SeedableRng;
+        use rand_distr::{Distribution, StandardNormal};
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let count = 20_000;
+        let slow = |k: usize| (k as f64 * 0.01).sin() * 100.0;
+        let noise: Vec<f64> = (0..count).map(|_| StandardNormal.sample(&mut random)).collect();
+        let with: Vec<f64> = noise.iter().enumerate().map(|(k, n)| n + slow(k)).collect();
+        let (power, lines) = super::power(&with);
+        // The mean of w² is 3/8.
+        let expected = 0.375 * lines as f64;
+        assert!((power / expected - 1.0).abs() < 0.1, "{}", power / expected);
+    }
+}
