@@ -139,20 +139,28 @@ impl Problem {
         deviations: &[f64],
         replicas: usize,
     ) -> Result<Vec<Vec<Recording>>, Stopped> {
-        let about: Vec<Vec<Setting>> =
+        let release = |effects: &[Setting], run: &Run| -> Result<Mechanism, Stopped> {
+            Ok(released(&self.rig, effects, &run.recording, self.control)?)
+        };
+        let exact: Vec<Mechanism> =
+            self.runs.par_iter().map(|run| release(effects, run)).collect::<Result<_, _>>()?;
+        let about: Vec<Option<Vec<Setting>>> =
             (0..replicas as u64).map(|replica| drawn(effects, deviations, replica)).collect();
-        let jobs: Vec<(&Run, u64)> = self
-            .runs
-            .iter()
+        let jobs: Vec<(usize, u64)> = (0..self.runs.len())
             .flat_map(|run| (0..replicas as u64).map(move |replica| (run, replica)))
             .collect();
         self.simulations.fetch_add(jobs.len(), Ordering::Relaxed);
         let recorded = jobs
             .into_par_iter()
-            .map(|(run, replica)| {
-                let (like, effects) = (&run.recording, &about[replica as usize]);
-                let machine = released(&self.rig, effects, like, self.control)?;
-                Ok(simulate::record(&machine, self.control, like, replica)?)
+            .map(|(index, replica)| {
+                let run = &self.runs[index];
+                let record = |machine: &Mechanism| {
+                    simulate::record(machine, self.control, &run.recording, replica)
+                };
+                Ok(match &about[replica as usize] {
+                    Some(effects) => record(&release(effects, run)?)?,
+                    None => record(&exact[index])?,
+                })
             })
             .collect::<Result<Vec<Recording>, Stopped>>()?;
         Ok(recorded.chunks(replicas).map(<[Recording]>::to_vec).collect())
@@ -249,11 +257,11 @@ impl Problem {
     }
 }
 
-/// Effects with values drawn about their own, within bounds; those of the first replica are exact.
-fn drawn(effects: &[Setting], deviations: &[f64], replica: u64) -> Vec<Setting> {
+/// Effects with values drawn about their own, within bounds; none where they are exact, as of the first replica.
+fn drawn(effects: &[Setting], deviations: &[f64], replica: u64) -> Option<Vec<Setting>> {
     let own = values(effects);
-    if replica == 0 || deviations.len() != own.len() {
-        return effects.to_vec();
+    if replica == 0 || own.is_empty() || deviations.len() != own.len() {
+        return None;
     }
     let mut random = ChaCha8Rng::seed_from_u64(replica);
     let drawn = own.iter().zip(deviations).zip(free(effects)).map(|((value, deviation), free)| {
@@ -261,5 +269,5 @@ fn drawn(effects: &[Setting], deviations: &[f64], replica: u64) -> Vec<Setting> 
         let away = if deviation.is_finite() { normal * deviation } else { 0.0 };
         (value + away).clamp(free.bounds[0], free.bounds[1])
     });
-    with_values(effects, &drawn.collect::<Vec<f64>>())
+    Some(with_values(effects, &drawn.collect::<Vec<f64>>()))
 }

@@ -13,10 +13,9 @@ use rand_distr::{Distribution, StandardNormal, StandardUniform};
 /// Longest time between two samples of a simulation in s: a fine grid for the sensors' low-passes.
 const FINE: f64 = 2.5e-4;
 
-/// Speed in m/s by which starts of replicas differ: what one step of a simulation may be wrong by, so that a hair
-/// less would be lost among its errors; far below what any sensor sees. Where joints rattle it grows tenfold every
-/// 20 ms or so.
-const SPREAD: f64 = 1e-5;
+/// Speed in m/s by which starts of replicas differ: far below what any sensor sees, and after some e-foldings of a
+/// rattling machine its rattle is another.
+const SPREAD: f64 = 1e-6;
 
 /// Each replica's tolerance as a share of the one before: other steps, other errors. Joints that lift off now and
 /// then have forgotten how they started, and what happens then hangs on the last hair before.
