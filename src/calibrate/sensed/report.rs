@@ -1,10 +1,12 @@
 //! `report.json` and the folder of results.
 
+use super::hypotheses::Tried;
+use super::left::Left;
 use super::outcome::{Outcome, calibrate};
 use super::page;
 use super::problem::{Problem, Stopped};
 use super::recording::Recording;
-use super::search::{Left, Tried, name};
+use super::search::name;
 use super::start::machine;
 use super::windows::bench::{Bench, suits};
 use super::windows::report::{Windows, into_folder as by_windows};
