@@ -17,6 +17,8 @@ pub struct Left {
     pub mean_square: f64,
     /// Its largest coefficient in units of noise.
     pub largest: f64,
+    /// Whether that is noise, on each run.
+    pub noise: bool,
 }
 
 impl Search<'_> {
@@ -27,6 +29,7 @@ impl Search<'_> {
         let worse = |(on, hold): (Left, Left)| Left {
             mean_square: on.mean_square.max(hold.mean_square),
             largest: on.largest.max(hold.largest),
+            noise: on.noise && hold.noise,
             ..hold
         };
         on.into_iter().zip(hold).map(worse).collect()
@@ -36,6 +39,7 @@ impl Search<'_> {
         let Some(fit) = self.target(&model.baseline, held).look(&model.fit.effects) else {
             return Vec::new();
         };
+        let limit = NOISE[usize::from(model.baseline.rattles && !held)];
         let segments = if held { &self.split.hold } else { &self.split.on };
         let places = model.baseline.places(self.problem, segments);
         let of = |(k, name): (usize, &Name)| {
@@ -47,7 +51,8 @@ impl Search<'_> {
                 largest = largest.max(value.abs());
             }
             let mean_square = sum / f64::max(count, 1.0);
-            Left { residual: name.kind, of: name.of.clone(), mean_square, largest }
+            let noise = mean_square < limit && largest < LARGEST;
+            Left { residual: name.kind, of: name.of.clone(), mean_square, largest, noise }
         };
         self.names.iter().enumerate().map(of).collect()
     }
@@ -55,6 +60,5 @@ impl Search<'_> {
 
 /// Whether residuals are noise. What cannot be looked at is not.
 pub fn is_noise(left: &[Left]) -> bool {
-    let within = |left: &Left| left.mean_square < NOISE && left.largest < LARGEST;
-    !left.is_empty() && left.iter().all(within)
+    !left.is_empty() && left.iter().all(|left| left.noise)
 }

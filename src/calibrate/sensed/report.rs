@@ -45,7 +45,7 @@ pub struct Report {
     pub errors: Vec<ChannelError>,
     /// Candidates, round by round, the best first in each.
     pub ranking: Vec<Ranked>,
-    /// Residuals on data not used for fits, under the declared and under the calibrated model.
+    /// Residuals, on the run where most is left, under the declared and under the calibrated model.
     pub residuals: Vec<ResidualReport>,
     /// Whether the declared machine rattles by more than its sensors see, and what follows.
     pub rattle: RattleReport,
@@ -211,7 +211,7 @@ pub fn into_folder(
         effects: effects(&outcome),
         errors: outcome.errors.clone(),
         ranking: ranking(&outcome),
-        residuals: residuals(&outcome.before, &outcome.after),
+        residuals: residuals(&outcome.before, &outcome.after, problem.replicas > 1),
         rattle: RattleReport {
             chaotic: problem.replicas > 1,
             difference: outcome.rattle,
@@ -327,12 +327,12 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     ranked
 }
 
-fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
+fn residuals(before: &[Left], after: &[Left], rattles: bool) -> Vec<ResidualReport> {
     let pair = |(before, after): (&Left, &Left)| ResidualReport {
         residual: format!("{} of {}", before.residual.word(), before.of),
         mean_square_before: before.mean_square,
         mean_square_after: after.mean_square,
-        noise_up_to: super::thresholds::NOISE,
+        noise_up_to: super::thresholds::NOISE[usize::from(rattles)],
         largest_before: before.largest,
         largest_after: after.largest,
     };

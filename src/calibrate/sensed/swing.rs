@@ -168,10 +168,6 @@ pub fn ways(still: &Mechanism, recording: &Recording, control: StepControl) -> R
     let largest = order.first().map_or(0.0, |&first| eigen.eigenvalues[first]);
     // An eigenvalue is a square.
     let matters = |k: &usize| eigen.eigenvalues[*k] > (WAY * WAY * largest).max(1.0);
-    if std::env::var("H2").is_ok() {
-        let s: Vec<f64> = order.iter().map(|&k| eigen.eigenvalues[k].max(0.0).sqrt()).collect();
-        eprintln!("H2 ways {s:.1?}");
-    }
     let kept: Vec<usize> = order.into_iter().filter(matters).take(MOST_WAYS).collect();
     Ok(eigen.eigenvectors.select_columns(&kept))
 }
@@ -198,16 +194,15 @@ pub fn as_seen(
 ) -> Result<Option<Kicks>, Halt> {
     let [.., whole] = SWING_SEEN;
     let judge = Judge::new(recording, control, whole);
-    let let_go = judge.look(released)?;
-    if ways.ncols() == 0 || let_go.norm_squared() <= SHOWN * let_go.len() as f64 {
+    let left = judge.look(released)?;
+    let let_go = left.norm_squared();
+    if ways.ncols() == 0 || let_go <= SHOWN * left.len() as f64 {
         return Ok(None);
     }
     let mut kicks = DVector::zeros(ways.ncols());
     for seconds in SWING_SEEN {
         let judge = Judge::new(recording, control, seconds);
-        let [let_go, quiet] =
-            [released, still].map(|machine| Ok(judge.look(machine)?.norm_squared()));
-        let (let_go, quiet): (f64, f64) = (let_go?, quiet?);
+        let quiet = judge.look(still)?.norm_squared();
         let mut left = judge.look(&kicked(still, ways, &kicks))?;
         let response = judge.response(still, ways, &kicks, &left)?;
         let last = seconds == whole;
@@ -227,14 +222,9 @@ pub fn as_seen(
             }
         }
         let square = left.norm_squared();
-        if std::env::var("H2").is_ok() {
-            eprintln!(
-                "H2 {} {seconds} n {} let go {let_go:.0} quiet {quiet:.0} kicked {square:.0}",
-                recording.name,
-                left.len()
-            );
-        }
-        if square > TRACKED * (quiet + let_go) || last && square > SLACK * let_go {
+        let noise = left.len() as f64;
+        let tracked = square - noise < TRACKED * (quiet - noise);
+        if !tracked || last && square > SLACK * let_go {
             return Ok(None);
         }
     }
