@@ -131,3 +131,19 @@ fn a_worn_joint_is_told_from_what_resembles_it_through_its_description() {
     assert!((value("clearance_m") / 4.2e-4 - 1.0).abs() < 0.01, "{}", value("clearance_m"));
     assert!(worst(&report) < 1.3, "{}", report["errors"]);
 }
+
+#[test]
+#[ignore = "some minutes: two effects, and starts that no release gives"]
+fn two_effects_are_found_beside_a_start_that_no_release_gives() {
+    let report = described(5);
+    assert_eq!(report["verdict"], "explained", "{}", report["residuals"]);
+    let effects = report["effects"].as_array().unwrap();
+    let of = |kind: &str| effects.iter().find(|effect| effect["kind"] == kind).unwrap();
+    let value = |kind: &str, name: &str| of(kind)["params"][name]["value"].as_f64().unwrap();
+    assert_eq!((effects.len(), &of("anchor-offset")["joint"]), (2, &"A2".into()));
+    // What the method for three legs says.
+    assert!((value("anchor-offset", "dx_m") - 4.0e-4).abs() < 1e-5);
+    assert!((value("anchor-offset", "dy_m") + 2.5e-4).abs() < 1e-5);
+    assert!((value("gravity", "gx_m_s2") - 0.45).abs() < 0.01);
+    assert!(worst(&report) < 1.3, "{}", report["errors"]);
+}

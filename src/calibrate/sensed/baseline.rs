@@ -2,7 +2,7 @@
 //! which is noise.
 
 use super::estimate::View;
-use super::problem::{Problem, Segment, Stopped};
+use super::problem::{Problem, Segment, Start, Stopped};
 use super::simulate::with_noise;
 use super::start::machine;
 use super::thresholds::{DRAWS, MISSED};
@@ -31,6 +31,8 @@ struct Part {
 #[derive(Clone, Debug)]
 pub struct Baseline {
     parts: Arc<Vec<Part>>,
+    /// Where simulations began, run by run.
+    starts: Arc<Vec<Start>>,
     /// Whether replicas differ by more than sensors see.
     pub rattles: bool,
 }
@@ -49,8 +51,9 @@ impl Baseline {
         deviations: &[f64],
         segments: &[Segment],
     ) -> Result<Self, Stopped> {
-        let simulated = problem.simulated(effects, deviations, problem.replicas)?;
-        let still = problem.still(effects)?;
+        let starts = problem.starts(effects)?;
+        let simulated = problem.simulated_about(effects, deviations, &starts, problem.replicas)?;
+        let still = problem.still(&starts)?;
         let sensors = &problem.declared.sensors;
         let singular = || {
             let message = "makes a machine that cannot move as it was measured".to_owned();
@@ -105,7 +108,8 @@ impl Baseline {
                 false => part(near, 0.0),
             });
         }
-        Ok(Self { parts: Arc::new(parts), rattles: problem.replicas > 1 })
+        let rattles = problem.replicas > 1;
+        Ok(Self { parts: Arc::new(parts), starts: Arc::new(starts), rattles })
     }
 
     /// Residuals of the data under a model in units of noise, of all these segments in a row; none where the
@@ -145,7 +149,12 @@ impl Baseline {
         for part in self.parts.iter().filter(|part| segments.contains(&part.segment)) {
             let run = &problem.runs[part.segment.run];
             let machine = machine(&problem.rig, effects, &run.recording)?;
-            let simulated = problem.one(effects, part.segment.run, part.segment.rows.end)?;
+            let simulated = problem.one(
+                effects,
+                part.segment.run,
+                part.segment.rows.end,
+                &self.starts[part.segment.run],
+            )?;
             let pair = [&run.view, &View::new(&simulated, sensors)]
                 .map(|view| problem.coefficients(view, &machine, &part.segment));
             let [Some(seen), Some(own)] = pair else { return Ok(None) };

@@ -1,9 +1,13 @@
 //! What takes energy out of a rattle, and may show in nothing else: residuals are noise without it, only less
 //! noise than joints make that rattle on.
 
+use super::hypotheses::{Round, Tried};
+use super::left::is_noise;
 use super::problem::Stopped;
-use super::search::{Model, Round, Search, Tried, away, is_noise, name};
+use super::search::{Search, name};
+use super::settle::Model;
 use super::thresholds::CALMER;
+use super::unseen::away;
 use crate::effects::{CALMING, Setting, Target};
 
 impl Search<'_> {

@@ -6,7 +6,9 @@
 //! two kinds of error that a limit is a balance of.
 
 use super::fit::Target as Fitted;
-use super::search::{Model, Search, is_noise};
+use super::left::is_noise;
+use super::search::Search;
+use super::settle::Model;
 use super::thresholds::{GAIN, GAIN_PER_VALUE, LARGEST, NOISE, SURE};
 use crate::effects::{Kind, Range, Setting, Target};
 use nalgebra::{DMatrix, DVector};
@@ -135,7 +137,7 @@ fn size(column: &DVector<f64>, own: Option<&DMatrix<f64>>, parts: &[Part], rattl
         let count = part.places.len() as f64;
         let squares: f64 = part.places.iter().map(|&i| across[i].powi(2)).sum();
         let largest = part.places.iter().map(|&i| across[i].abs()).fold(0.0, f64::max);
-        let short = (NOISE * count - part.squares).max(0.0) + SURE * (2.0 * count).sqrt();
+        let short = (NOISE[0] * count - part.squares).max(0.0) + SURE * (2.0 * count).sqrt();
         ((short / squares).sqrt()).min((LARGEST + SURE) / largest)
     });
     named.max(seen.fold(f64::INFINITY, f64::min))

@@ -1,9 +1,11 @@
 //! The loop closed on any mechanism that a file describes, with the sensors that it has.
 //!
-//! [`recording`] reads what was measured; [`start`] puts the machine where a recording begins;
-//! [`simulate`] shows what its sensors would have recorded; [`basis`] says how the machine moved, from what [`estimate`] prepares;
+//! [`recording`] reads what was measured; [`start`] puts the machine where a recording begins,
+//! [`swing`] makes it swing in its play as it did there; [`simulate`] shows what its sensors would have recorded; [`basis`] says how the machine moved, from what [`estimate`] prepares;
 //! [`residual`] what that motion says against the model: laws of drives, closure, dynamics; [`baseline`] what
-//! a right model leaves of them; [`fit`] and [`search`] find which effects are missing, [`calm`] what shows in a
+//! a right model leaves of them; [`fit`] and [`settle`] give a model its values, [`left`] says what it leaves;
+//! [`search`] finds which effects are missing, by what `screen` finds promising, [`hypotheses`] simulates and `unseen`
+//! tries where residuals are blind; [`calm`] what shows in a
 //! rattle's size alone, [`simpler`] which of their values are needed; [`outcome`] is the
 //! whole way, [`report`] what is written of it.
 
@@ -14,6 +16,8 @@ pub mod candidates;
 pub mod errors;
 pub mod estimate;
 pub mod fit;
+pub mod hypotheses;
+pub mod left;
 pub mod limits;
 pub mod noise;
 pub mod outcome;
@@ -22,13 +26,17 @@ pub mod problem;
 pub mod recording;
 pub mod report;
 pub mod residual;
+mod screen;
 pub mod search;
+pub mod settle;
 mod simpler;
 pub mod simulate;
 pub mod start;
+pub mod swing;
 pub mod thresholds;
 pub mod trajectory;
 pub mod unnamed;
+mod unseen;
 pub mod windows;
 
 pub use report::{into_folder, prepare};

@@ -3,15 +3,18 @@
 use super::candidates::candidates;
 use super::errors::of_run;
 use super::fit::Fit;
+use super::hypotheses::Round;
+use super::left::{Left, is_noise};
 use super::limits::{Limit, limits};
 use super::noise::{self, OtherNoise};
 use super::problem::{Problem, Segment, Stopped};
 use super::recording::Recording;
 use super::residual::Name;
-use super::search::{Found, Left, Model, Round, Search, is_noise};
+use super::search::{Found, Search};
+use super::settle::Model;
 use super::thresholds::{MET, PREDICTING};
 use super::unnamed::{Described, describe};
-use crate::calibrate::errors::{ChannelError, judged};
+use crate::calibrate::errors::ChannelError;
 use crate::calibrate::outcome::{Verdict, inverse_normal, pull};
 use crate::calibrate::report::Fitted;
 use crate::effects::{Setting, UNNAMED};
@@ -62,7 +65,7 @@ pub fn calibrate(
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Outcome, Stopped> {
     tell("finding out whether joints rattle");
-    let logs = problem.simulated(&[], &[], 2)?;
+    let logs = problem.simulated(&problem.let_go(&[])?, 2)?;
     let noises = noise::correct(problem, &logs);
     let mut rattle = problem.rattle(&logs);
     let split = problem.split();
@@ -103,17 +106,19 @@ pub fn calibrate(
     let after = described.as_ref().map_or(after, |(_, model)| search.left(model));
     let replicas = if problem.replicas > 1 { PREDICTING } else { 1 };
     let deviations = if noise { best.fit.deviations() } else { Vec::new() };
-    let calibrated = problem.simulated(&effects, &deviations, replicas)?;
+    let starts = problem.starts(&effects)?;
+    let calibrated = problem.simulated_about(&effects, &deviations, &starts, replicas)?;
     let plain = match effects.is_empty() {
         true => calibrated.clone(),
-        false => problem.simulated(&[], &[], problem.replicas)?,
+        false => problem.simulated(&problem.starts(&[])?, problem.replicas)?,
     };
     let mut errors = Vec::new();
     for index in 0..problem.runs.len() {
         let role = if index == 0 { "calibration" } else { "validation" };
         errors.extend(of_run(problem, index, role, &plain[index], &calibrated[index]));
     }
-    let met = judged(&errors).iter().all(|error| error.after <= MET * error.floor);
+    // A model that misses the run that it was fitted to lacks something.
+    let met = errors.iter().all(|error| error.after <= MET * error.floor);
     let verdict = match (noise && met, best.fit.effects.is_empty()) {
         (true, true) => Verdict::NothingMissing,
         (true, false) => Verdict::Explained,

@@ -103,7 +103,7 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
     };
     let residuals = Table {
         id: "residuals",
-        title: "Residuals in units of noise, on data not used for fits".into(),
+        title: "Residuals in units of noise, on the run where most is left".into(),
         header: head(&["residual", "mean square before", "after", "largest before", "after"]),
         rows: report
             .residuals

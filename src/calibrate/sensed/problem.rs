@@ -5,6 +5,7 @@ use super::estimate::View;
 use super::recording::Recording;
 use super::residual::{Residuals, residuals};
 use super::start::{StartError, machine, released, still};
+use super::swing::{Kicks, Ways, as_seen, kicked, ways};
 use super::{simulate, thresholds};
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::spectrum::transform;
@@ -17,6 +18,7 @@ use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A recorded run, ready to be explained.
@@ -26,6 +28,19 @@ pub struct Run {
     pub recording: Recording,
     /// The same, prepared.
     pub view: View,
+    /// How the machine as declared may swing when it begins, once that was asked for.
+    ways: OnceLock<Ways>,
+}
+
+/// Where a run of a model begins.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// The machine.
+    pub machine: Mechanism,
+    /// The same without a swing; none of one that is held at the first row.
+    still: Option<Mechanism>,
+    /// What makes it swing as recorded, where a release does not.
+    pub kicks: Option<Kicks>,
 }
 
 /// A stretch of a run.
@@ -102,7 +117,10 @@ impl Problem {
             rig.problem("sensor", message, help)
         })?;
         let sensors = declared.sensors.len();
-        let run = |recording: Recording| Run { view: View::new(&recording, sensors), recording };
+        let run = |recording: Recording| {
+            let view = View::new(&recording, sensors);
+            Run { recording, view, ways: OnceLock::new() }
+        };
         let runs = recordings.into_iter().map(run).collect();
         let simulations = AtomicUsize::new(0);
         Ok(Self { rig, declared, runs, basis, control, replicas: 1, simulations })
@@ -127,46 +145,85 @@ impl Problem {
         self.simulations.load(Ordering::Relaxed)
     }
 
-    /// Noiseless recordings of a model with these effects, so many replicas of each run: the first with exactly
-    /// these values, the others with values as far away as `deviations` say that nobody knows them (none: all
-    /// exactly).
+    /// Where the runs of a model with these effects begin: as it was let go, or, where the recordings show
+    /// another swing, with that one. What rattles has forgotten it.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
+    pub fn starts(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
+        let start = |run: &Run| -> Result<Start, Stopped> {
+            let machine = released(&self.rig, effects, &run.recording, self.control)?;
+            let still = still(&machine, self.control)?;
+            let let_go = Start { machine, still, kicks: None };
+            if self.replicas > 1 {
+                return Ok(let_go);
+            }
+            let Some(still) = &let_go.still else { return Ok(let_go) };
+            let ways = self.ways(run, still)?;
+            let seen = as_seen(&let_go.machine, still, ways, &run.recording, self.control)?;
+            let Some(kicks) = seen else { return Ok(let_go) };
+            Ok(Start { machine: kicked(still, ways, &kicks), kicks: Some(kicks), ..let_go })
+        };
+        self.runs.par_iter().map(start).collect()
+    }
+
+    /// How the machine may swing when a run begins, as a model at rest there shows it: the first that is asked for
+    /// tells, which the declared one is.
+    fn ways<'a>(&self, run: &'a Run, still: &Mechanism) -> Result<&'a Ways, Stopped> {
+        if let Some(known) = run.ways.get() {
+            return Ok(known);
+        }
+        let found = ways(still, &run.recording, self.control)?;
+        Ok(run.ways.get_or_init(|| found))
+    }
+
+    /// Noiseless recordings of a model that begins there, so many replicas of each run.
+    ///
+    /// # Errors
+    /// A run that broke down.
     pub fn simulated(
+        &self,
+        starts: &[Start],
+        replicas: usize,
+    ) -> Result<Vec<Vec<Recording>>, Stopped> {
+        self.simulated_about(&[], &[], starts, replicas)
+    }
+
+    /// The same of a model with these effects: the first replica with exactly these values, the others with values
+    /// as far away as `deviations` say that nobody knows them (none: all exactly), as they are let go.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn simulated_about(
         &self,
         effects: &[Setting],
         deviations: &[f64],
+        starts: &[Start],
         replicas: usize,
     ) -> Result<Vec<Vec<Recording>>, Stopped> {
-        let release = |effects: &[Setting], run: &Run| -> Result<Mechanism, Stopped> {
-            Ok(released(&self.rig, effects, &run.recording, self.control)?)
-        };
-        let exact: Vec<Mechanism> =
-            self.runs.par_iter().map(|run| release(effects, run)).collect::<Result<_, _>>()?;
         let about: Vec<Option<Vec<Setting>>> =
             (0..replicas as u64).map(|replica| drawn(effects, deviations, replica)).collect();
-        let jobs: Vec<(usize, u64)> = (0..self.runs.len())
+        let jobs: Vec<(usize, u64)> = (0..starts.len())
             .flat_map(|run| (0..replicas as u64).map(move |replica| (run, replica)))
             .collect();
         self.simulations.fetch_add(jobs.len(), Ordering::Relaxed);
         let recorded = jobs
             .into_par_iter()
-            .map(|(index, replica)| {
-                let run = &self.runs[index];
-                let record = |machine: &Mechanism| {
-                    simulate::record(machine, self.control, &run.recording, replica)
-                };
+            .map(|(run, replica)| {
+                let like = &self.runs[run].recording;
+                let record =
+                    |machine: &Mechanism| simulate::record(machine, self.control, like, replica);
                 Ok(match &about[replica as usize] {
-                    Some(effects) => record(&release(effects, run)?)?,
-                    None => record(&exact[index])?,
+                    Some(effects) => record(&released(&self.rig, effects, like, self.control)?)?,
+                    None => record(&starts[run].machine)?,
                 })
             })
             .collect::<Result<Vec<Recording>, Stopped>>()?;
         Ok(recorded.chunks(replicas).map(<[Recording]>::to_vec).collect())
     }
 
-    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it.
+    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it,
+    /// with the swing of a start of nearly the same model.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -175,28 +232,34 @@ impl Problem {
         effects: &[Setting],
         index: usize,
         until: usize,
+        like: &Start,
     ) -> Result<Recording, Stopped> {
-        let recording = &self.runs[index].recording;
-        let machine = released(&self.rig, effects, recording, self.control)?;
+        let run = &self.runs[index];
+        let recording = &run.recording;
+        let mut machine = released(&self.rig, effects, recording, self.control)?;
+        if let (Some(kicks), Some(ways)) = (&like.kicks, run.ways.get())
+            && let Some(still) = still(&machine, self.control)?
+        {
+            machine = kicked(&still, ways, kicks);
+        }
         // Filters see a little beyond the last row.
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
         self.simulations.fetch_add(1, Ordering::Relaxed);
         Ok(simulate::record(&machine, self.control, &recording.first(seconds), 0)?)
     }
 
-    /// Noiseless recordings of a model with these effects that was let go without a swing; none of runs whose
-    /// machine is not held before they begin.
+    /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held
+    /// before they begin.
     ///
     /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn still(&self, effects: &[Setting]) -> Result<Vec<Option<Recording>>, Stopped> {
-        let still = |run: &Run| {
-            let machine = released(&self.rig, effects, &run.recording, self.control)?;
-            let Some(machine) = still(&machine, self.control)? else { return Ok(None) };
+    /// A run that broke down.
+    pub fn still(&self, starts: &[Start]) -> Result<Vec<Option<Recording>>, Stopped> {
+        let still = |(run, start): (&Run, &Start)| {
+            let Some(machine) = &start.still else { return Ok(None) };
             self.simulations.fetch_add(1, Ordering::Relaxed);
-            Ok(Some(simulate::record(&machine, self.control, &run.recording, 0)?))
+            Ok(Some(simulate::record(machine, self.control, &run.recording, 0)?))
         };
-        self.runs.par_iter().map(still).collect()
+        self.runs.par_iter().zip(starts).map(still).collect()
     }
 
     /// Finds out whether replicas of the machine with these effects differ by more than sensors see, and by how
@@ -205,8 +268,20 @@ impl Problem {
     /// # Errors
     /// A run that broke down.
     pub fn look_for_rattle(&mut self, effects: &[Setting]) -> Result<f64, Stopped> {
-        let logs = self.simulated(effects, &[], 2)?;
+        let logs = self.simulated(&self.let_go(effects)?, 2)?;
         Ok(self.rattle(&logs))
+    }
+
+    /// Where the runs of a model with these effects begin as it is let go, whatever swing was recorded.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn let_go(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
+        let start = |run: &Run| {
+            let machine = released(&self.rig, effects, &run.recording, self.control)?;
+            Ok(Start { machine, still: None, kicks: None })
+        };
+        self.runs.par_iter().map(start).collect()
     }
 
     /// The same by simulations of two replicas or more of each run.

@@ -1,12 +1,14 @@
 //! `report.json` and the folder of results.
 
+use super::hypotheses::Tried;
+use super::left::Left;
 use super::limits::Limit;
 use super::noise::OtherNoise;
 use super::outcome::{Outcome, calibrate};
 use super::page;
 use super::problem::{Problem, Stopped};
 use super::recording::Recording;
-use super::search::{Left, Tried, name};
+use super::search::name;
 use super::start::machine;
 use super::windows::bench::{Bench, suits};
 use super::windows::report::{Windows, into_folder as by_windows};
@@ -50,7 +52,7 @@ pub struct Report {
     /// How large other effects would have to be for these recordings to show them; empty where what is left is
     /// not noise.
     pub limits: Vec<LimitReport>,
-    /// Residuals on data not used for fits, under the declared and under the calibrated model.
+    /// Residuals, on the run where most is left, under the declared and under the calibrated model.
     pub residuals: Vec<ResidualReport>,
     /// Whether the declared machine rattles by more than its sensors see, and what follows.
     pub rattle: RattleReport,
@@ -218,7 +220,7 @@ pub fn into_folder(
         ranking: ranking(&outcome),
         noises: outcome.noises.clone(),
         limits: outcome.limits.iter().map(limit).collect(),
-        residuals: residuals(&outcome.before, &outcome.after),
+        residuals: residuals(&outcome.before, &outcome.after, problem.replicas > 1),
         rattle: RattleReport {
             chaotic: problem.replicas > 1,
             difference: outcome.rattle,
@@ -368,12 +370,12 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     ranked
 }
 
-fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
+fn residuals(before: &[Left], after: &[Left], rattles: bool) -> Vec<ResidualReport> {
     let pair = |(before, after): (&Left, &Left)| ResidualReport {
         residual: format!("{} of {}", before.residual.word(), before.of),
         mean_square_before: before.mean_square,
         mean_square_after: after.mean_square,
-        noise_up_to: super::thresholds::NOISE,
+        noise_up_to: super::thresholds::NOISE[usize::from(rattles)],
         largest_before: before.largest,
         largest_after: after.largest,
     };

@@ -2,7 +2,8 @@
 
 use super::fit::Fit;
 use super::problem::Stopped;
-use super::search::{Model, Search, name};
+use super::search::{Search, name};
+use super::settle::Model;
 use super::thresholds::{GAIN_PER_VALUE, TWINS};
 use crate::effects::{CONTAINS, Kind, Setting};
 

@@ -2,7 +2,8 @@
 
 use super::estimate::position_sensor;
 use super::recording::Recording;
-use super::simulate::record;
+use super::simulate::{deviation, record};
+use super::thresholds::SHOWN;
 use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};
 use crate::measure::spline::CubicSpline;
@@ -206,45 +207,64 @@ pub fn released(
         Ok(held_there(mechanism, held.len(), recording, control)?)
     };
     let mut values: Vec<f64> = held.iter().map(|(_, value)| *value).collect();
-    let part = recording.first(SEEN);
-    let missed = |values: &[f64]| -> Result<(Mechanism, DVector<f64>), StartError> {
+    let missed = |values: &[f64], seconds: f64| -> Result<(Mechanism, DVector<f64>), StartError> {
+        let part = recording.first(seconds);
         let machine = let_go(values)?;
         let simulated = record(&machine, control, &part, 0)?;
         let mut left = Vec::new();
         for (joint, _) in &held {
             let sensor = position_sensor(&machine, *joint);
-            let pair = sensor.and_then(|i| part.get(i).zip(simulated.get(i)));
-            for (measured, simulated) in pair.into_iter().flat_map(|(a, b)| a.iter().zip(b)) {
-                left.push(measured - simulated);
-            }
+            let pair = sensor.and_then(|i| Some((i, part.get(i).zip(simulated.get(i))?)));
+            let Some((i, (measured, simulated))) = pair else { continue };
+            let unit = deviation(&machine.sensors[i], measured);
+            left.extend(measured.iter().zip(simulated).map(|(a, b)| (a - b) / unit));
         }
         Ok((machine, DVector::from_vec(left)))
     };
-    let (mut machine, mut left) = missed(&values)?;
-    for _ in 0..STEPS {
-        let mut columns = Vec::new();
-        for k in 0..values.len() {
-            let mut beside = values.clone();
-            beside[k] += SMALL;
-            columns.push((missed(&beside)?.1 - &left) / SMALL);
+    let mut seconds = SEEN;
+    loop {
+        let (mut machine, mut left) = missed(&values, seconds)?;
+        for _ in 0..STEPS {
+            if mean_square(&left) < SHOWN {
+                break;
+            }
+            let mut columns = Vec::new();
+            for k in 0..values.len() {
+                let mut beside = values.clone();
+                beside[k] += SMALL;
+                columns.push((missed(&beside, seconds)?.1 - &left) / SMALL);
+            }
+            let matrix = DMatrix::from_columns(&columns);
+            let normal = matrix.transpose() * &matrix;
+            let Some(factor) = normal.cholesky() else { break };
+            let step = factor.solve(&-(matrix.transpose() * &left));
+            let better: Vec<f64> = values.iter().zip(step.iter()).map(|(v, s)| v + s).collect();
+            let there = missed(&better, seconds)?;
+            if there.1.norm() >= left.norm() {
+                break;
+            }
+            (values, (machine, left)) = (better, there);
         }
-        let matrix = DMatrix::from_columns(&columns);
-        let normal = matrix.transpose() * &matrix;
-        let Some(factor) = normal.cholesky() else { break };
-        let step = factor.solve(&-(matrix.transpose() * &left));
-        let better: Vec<f64> = values.iter().zip(step.iter()).map(|(v, s)| v + s).collect();
-        let there = missed(&better)?;
-        if there.1.norm() >= left.norm() {
-            break;
+        // What a model does not show at first is no reason to have started elsewhere later on.
+        if seconds >= recording.duration() || mean_square(&left) > KEPT {
+            return Ok(machine);
         }
-        (values, (machine, left)) = (better, there);
+        seconds *= 2.0;
     }
-    Ok(machine)
+}
+
+fn mean_square(left: &DVector<f64>) -> f64 {
+    left.norm_squared() / left.len().max(1) as f64
 }
 
 /// Time in s from the first row over which the start of a free machine is fitted: long enough to average a
-/// sensor's steps, and short beside the time in which a double pendulum forgets its start.
+/// sensor's steps, and short beside the time in which a double pendulum forgets its start. Twice as long, again and
+/// again, follows while the model shows that.
 const SEEN: f64 = 0.5;
+
+/// Mean square in units of noise up to which it does: a model that lacks an effect of the size of noise may be
+/// right about the start.
+const KEPT: f64 = 4.0;
 
 /// Steps of Gauss and Newton of that fit, at most: it starts near.
 const STEPS: usize = 2;
@@ -292,7 +312,7 @@ fn held_there(
 
 /// Swing in Hz that dies fastest while a machine comes to rest, critically damped: light bodies in play of
 /// 0.1 mm swing at 30–60 Hz.
-const SWING: f64 = 40.0;
+pub(super) const SWING: f64 = 40.0;
 
 /// Time in s from rest to the first row.
 const SHORT: f64 = 0.03;

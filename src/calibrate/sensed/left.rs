@@ -1,0 +1,64 @@
+//! What a model leaves unexplained.
+
+use super::residual::{Kind, Name};
+use super::search::Search;
+use super::settle::Model;
+use super::thresholds::{LARGEST, NOISE};
+use serde::Serialize;
+
+/// How much of a residual stands above noise, on the run where most does.
+#[derive(Clone, Debug, Serialize)]
+pub struct Left {
+    /// Which residual.
+    pub residual: Kind,
+    /// Of which joint or column.
+    pub of: String,
+    /// Mean square in units of noise: 1 for noise.
+    pub mean_square: f64,
+    /// Its largest coefficient in units of noise.
+    pub largest: f64,
+    /// Whether that is noise, on each run.
+    pub noise: bool,
+}
+
+impl Search<'_> {
+    /// What is left of a model's residuals, on the run where most is: what a model leaves of the run that it was
+    /// fitted to it does not explain either.
+    pub fn left(&self, model: &Model) -> Vec<Left> {
+        let [on, hold] = [false, true].map(|held| self.left_on(model, held));
+        let worse = |(on, hold): (Left, Left)| Left {
+            mean_square: on.mean_square.max(hold.mean_square),
+            largest: on.largest.max(hold.largest),
+            noise: on.noise && hold.noise,
+            ..hold
+        };
+        on.into_iter().zip(hold).map(worse).collect()
+    }
+
+    fn left_on(&self, model: &Model, held: bool) -> Vec<Left> {
+        let Some(fit) = self.target(&model.baseline, held).look(&model.fit.effects) else {
+            return Vec::new();
+        };
+        let limit = NOISE[usize::from(model.baseline.rattles && !held)];
+        let segments = if held { &self.split.hold } else { &self.split.on };
+        let places = model.baseline.places(self.problem, segments);
+        let of = |(k, name): (usize, &Name)| {
+            let own = fit.white.iter().zip(&places).filter(|(_, (c, _))| *c == k);
+            let (mut sum, mut count, mut largest) = (0.0, 0.0, 0.0f64);
+            for (value, _) in own {
+                sum += value * value;
+                count += 1.0;
+                largest = largest.max(value.abs());
+            }
+            let mean_square = sum / f64::max(count, 1.0);
+            let noise = mean_square < limit && largest < LARGEST;
+            Left { residual: name.kind, of: name.of.clone(), mean_square, largest, noise }
+        };
+        self.names.iter().enumerate().map(of).collect()
+    }
+}
+
+/// Whether residuals are noise. What cannot be looked at is not.
+pub fn is_noise(left: &[Left]) -> bool {
+    !left.is_empty() && left.iter().all(|left| left.noise)
+}

@@ -1,0 +1,132 @@
+//! Which effects promise most beside a model, before any of them is simulated.
+
+use super::candidates::starts;
+use super::fit::Target;
+use super::hypotheses::Tried;
+use super::search::Search;
+use super::settle::Model;
+use super::thresholds::{CLOSER, GAIN_PER_VALUE};
+use crate::effects::Setting;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+impl Search<'_> {
+    /// The candidates beside a model that promise most on data not used for their fit, the best first.
+    pub(super) fn screened(&self, model: &Model) -> Vec<Tried> {
+        let (on, hold) = (self.target(&model.baseline, false), self.target(&model.baseline, true));
+        let Some(held) = hold.look(&model.fit.effects) else { return Vec::new() };
+        let own = model.fit.effects.len();
+        let fresh = |candidate: &&Setting| !model.fit.effects.iter().any(|e| e.is(candidate));
+        let fresh: Vec<&Setting> = self.candidates.iter().filter(fresh).collect();
+        // What the values of the model could make good is no candidate's merit.
+        let jacobians = [&on, &hold].map(|target| {
+            let fit = target.look(&model.fit.effects)?;
+            target.jacobian(&fit)
+        });
+        let linear = |candidate: &&Setting| {
+            starts(&on, &model.fit, candidate)
+                .into_iter()
+                .filter_map(|start| self.linear(&on, &hold, model, &jacobians, start))
+                .map(|(effect, left)| {
+                    let gain = held.chi2 - left;
+                    let share = (gain / held.chi2).clamp(0.0, 1.0);
+                    Tried { effect, gain, share, simulated: false }
+                })
+                .max_by(|a, b| a.gain.total_cmp(&b.gain))
+        };
+        let mut tried: Vec<Tried> =
+            fresh.par_iter().filter_map(linear).filter(|tried| tried.gain.is_finite()).collect();
+        tried.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let closer: Vec<Tried> = tried
+            .iter()
+            .take(CLOSER)
+            .collect::<Vec<_>>()
+            .par_iter()
+            .filter_map(|near| {
+                let start =
+                    [model.fit.effects.as_slice(), std::slice::from_ref(&near.effect)].concat();
+                let fit = on.fit(&start, 8)?;
+                let there = hold.look(&fit.effects)?;
+                let gain = held.chi2 - there.chi2;
+                let share = (gain / held.chi2).clamp(0.0, 1.0);
+                Some(Tried { effect: fit.effects[own].clone(), gain, share, simulated: false })
+            })
+            .collect();
+        for better in closer {
+            if let Some(known) = tried.iter_mut().find(|t| {
+                t.effect.is(&better.effect)
+                    && t.effect.values().map(|(n, _)| n).eq(better.effect.values().map(|(n, _)| n))
+            }) {
+                *known = better;
+            }
+        }
+        let price = |tried: &Tried| GAIN_PER_VALUE * tried.effect.values().count() as f64;
+        tried.sort_by(|a, b| (b.gain - price(b)).total_cmp(&(a.gain - price(a))));
+        tried
+    }
+
+    /// A candidate's values by one linear step from where it starts, and what they leave on the data that
+    /// candidates are judged on; none where there is no such machine.
+    fn linear(
+        &self,
+        on: &Target,
+        hold: &Target,
+        model: &Model,
+        jacobians: &[Option<DMatrix<f64>>; 2],
+        start: Setting,
+    ) -> Option<(Setting, f64)> {
+        let own: Vec<f64> = start.values().map(|(_, value)| value).collect();
+        let free = crate::calibrate::fit::free(std::slice::from_ref(&start));
+        let look = |target: &Target, values: &[f64]| {
+            let effects = [model.fit.effects.as_slice(), &[start.with(values)]].concat();
+            target.look(&effects).map(|fit| fit.white)
+        };
+        let columns = |target: &Target, base: &DVector<f64>, known: &Option<DMatrix<f64>>| {
+            let mut columns: Vec<DVector<f64>> =
+                known.iter().flat_map(|j| j.column_iter().map(|c| c.into_owned())).collect();
+            for (i, free) in free.iter().enumerate() {
+                let mut beside = own.clone();
+                let back = own[i] + free.step > free.bounds[1];
+                let step = if back { -free.step } else { free.step };
+                beside[i] += step;
+                columns.push((look(target, &beside)? - base) / step);
+            }
+            Some(DMatrix::from_columns(&columns))
+        };
+        let base = look(on, &own)?;
+        let matrix = columns(on, &base, &jacobians[0])?;
+        let known = matrix.ncols() - own.len();
+        let mut held: Vec<bool> = vec![false; own.len()];
+        // Values that a bound holds stay there, and the others are solved for again.
+        let mut step = DVector::zeros(matrix.ncols());
+        for _ in 0..=own.len() {
+            let moving: Vec<usize> =
+                (0..matrix.ncols()).filter(|&c| c < known || !held[c - known]).collect();
+            let part = matrix.select_columns(&moving);
+            let scales: Vec<f64> =
+                part.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
+            let unit =
+                DMatrix::from_fn(part.nrows(), part.ncols(), |r, c| part[(r, c)] / scales[c]);
+            let mut normal = unit.transpose() * &unit;
+            for k in 0..normal.nrows() {
+                normal[(k, k)] += 1e-9;
+            }
+            let solved = normal.cholesky()?.solve(&-(unit.transpose() * &base));
+            step.fill(0.0);
+            for (k, &c) in moving.iter().enumerate() {
+                step[c] = solved[k] / scales[k];
+            }
+            let leaving = (0..own.len()).find(|&k| {
+                let [low, high] = free[k].bounds;
+                !held[k] && !(low..=high).contains(&(own[k] + step[known + k]))
+            });
+            let Some(k) = leaving else { break };
+            held[k] = true;
+        }
+        let base_held = look(hold, &own)?;
+        let matrix = columns(hold, &base_held, &jacobians[1])?;
+        let left = (base_held + matrix * &step).norm_squared();
+        let values: Vec<f64> = own.iter().enumerate().map(|(k, v)| v + step[known + k]).collect();
+        left.is_finite().then(|| (start.with(&values), left))
+    }
+}

@@ -1,0 +1,123 @@
+//! Models whose values agree with simulations of themselves.
+
+use super::baseline::Baseline;
+use super::fit::Fit;
+use super::hypotheses::price;
+use super::problem::Stopped;
+use super::search::{Search, name, names};
+use super::thresholds::GAIN_PER_VALUE;
+use super::trajectory::fitted;
+use crate::effects::Setting;
+
+/// A model that simulations of itself have been held against.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Its effects at their best values.
+    pub fit: Fit,
+    /// Bias and noise from simulations at (nearly) these values.
+    pub baseline: Baseline,
+    /// Σ of squares on the data that candidates are judged on.
+    pub held: f64,
+    /// −2 log likelihood there, but for a constant.
+    pub misfit: f64,
+}
+
+impl Model {
+    /// What the model costs: its misfit and the price of its values.
+    pub fn cost(&self) -> f64 {
+        let values: usize = self.fit.effects.iter().map(|effect| effect.values().count()).sum();
+        self.misfit + GAIN_PER_VALUE * values as f64
+    }
+}
+
+/// A change of a value, in its standard deviations, that is none.
+const SETTLED: f64 = 0.3;
+
+impl Search<'_> {
+    /// Fits the values of a model, simulating it anew each time: what a look is wrong by depends on them.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub fn settle(&self, effects: &[Setting], times: usize) -> Result<Option<Model>, Stopped> {
+        let segments = [self.split.on.as_slice(), &self.split.hold].concat();
+        let mut effects = effects.to_vec();
+        let mut settled: Option<Model> = None;
+        for _ in 0..times.max(1) {
+            let deviations = settled.as_ref().map(|model| model.fit.deviations());
+            let deviations = deviations.unwrap_or_default();
+            let baseline = match Baseline::of(self.problem, &effects, &deviations, &segments) {
+                Ok(baseline) => baseline,
+                // What cannot be simulated is no model; what was so far may be one.
+                Err(_) if !effects.is_empty() => break,
+                Err(stopped) => return Err(stopped),
+            };
+            let steps = if effects.is_empty() { 0 } else { 6 };
+            let target = self.target(&baseline, false);
+            let Some(mut fit) = target.fit(&effects, steps) else { break };
+            fit.jacobian = target.jacobian(&fit);
+            let Some(held) = self.target(&baseline, true).look(&fit.effects) else { break };
+            let change = change(&effects, &fit);
+            effects.clone_from(&fit.effects);
+            let own = match baseline.rattles {
+                true => baseline.log_determinant(&self.split.hold),
+                false => 0.0,
+            };
+            let noise = own + baseline.lost(&self.split.hold);
+            let (rattles, known) = (baseline.rattles, !deviations.is_empty());
+            let model = Model { fit, held: held.chi2, misfit: held.chi2 + noise, baseline };
+            let worse = settled
+                .as_ref()
+                .is_some_and(|before| model.baseline.rattles && before.misfit < model.misfit);
+            if !worse {
+                settled = Some(model);
+            }
+            // Where joints rattle the second pass knows how far values may be off.
+            if change < SETTLED && (!rattles || known) {
+                break;
+            }
+        }
+        Ok(settled)
+    }
+
+    /// The model with values from whole simulations, where joints do not rattle and that is better.
+    pub(super) fn refined(&self, model: Model) -> Result<Model, Stopped> {
+        if model.baseline.rattles || model.fit.effects.is_empty() {
+            return Ok(model);
+        }
+        (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
+        let effects = fitted(self.problem, &model.fit.effects, &self.split.on)?;
+        let segments = [self.split.on.as_slice(), &self.split.hold].concat();
+        let baseline = Baseline::of(self.problem, &effects, &[], &segments)?;
+        let on = self.target(&baseline, false);
+        let Some(mut fit) = on.look(&effects) else { return Ok(model) };
+        fit.jacobian = on.jacobian(&fit);
+        let Some(held) = self.target(&baseline, true).look(&effects) else { return Ok(model) };
+        let misfit = held.chi2 + baseline.lost(&self.split.hold);
+        let refined = Model { fit, held: held.chi2, misfit, baseline };
+        Ok(if refined.misfit < model.misfit { refined } else { model })
+    }
+
+    /// The model without effects that it does not need.
+    pub(super) fn needed(&self, mut model: Model) -> Result<Model, Stopped> {
+        let mut i = 0;
+        while model.fit.effects.len() > 1 && i < model.fit.effects.len() {
+            let mut fewer = model.fit.effects.clone();
+            let dropped = fewer.remove(i);
+            (self.tell)(&format!("simulating without {}", name(&dropped)));
+            match self.settle(&fewer, 2)? {
+                Some(simpler) if simpler.cost() < model.cost() + price(&model) => model = simpler,
+                _ => i += 1,
+            }
+        }
+        Ok(model)
+    }
+}
+
+/// Largest change of a value by a fit, in its standard deviations, each by itself.
+fn change(before: &[Setting], fit: &Fit) -> f64 {
+    use crate::calibrate::fit::values;
+    let Some(jacobian) = &fit.jacobian else { return 0.0 };
+    let sizes = jacobian.column_iter().map(|column| column.norm());
+    let pairs = values(before).into_iter().zip(values(&fit.effects)).zip(sizes);
+    pairs.map(|((before, after), size)| (after - before).abs() * size).fold(0.0, f64::max)
+}
