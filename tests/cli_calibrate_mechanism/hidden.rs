@@ -33,21 +33,26 @@ fn recorded(place: &Place, name: &str, effects: &str, waves: [[f64; 2]; 2], seed
     place.write(name, &simulate::with_noise(&clean, &sensors, seed).to_csv(&sensors));
 }
 
-#[test]
-fn friction_in_a_joint_without_a_drive_is_found_with_its_torque() {
+/// The report on two recordings of the four-bar with an effect of which its declaration says nothing.
+fn report_with(effect: &str, options: &str) -> Value {
     let place = Place::new();
     place.write("rig.toml", FOUR_BAR);
+    recorded(&place, "a.csv", effect, [[1.2, 3.0], [0.4, 7.0]], 1);
+    recorded(&place, "b.csv", effect, [[0.9, 4.0], [-0.5, 6.0]], 2);
+    let command =
+        "calibrate --rig rig.toml --data a.csv --validate b.csv --out found --json --quiet";
+    serde_json::from_str(&place.good(&format!("{command} {options}"))).unwrap()
+}
+
+#[test]
+fn friction_in_a_joint_without_a_drive_is_found_with_its_torque() {
     let effect = "
         [[effect]]
         kind = \"joint-friction\"
         joint = \"D\"
         coulomb = 0.06
     ";
-    recorded(&place, "a.csv", effect, [[1.2, 3.0], [0.4, 7.0]], 1);
-    recorded(&place, "b.csv", effect, [[0.9, 4.0], [-0.5, 6.0]], 2);
-    let text = place
-        .good("calibrate --rig rig.toml --data a.csv --validate b.csv --out found --json --quiet");
-    let report: Value = serde_json::from_str(&text).unwrap();
+    let report = report_with(effect, "");
     assert_eq!(report["verdict"], "explained", "{}", report["residuals"]);
     let effects = report["effects"].as_array().unwrap();
     assert_eq!(effects.len(), 1, "{}", report["summary"]);
@@ -57,4 +62,50 @@ fn friction_in_a_joint_without_a_drive_is_found_with_its_torque() {
     );
     let torque = effects[0]["params"]["coulomb"]["value"].as_f64().unwrap();
     assert!((torque / 0.06 - 1.0).abs() < 0.1, "{torque}");
+}
+
+#[test]
+fn a_command_that_reaches_its_drive_late_is_found_with_its_delay() {
+    let report = report_with("\n[[effect]]\nkind = \"command-delay\"\ndelay_s = 0.002\n", "");
+    assert_eq!(report["verdict"], "explained", "{}", report["residuals"]);
+    let effects = report["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 1, "{}", report["summary"]);
+    assert_eq!(effects[0]["kind"], "command-delay");
+    let delay = effects[0]["params"]["delay_s"]["value"].as_f64().unwrap();
+    assert!((delay / 0.002 - 1.0).abs() < 0.1, "{delay}");
+}
+
+/// What the report says would have been seen is hidden in that size, and in a quarter of it.
+#[test]
+fn what_is_said_to_be_seen_is_seen_and_much_less_is_not() {
+    let nothing = report_with("", "");
+    assert_eq!(nothing["verdict"], "nothing-missing", "{}", nothing["residuals"]);
+    let limits = nothing["limits"].as_array().unwrap();
+    let limit = limits.iter().find(|limit| limit["kind"] == "payload" && limit["body"] == "rocker");
+    let smallest = limit.unwrap()["smallest"].as_f64().unwrap();
+    let hidden = |mass: f64| {
+        let keys = format!("body = \"rocker\"\nmass_kg = {mass}\ncom_x_m = 0.04");
+        report_with(&format!("\n[[effect]]\nkind = \"payload\"\n{keys}\n"), "")
+    };
+    assert_ne!(hidden(1.5 * smallest)["verdict"], "nothing-missing", "{smallest}");
+    assert_eq!(hidden(0.25 * smallest)["verdict"], "nothing-missing", "{smallest}");
+}
+
+#[test]
+fn an_instrument_noisier_than_declared_is_told_and_no_effect_is_blamed() {
+    let place = Place::new();
+    let quiet = FOUR_BAR.replace("std = 0.003", "std = 0.0012");
+    assert_ne!(quiet, FOUR_BAR);
+    place.write("rig.toml", &quiet);
+    recorded(&place, "a.csv", "", [[1.2, 3.0], [0.4, 7.0]], 1);
+    recorded(&place, "b.csv", "", [[0.9, 4.0], [-0.5, 6.0]], 2);
+    let text = place
+        .good("calibrate --rig rig.toml --data a.csv --validate b.csv --out found --json --quiet");
+    let report: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(report["verdict"], "nothing-missing", "{}", report["residuals"]);
+    let noises = report["noises"].as_array().unwrap();
+    assert_eq!(noises.len(), 1, "{noises:?}");
+    assert_eq!(noises[0]["column"], "torque");
+    let ratio = noises[0]["measured"].as_f64().unwrap() / noises[0]["declared"].as_f64().unwrap();
+    assert!((ratio / 2.5 - 1.0).abs() < 0.1, "{ratio}");
 }

@@ -151,10 +151,10 @@ fn closed(
     Ok(Closed { mechanism, held })
 }
 
-fn release(mechanism: &mut Mechanism, held: usize, recording: &Recording) {
+/// Lets go of what held joints. Commands stay what effects made of them, which a delay does.
+fn release(mechanism: &mut Mechanism, held: usize) {
     let drives = mechanism.actuators.len() - held;
     mechanism.actuators.truncate(drives);
-    mechanism.commands = commands(mechanism, recording);
 }
 
 /// The machine of a rig with these effects at the first row of a recording, to be looked at.
@@ -167,7 +167,7 @@ pub fn machine(
     recording: &Recording,
 ) -> Result<Mechanism, Problem> {
     let Closed { mut mechanism, held } = closed(rig, effects, recording, None)?;
-    release(&mut mechanism, held.len(), recording);
+    release(&mut mechanism, held.len());
     Ok(mechanism)
 }
 
@@ -198,13 +198,13 @@ pub fn released(
         for body in &mut mechanism.bodies {
             body.start.twist.fill(0.0);
         }
-        release(&mut mechanism, 0, recording);
+        release(&mut mechanism, 0);
         mechanism.epoch = -LEAD;
         return Ok(mechanism);
     }
     let let_go = |values: &[f64]| -> Result<Mechanism, StartError> {
         let Closed { mechanism, held } = closed(rig, effects, recording, Some(values))?;
-        Ok(held_there(mechanism, held.len(), recording, control)?)
+        Ok(held_there(mechanism, held.len(), control)?)
     };
     let mut values: Vec<f64> = held.iter().map(|(_, value)| *value).collect();
     let missed = |values: &[f64], seconds: f64| -> Result<(Mechanism, DVector<f64>), StartError> {
@@ -276,7 +276,6 @@ const SMALL: f64 = 1e-4;
 fn held_there(
     mut mechanism: Mechanism,
     held: usize,
-    recording: &Recording,
     control: StepControl,
 ) -> Result<Mechanism, Halt> {
     let inertia =
@@ -305,7 +304,7 @@ fn held_there(
             body.start.twist.fill(0.0);
         }
     })?;
-    release(&mut mechanism, held, recording);
+    release(&mut mechanism, held);
     mechanism.epoch = 0.0;
     Ok(mechanism)
 }
