@@ -160,8 +160,9 @@ impl Problem {
             }
             let Some(still) = &let_go.still else { return Ok(let_go) };
             let ways = self.ways(run, still)?;
-            let seen = as_seen(&let_go.machine, still, ways, &run.recording, self.control)?;
-            let Some(kicks) = seen else { return Ok(let_go) };
+            let seen = as_seen(&let_go.machine, still, ways, &run.recording, self.control);
+            // A kick that a machine does not stand is not what was recorded.
+            let Ok(Some(kicks)) = seen else { return Ok(let_go) };
             Ok(Start { machine: kicked(still, ways, &kicks), kicks: Some(kicks), ..let_go })
         };
         self.runs.par_iter().map(start).collect()

@@ -162,11 +162,15 @@ pub fn ways(still: &Mechanism, recording: &Recording, control: StepControl) -> R
     let none = DVector::zeros(count);
     let base = judge.look(still)?;
     let response = judge.response(still, &every, &none, &base)?;
-    let eigen = (response.transpose() * response).symmetric_eigen();
+    let normal = response.transpose() * response;
+    if normal.iter().any(|value| !value.is_finite()) {
+        return Ok(DMatrix::zeros(count, 0));
+    }
+    let eigen = normal.symmetric_eigen();
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
     let largest = order.first().map_or(0.0, |&first| eigen.eigenvalues[first]);
-    // An eigenvalue is a square.
+    // An eigenvalue is a square; what changes readings by less than one unit of noise in all is not seen.
     let matters = |k: &usize| eigen.eigenvalues[*k] > (WAY * WAY * largest).max(1.0);
     let kept: Vec<usize> = order.into_iter().filter(matters).take(MOST_WAYS).collect();
     Ok(eigen.eigenvectors.select_columns(&kept))
