@@ -89,8 +89,6 @@ fn power(values: &[f64]) -> (f64, usize) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     /// Of white noise as much lies in the band as the band is wide.
     #[test]
     fn power_of_white_noise_is_that_of_its_share_of_the_band() {
