@@ -164,7 +164,8 @@ mod tests {
         };
         assert_eq!(of("payload"), "crank; rod; piston");
         assert_eq!(of("torque-ripple"), "O");
-        assert_eq!(of("joint-friction"), "O; A; B; S");
+        // Pins that no drive turns are of one make.
+        assert_eq!(of("joint-friction"), "O; A; B; S; A, B");
         // Its joints are ideal: nothing wears.
         assert_eq!(of("joint-wear"), "");
         assert_eq!(of("encoder-eccentricity"), "q_O; q_A; q_O, q_A");
