@@ -66,7 +66,7 @@ fn rigs_that_cannot_be_calibrated_are_refused() {
         (machine.to_owned(), &["sensor: is missing", "[[sensor]]"][..]),
         (format!("{FOUR_BAR}{payload}"), &["holds 1 effect", "without [[effect]]"]),
         // Nothing says how the machine stands.
-        (format!("{machine}{encoder}"), &["fewer joints are measured", "position"]),
+        (format!("{machine}{encoder}"), &["fewer joints than it has freedoms", "position"]),
     ] {
         let place = Place::new();
         place.write("rig.toml", &rig);

@@ -2,7 +2,7 @@
 //! which is noise.
 
 use super::estimate::View;
-use super::problem::{Problem, Segment, Start, Stopped};
+use super::problem::{Problem, Segment, Stopped};
 use super::simulate::with_noise;
 use super::start::machine;
 use super::thresholds::{DRAWS, MISSED};
@@ -31,8 +31,6 @@ struct Part {
 #[derive(Clone, Debug)]
 pub struct Baseline {
     parts: Arc<Vec<Part>>,
-    /// Where simulations began, run by run.
-    starts: Arc<Vec<Start>>,
     /// Whether replicas differ by more than sensors see.
     pub rattles: bool,
 }
@@ -109,7 +107,7 @@ impl Baseline {
             });
         }
         let rattles = problem.replicas > 1;
-        Ok(Self { parts: Arc::new(parts), starts: Arc::new(starts), rattles })
+        Ok(Self { parts: Arc::new(parts), rattles })
     }
 
     /// Residuals of the data under a model in units of noise, of all these segments in a row; none where the
@@ -149,12 +147,7 @@ impl Baseline {
         for part in self.parts.iter().filter(|part| segments.contains(&part.segment)) {
             let run = &problem.runs[part.segment.run];
             let machine = machine(&problem.rig, effects, &run.recording)?;
-            let simulated = problem.one(
-                effects,
-                part.segment.run,
-                part.segment.rows.end,
-                &self.starts[part.segment.run],
-            )?;
+            let simulated = problem.one(effects, part.segment.run, part.segment.rows.end)?;
             let pair = [&run.view, &View::new(&simulated, sensors)]
                 .map(|view| problem.coefficients(view, &machine, &part.segment));
             let [Some(seen), Some(own)] = pair else { return Ok(None) };

@@ -39,7 +39,7 @@ impl Search<'_> {
         let Some(fit) = self.target(&model.baseline, held).look(&model.fit.effects) else {
             return Vec::new();
         };
-        let limit = NOISE[usize::from(model.baseline.rattles && !held)];
+        let limit = NOISE[usize::from(!held)];
         let segments = if held { &self.split.hold } else { &self.split.on };
         let places = model.baseline.places(self.problem, segments);
         let of = |(k, name): (usize, &Name)| {

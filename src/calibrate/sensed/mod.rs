@@ -1,7 +1,7 @@
 //! The loop closed on any mechanism that a file describes, with the sensors that it has.
 //!
-//! [`recording`] reads what was measured; [`start`] puts the machine where a recording begins,
-//! [`swing`] makes it swing in its play as it did there; [`simulate`] shows what its sensors would have recorded; [`basis`] says how the machine moved, from what [`estimate`] prepares;
+//! [`recording`] reads what was measured; [`start`] puts the machine where a recording begins;
+//! [`simulate`] shows what its sensors would have recorded; [`basis`] says how the machine moved, from what [`estimate`] prepares;
 //! [`residual`] what that motion says against the model: laws of drives, closure, dynamics; [`baseline`] what
 //! a right model leaves of them; [`fit`] and [`settle`] give a model its values, [`left`] says what it leaves;
 //! [`search`] finds which effects are missing, by what `screen` finds promising, [`hypotheses`] simulates and `unseen`
@@ -32,7 +32,6 @@ pub mod settle;
 mod simpler;
 pub mod simulate;
 pub mod start;
-pub mod swing;
 pub mod thresholds;
 pub mod trajectory;
 pub mod unnamed;

@@ -5,7 +5,6 @@ use super::estimate::View;
 use super::recording::Recording;
 use super::residual::{Residuals, residuals};
 use super::start::{StartError, machine, released, still};
-use super::swing::{Kicks, Ways, as_seen, kicked, ways};
 use super::{simulate, thresholds};
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::spectrum::transform;
@@ -18,7 +17,6 @@ use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A recorded run, ready to be explained.
@@ -28,8 +26,6 @@ pub struct Run {
     pub recording: Recording,
     /// The same, prepared.
     pub view: View,
-    /// How the machine as declared may swing when it begins, once that was asked for.
-    ways: OnceLock<Ways>,
 }
 
 /// Where a run of a model begins.
@@ -39,8 +35,6 @@ pub struct Start {
     pub machine: Mechanism,
     /// The same without a swing; none of one that is held at the first row.
     still: Option<Mechanism>,
-    /// What makes it swing as recorded, where a release does not.
-    pub kicks: Option<Kicks>,
 }
 
 /// A stretch of a run.
@@ -119,7 +113,7 @@ impl Problem {
         let sensors = declared.sensors.len();
         let run = |recording: Recording| {
             let view = View::new(&recording, sensors);
-            Run { recording, view, ways: OnceLock::new() }
+            Run { recording, view }
         };
         let runs = recordings.into_iter().map(run).collect();
         let simulations = AtomicUsize::new(0);
@@ -145,8 +139,7 @@ impl Problem {
         self.simulations.load(Ordering::Relaxed)
     }
 
-    /// Where the runs of a model with these effects begin: as it was let go, or, where the recordings show
-    /// another swing, with that one. What rattles has forgotten it.
+    /// Where the runs of a model with these effects begin, as it was let go.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -154,28 +147,9 @@ impl Problem {
         let start = |run: &Run| -> Result<Start, Stopped> {
             let machine = released(&self.rig, effects, &run.recording, self.control)?;
             let still = still(&machine, self.control)?;
-            let let_go = Start { machine, still, kicks: None };
-            if self.replicas > 1 {
-                return Ok(let_go);
-            }
-            let Some(still) = &let_go.still else { return Ok(let_go) };
-            let ways = self.ways(run, still)?;
-            let seen = as_seen(&let_go.machine, still, ways, &run.recording, self.control);
-            // A kick that a machine does not stand is not what was recorded.
-            let Ok(Some(kicks)) = seen else { return Ok(let_go) };
-            Ok(Start { machine: kicked(still, ways, &kicks), kicks: Some(kicks), ..let_go })
+            Ok(Start { machine, still })
         };
         self.runs.par_iter().map(start).collect()
-    }
-
-    /// How the machine may swing when a run begins, as a model at rest there shows it: the first that is asked for
-    /// tells, which the declared one is.
-    fn ways<'a>(&self, run: &'a Run, still: &Mechanism) -> Result<&'a Ways, Stopped> {
-        if let Some(known) = run.ways.get() {
-            return Ok(known);
-        }
-        let found = ways(still, &run.recording, self.control)?;
-        Ok(run.ways.get_or_init(|| found))
     }
 
     /// Noiseless recordings of a model that begins there, so many replicas of each run.
@@ -223,8 +197,7 @@ impl Problem {
         Ok(recorded.chunks(replicas).map(<[Recording]>::to_vec).collect())
     }
 
-    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it,
-    /// with the swing of a start of nearly the same model.
+    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -233,16 +206,9 @@ impl Problem {
         effects: &[Setting],
         index: usize,
         until: usize,
-        like: &Start,
     ) -> Result<Recording, Stopped> {
-        let run = &self.runs[index];
-        let recording = &run.recording;
-        let mut machine = released(&self.rig, effects, recording, self.control)?;
-        if let (Some(kicks), Some(ways)) = (&like.kicks, run.ways.get())
-            && let Some(still) = still(&machine, self.control)?
-        {
-            machine = kicked(&still, ways, kicks);
-        }
+        let recording = &self.runs[index].recording;
+        let machine = released(&self.rig, effects, recording, self.control)?;
         // Filters see a little beyond the last row.
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
         self.simulations.fetch_add(1, Ordering::Relaxed);
@@ -280,7 +246,7 @@ impl Problem {
     pub fn let_go(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
         let start = |run: &Run| {
             let machine = released(&self.rig, effects, &run.recording, self.control)?;
-            Ok(Start { machine, still: None, kicks: None })
+            Ok(Start { machine, still: None })
         };
         self.runs.par_iter().map(start).collect()
     }

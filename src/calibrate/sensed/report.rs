@@ -220,7 +220,7 @@ pub fn into_folder(
         ranking: ranking(&outcome),
         noises: outcome.noises.clone(),
         limits: outcome.limits.iter().map(limit).collect(),
-        residuals: residuals(&outcome.before, &outcome.after, problem.replicas > 1),
+        residuals: residuals(&outcome.before, &outcome.after),
         rattle: RattleReport {
             chaotic: problem.replicas > 1,
             difference: outcome.rattle,
@@ -370,12 +370,12 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     ranked
 }
 
-fn residuals(before: &[Left], after: &[Left], rattles: bool) -> Vec<ResidualReport> {
+fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
     let pair = |(before, after): (&Left, &Left)| ResidualReport {
         residual: format!("{} of {}", before.residual.word(), before.of),
         mean_square_before: before.mean_square,
         mean_square_after: after.mean_square,
-        noise_up_to: super::thresholds::NOISE[usize::from(rattles)],
+        noise_up_to: super::thresholds::NOISE[0],
         largest_before: before.largest,
         largest_after: after.largest,
     };
