@@ -5,8 +5,8 @@
 //! [`residual`] what that motion says against the model: laws of drives, closure, dynamics; [`baseline`] what
 //! a right model leaves of them; [`fit`] and [`settle`] give a model its values, [`left`] says what it leaves;
 //! [`search`] finds which effects are missing, by what `screen` finds promising, [`hypotheses`] simulates and `unseen`
-//! tries where residuals are blind; [`calm`] what shows in a
-//! rattle's size alone, [`simpler`] which of their values are needed; [`outcome`] is the
+//! tries where residuals are blind; `calm` what shows in a
+//! rattle's size alone, `simpler` which of their values are needed; [`outcome`] is the
 //! whole way, [`report`] what is written of it.
 
 pub mod baseline;

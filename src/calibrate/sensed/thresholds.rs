@@ -128,7 +128,7 @@ pub const PHASE: f64 = 4e-3;
 pub const COVERED: f64 = 45.0;
 
 /// Drop of Σ of squares, as windows vary, that an effect of a fit with windows has to bring: as
-/// [`GAIN`](self::GAIN).
+/// [`GAIN`].
 pub const CERTAIN: f64 = 28.0;
 
 /// First seconds of a run that its own zeros are taken from where a model is judged by the rest.
