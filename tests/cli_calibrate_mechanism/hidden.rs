@@ -82,11 +82,11 @@ fn what_is_said_to_be_seen_is_seen_and_much_less_is_not() {
     assert_eq!(nothing["verdict"], "nothing-missing", "{}", nothing["residuals"]);
     let limits = nothing["limits"].as_array().unwrap();
     let limit =
-        limits.iter().find(|limit| limit["kind"] == "joint-friction" && limit["joint"] == "D");
+        limits.iter().find(|limit| limit["kind"] == "payload" && limit["body"] == "coupler");
     let smallest = limit.unwrap()["smallest"].as_f64().unwrap();
-    let hidden = |coulomb: f64| {
-        let keys = format!("joint = \"D\"\ncoulomb = {coulomb}");
-        report_with(&format!("\n[[effect]]\nkind = \"joint-friction\"\n{keys}\n"))
+    let hidden = |mass: f64| {
+        let keys = format!("body = \"coupler\"\nmass_kg = {mass}");
+        report_with(&format!("\n[[effect]]\nkind = \"payload\"\n{keys}\n"))
     };
     assert_ne!(hidden(1.5 * smallest)["verdict"], "nothing-missing", "{smallest}");
     assert_eq!(hidden(0.25 * smallest)["verdict"], "nothing-missing", "{smallest}");

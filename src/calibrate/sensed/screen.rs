@@ -5,7 +5,7 @@ use super::fit::Target;
 use super::hypotheses::Tried;
 use super::search::Search;
 use super::settle::Model;
-use super::thresholds::{CLOSER, GAIN_PER_VALUE};
+use super::thresholds::{AS_MUCH, CLOSER, GAIN_PER_VALUE};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -62,6 +62,7 @@ impl Search<'_> {
         }
         let price = |tried: &Tried| GAIN_PER_VALUE * tried.effect.values().count() as f64;
         tried.sort_by(|a, b| (b.gain - price(b)).total_cmp(&(a.gain - price(a))));
+        simpler_first(&mut tried);
         tried
     }
 
@@ -128,5 +129,25 @@ impl Search<'_> {
         let left = (base_held + matrix * &step).norm_squared();
         let values: Vec<f64> = own.iter().enumerate().map(|(k, v)| v + step[known + k]).collect();
         left.is_finite().then(|| (start.with(&values), left))
+    }
+}
+
+/// Puts a variant with fewer values in the place of the best one of the same effect where it leaves no more than
+/// [`AS_MUCH`] times what that leaves: looks alone do not tell them apart, and of two the one with fewer values is
+/// led astray less.
+fn simpler_first(tried: &mut [Tried]) {
+    let values = |tried: &Tried| tried.effect.values().count();
+    for i in 0..tried.len() {
+        if tried[..i].iter().any(|before| before.effect.is(&tried[i].effect)) {
+            continue;
+        }
+        let enough = AS_MUCH * (1.0 - tried[i].share);
+        let simpler = (i + 1..tried.len())
+            .filter(|&j| tried[j].effect.is(&tried[i].effect))
+            .filter(|&j| values(&tried[j]) < values(&tried[i]) && 1.0 - tried[j].share <= enough)
+            .min_by_key(|&j| values(&tried[j]));
+        if let Some(j) = simpler {
+            tried.swap(i, j);
+        }
     }
 }

@@ -156,3 +156,7 @@ pub const OTHER_NOISE: f64 = 1.25;
 
 /// Standard deviations by which it must differ: one of some thousand sensors does so by chance.
 pub const SURE_NOISE: f64 = 4.0;
+
+/// Ratio of what two variants of an effect leave within which looks do not tell which is right: what a look is wrong
+/// by changes with the effect by as much.
+pub const AS_MUCH: f64 = 2.0;
