@@ -263,10 +263,10 @@ impl Kind {
     }
 
     /// Whether joints of one make may have it alike: not what is placed otherwise in each, as the phase of a
-    /// wave or the place of a point is.
+    /// wave or the place of a point is, nor clearances, which are declared joint by joint.
     fn has_common_causes(&self) -> bool {
         let placed = |parameter: &Parameter| parameter.name.contains("phase");
-        self.targets.joints() != Some(Joints::Anchor)
+        !matches!(self.targets.joints(), Some(Joints::Anchor | Joints::Bearing))
             && self.scan.is_none()
             && !self.parameters.iter().any(placed)
     }

@@ -41,10 +41,15 @@ impl Search<'_> {
             if found.len() >= SIMULATED || candidate.gain < 0.5 * GAIN[0] {
                 break;
             }
-            // Variants of one effect are one hypothesis.
-            let last =
-                |model: &Model| model.fit.effects.last().is_some_and(|e| e.is(&candidate.effect));
-            if found.iter().any(last) {
+            // Variants of one effect are one hypothesis; a simpler one may be led astray less.
+            let same =
+                |model: &&Model| model.fit.effects.last().is_some_and(|e| e.is(&candidate.effect));
+            let count = |effect: &Setting| effect.values().count();
+            let simpler = |model: &Model| {
+                model.fit.effects.last().is_some_and(|e| count(&candidate.effect) < count(e))
+            };
+            let known: Vec<&Model> = found.iter().filter(same).collect();
+            if known.len() > 1 || known.iter().any(|model| !simpler(model)) {
                 continue;
             }
             let effects =

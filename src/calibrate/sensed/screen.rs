@@ -62,7 +62,7 @@ impl Search<'_> {
         }
         let price = |tried: &Tried| GAIN_PER_VALUE * tried.effect.values().count() as f64;
         tried.sort_by(|a, b| (b.gain - price(b)).total_cmp(&(a.gain - price(a))));
-        simpler_first(&mut tried);
+        simpler_next(&mut tried);
         tried
     }
 
@@ -132,22 +132,21 @@ impl Search<'_> {
     }
 }
 
-/// Puts a variant with fewer values in the place of the best one of the same effect where it leaves no more than
-/// [`AS_MUCH`] times what that leaves: looks alone do not tell them apart, and of two the one with fewer values is
-/// led astray less.
-fn simpler_first(tried: &mut [Tried]) {
+/// Puts the variant with the fewest values that leaves no more than [`AS_MUCH`] times what the best one of its
+/// effect leaves next to that: looks alone do not tell which is right, and both are simulated.
+fn simpler_next(tried: &mut Vec<Tried>) {
     let values = |tried: &Tried| tried.effect.values().count();
-    for i in 0..tried.len() {
-        if tried[..i].iter().any(|before| before.effect.is(&tried[i].effect)) {
-            continue;
-        }
+    let mut i = 0;
+    while i < tried.len() {
+        let first = !tried[..i].iter().any(|before| before.effect.is(&tried[i].effect));
         let enough = AS_MUCH * (1.0 - tried[i].share);
         let simpler = (i + 1..tried.len())
-            .filter(|&j| tried[j].effect.is(&tried[i].effect))
+            .filter(|&j| first && tried[j].effect.is(&tried[i].effect))
             .filter(|&j| values(&tried[j]) < values(&tried[i]) && 1.0 - tried[j].share <= enough)
             .min_by_key(|&j| values(&tried[j]));
         if let Some(j) = simpler {
-            tried.swap(i, j);
+            tried[i + 1..=j].rotate_right(1);
         }
+        i += 1;
     }
 }
