@@ -134,7 +134,7 @@ impl Search<'_> {
 
 /// Puts the variant with the fewest values that leaves no more than [`AS_MUCH`] times what the best one of its
 /// effect leaves next to that: looks alone do not tell which is right, and both are simulated.
-fn simpler_next(tried: &mut Vec<Tried>) {
+fn simpler_next(tried: &mut [Tried]) {
     let values = |tried: &Tried| tried.effect.values().count();
     let mut i = 0;
     while i < tried.len() {
