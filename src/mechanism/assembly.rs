@@ -171,13 +171,14 @@ impl Mechanism {
 
     /// Rows of all joints at the given states: prismatic ones, revolute ones, driven angles.
     pub(super) fn closure(&self, states: &[BodyState], commands: &[Command]) -> Closure {
+        let count = 2 * (self.prismatics.len() + self.revolutes.len()) + self.actuators.len();
         let mut closure = Closure {
-            rows: Vec::new(),
+            rows: Vec::with_capacity(count),
             gaps: DVector::zeros(0),
-            driven: Vec::new(),
-            joints: Vec::new(),
+            driven: Vec::with_capacity(count),
+            joints: Vec::with_capacity(count),
         };
-        let mut gaps = Vec::new();
+        let mut gaps = Vec::with_capacity(count);
         let follows = |joint: JointIndex| {
             let mut actuators = self.actuators.iter();
             actuators.position(|a| a.joint == joint && a.drive != Drive::Effort)

@@ -3,7 +3,7 @@
 
 use super::assembly::matrix;
 use super::{Attachment, Bearing, BodyState, Command, Drive, JointIndex, Mechanism};
-use nalgebra::{DMatrix, DVector, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, UnitComplex, Vector2, Vector3};
 
 /// Share of the largest squared singular value below which one is zero: a thousand times its rounding.
 const ZERO: f64 = 1e-13;
@@ -43,6 +43,32 @@ impl Mechanism {
             }
         }
         ideal
+    }
+
+    /// The geometry alone: the same mechanism without clearance, each body's centre of mass where its reference
+    /// point is, and all points on a grid far finer than any machine is made. What has been put on bodies, or
+    /// changed of their masses, leaves it the same to the last bit.
+    pub fn geometry(&self) -> Self {
+        /// Steps of a metre and of a radian: a tenth of a picometre, where rounding is a thousandth of that, and a
+        /// micrometre for starts, which are only near.
+        const GRIDS: [f64; 2] = [(1u64 << 43) as f64, (1u64 << 20) as f64];
+        let on = |grid: f64| move |x: f64| (x * grid).round() / grid;
+        let mut geometry = self.without_clearance();
+        for (i, body) in self.bodies.iter().enumerate() {
+            geometry.set_mass(i, body.mass, body.reference, body.inertia);
+        }
+        let revolutes = geometry.revolutes.iter_mut().flat_map(|j| [&mut j.ring, &mut j.journal]);
+        let prismatics = geometry.prismatics.iter_mut().flat_map(|j| [&mut j.base, &mut j.slider]);
+        for attachment in revolutes.chain(prismatics) {
+            attachment.point = attachment.point.map(on(GRIDS[0]));
+        }
+        for body in &mut geometry.bodies {
+            body.reference = Vector2::zeros();
+            body.start.position = body.start.position.map(on(GRIDS[1]));
+            body.start.rotation = UnitComplex::new(on(GRIDS[1])(body.start.rotation.angle()));
+            body.start.twist.fill(0.0);
+        }
+        geometry
     }
 
     /// How the mechanism, without clearance, can move at the given states.

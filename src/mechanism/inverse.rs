@@ -1,10 +1,11 @@
 //! Inverse dynamics: the efforts and joint forces that a motion of the machine without clearance takes, and
 //! where its bodies are when journals lean on their rings under those forces.
 
-use super::assembly::matrix;
+use super::assembly::{Closure, matrix};
+use super::factors::Factors;
 use super::{Bearing, BodyState, Command, JointIndex, Mechanism, Revolute, Situation, Tracker};
 use crate::contact::CoulombFriction;
-use nalgebra::{DMatrix, DVector, UnitComplex, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Dyn, UnitComplex, Vector2, Vector3};
 
 /// What a motion takes at one instant.
 #[derive(Clone, Debug)]
@@ -17,8 +18,98 @@ pub struct Taken {
     pub leaning: Vec<BodyState>,
 }
 
+/// An instant of a motion with what inverse dynamics takes from the geometry there: ready for any masses and loads
+/// of a machine of that geometry.
+#[derive(Clone, Debug)]
+pub struct Posed {
+    /// Time in s.
+    t: f64,
+    states: Vec<BodyState>,
+    accelerations: Vec<Vector3<f64>>,
+    /// Each body's reference point, from the centre of mass that the motion is given for.
+    references: Vec<Vector2<f64>>,
+    drives: usize,
+    closure: Closure,
+    rows: DMatrix<f64>,
+    /// Places of the rows of joints among them.
+    joints: Vec<usize>,
+    /// `Jᵀ` of all rows.
+    transposed: Factors,
+    held: Held,
+    /// Rows that determine the pose, and how many they are.
+    determining: Factors,
+    conditions: usize,
+    by_drives: bool,
+}
+
 impl Tracker {
-    /// What the present state of a motion takes of `mechanism`, the machine with its
+    /// The present instant, to be asked what it takes. None in a singular pose.
+    pub fn posed(&self) -> Option<Posed> {
+        let bodies = self.states().len();
+        let mut commands = vec![Command::default(); self.mechanism().actuators.len()];
+        self.mechanism().true_commands(self.time(), &mut commands);
+        let closure = self.mechanism().closure(self.states(), &commands);
+        let rows = matrix(&closure.rows, bodies);
+        let joints: Vec<usize> =
+            (0..closure.rows.len()).filter(|&row| closure.driven[row].is_none()).collect();
+        let held = Held::new(&rows.select_rows(&joints), self.mechanism().size())?;
+        // What is imposed stays where it is.
+        let determining = match self.by_drives() {
+            true => rows.clone(),
+            false => matrix(&self.determining(), bodies),
+        };
+        Some(Posed {
+            t: self.time(),
+            states: self.states().to_vec(),
+            accelerations: (0..bodies).map(|i| self.acceleration(i)).collect(),
+            references: self.mechanism().bodies.iter().map(|body| body.reference).collect(),
+            drives: self.mechanism().actuators.len(),
+            transposed: Factors::of(rows.transpose()),
+            closure,
+            rows,
+            joints,
+            held,
+            conditions: determining.nrows(),
+            determining: Factors::of(determining),
+            by_drives: self.by_drives(),
+        })
+    }
+}
+
+impl Posed {
+    /// Time in s.
+    pub fn time(&self) -> f64 {
+        self.t
+    }
+
+    /// Memory that it takes, in numbers of eight bytes, all but a few.
+    pub fn size(&self) -> usize {
+        4 * self.rows.len() + self.joints.len() * (self.rows.ncols() + self.joints.len())
+    }
+
+    /// Centre of mass of a body of `mechanism` (m, in its own axes) from the one that the motion is given for.
+    fn centre(&self, mechanism: &Mechanism, body: usize) -> Vector2<f64> {
+        self.references[body] - mechanism.bodies[body].reference
+    }
+
+    /// States of all bodies of `mechanism`.
+    pub fn states(&self, mechanism: &Mechanism) -> Vec<BodyState> {
+        self.centred(mechanism, &self.states)
+    }
+
+    /// The same bodies elsewhere, by their centres of mass in `mechanism`.
+    fn centred(&self, mechanism: &Mechanism, states: &[BodyState]) -> Vec<BodyState> {
+        let centred = |(i, state): (usize, &BodyState)| state.at(self.centre(mechanism, i));
+        states.iter().enumerate().map(centred).collect()
+    }
+
+    /// Acceleration of body `index` of `mechanism` (m/s², m/s², rad/s²).
+    pub fn acceleration(&self, mechanism: &Mechanism, index: usize) -> Vector3<f64> {
+        let centre = self.centre(mechanism, index);
+        self.states[index].acceleration_at(self.accelerations[index], centre)
+    }
+
+    /// What the motion takes of `mechanism`, the machine with its
     /// clearances and loads: with M, the masses, a, the accelerations, w, gravity and loads, J and B, the rows
     /// of the joints and of the drives' coordinates, `M a = w + Jᵀ λ + Bᵀ τ`, τ being the efforts.
     ///
@@ -35,74 +126,68 @@ impl Tracker {
         measured: &[Option<f64>],
         applied: &[(JointIndex, f64)],
     ) -> Option<Taken> {
-        let (states, bodies) = (self.states(), self.states().len());
-        let closure = self.mechanism().closure(states, &self.commands_now());
-        let rows = matrix(&closure.rows, bodies);
-        let factors = rows.transpose().lu();
-        let mut needed = self.needed(mechanism, t, applied);
-        let joints: Vec<usize> =
-            (0..closure.rows.len()).filter(|&row| closure.driven[row].is_none()).collect();
-        let held = Held::new(&rows.select_rows(&joints), mechanism.size())?;
+        let states = self.states(mechanism);
+        let mut needed = self.needed(mechanism, &states, t, applied);
         let rubbing = mechanism.revolutes.iter().any(|joint| friction(joint).is_some());
         let mut taken = Taken {
-            efforts: vec![0.0; self.mechanism().actuators.len()],
+            efforts: vec![0.0; self.drives],
             reactions: vec![Vector2::zeros(); mechanism.revolutes.len()],
             leaning: Vec::new(),
         };
         for pass in 0..=usize::from(rubbing) {
             if pass > 0 {
-                rub(mechanism, states, &taken.reactions, &mut needed);
+                rub(mechanism, &states, &taken.reactions, &mut needed);
             }
-            let exact = match rows.is_square() {
-                true => factors.solve(&needed)?,
-                false => rows.transpose().svd(true, true).solve(&needed, 1e-10).ok()?,
-            };
+            let exact = self.transposed.solve(&needed)?;
             let mut left = needed.clone();
-            for (row, drive) in closure.driven.iter().enumerate() {
+            for (row, drive) in self.closure.driven.iter().enumerate() {
                 let Some(drive) = *drive else { continue };
                 taken.efforts[drive] = exact[row];
                 let given = measured.get(drive).copied().flatten().unwrap_or(exact[row]);
-                left -= rows.row(row).transpose() * given;
+                left -= self.rows.row(row).transpose() * given;
             }
-            let multipliers = held.forces(&left)?;
+            let multipliers = self.held.forces(&left)?;
             let mut next = 0;
-            for (k, &row) in joints.iter().enumerate() {
-                if let JointIndex::Revolute(i) = closure.joints[row] {
+            for (k, &row) in self.joints.iter().enumerate() {
+                if let JointIndex::Revolute(i) = self.closure.joints[row] {
                     taken.reactions[i][next % 2] = multipliers[k];
                     next += 1;
                 }
             }
         }
-        // What is imposed stays where it is.
-        let imposed = match self.by_drives() {
-            true => rows,
-            false => matrix(&self.determining(), bodies),
-        };
-        let mut gaps = DVector::zeros(imposed.nrows());
-        let mut next = 0;
-        for (place, &row) in joints.iter().enumerate() {
-            if let JointIndex::Revolute(i) = closure.joints[row] {
-                // By a target the rows of joints stand first, without those of drives among them.
-                let place = if self.by_drives() { row } else { place };
-                gaps[place] = lean(&mechanism.revolutes[i], taken.reactions[i])[next % 2];
-                next += 1;
-            }
-        }
-        let shift = match imposed.is_square() {
-            true => imposed.lu().solve(&gaps)?,
-            false => imposed.svd(true, true).solve(&gaps, 1e-10).ok()?,
-        };
-        taken.leaning = states.to_vec();
-        for (i, state) in taken.leaning.iter_mut().enumerate() {
-            state.position += shift.fixed_rows::<2>(3 * i);
-            state.rotation *= UnitComplex::new(shift[3 * i + 2]);
-        }
+        taken.leaning = self.leaning(mechanism, &taken.reactions)?;
         Some(taken)
     }
 
-    /// `M a − w`, but for friction in joints with clearance.
-    fn needed(&self, mechanism: &Mechanism, t: f64, applied: &[(JointIndex, f64)]) -> DVector<f64> {
-        let states = self.states();
+    /// States with journals that lean on their rings under these joint forces (N).
+    fn leaning(&self, mechanism: &Mechanism, reactions: &[Vector2<f64>]) -> Option<Vec<BodyState>> {
+        let mut gaps = DVector::zeros(self.conditions);
+        let mut next = 0;
+        for (place, &row) in self.joints.iter().enumerate() {
+            if let JointIndex::Revolute(i) = self.closure.joints[row] {
+                // By a target the rows of joints stand first, without those of drives among them.
+                let place = if self.by_drives { row } else { place };
+                gaps[place] = lean(&mechanism.revolutes[i], reactions[i])[next % 2];
+                next += 1;
+            }
+        }
+        let shift = self.determining.solve(&gaps)?;
+        let mut leaning = self.states.clone();
+        for (i, state) in leaning.iter_mut().enumerate() {
+            state.position += shift.fixed_rows::<2>(3 * i);
+            state.rotation *= UnitComplex::new(shift[3 * i + 2]);
+        }
+        Some(self.centred(mechanism, &leaning))
+    }
+
+    /// `M a − w` about the points that the motion is given for, but for friction in joints with clearance.
+    fn needed(
+        &self,
+        mechanism: &Mechanism,
+        states: &[BodyState],
+        t: f64,
+        applied: &[(JointIndex, f64)],
+    ) -> DVector<f64> {
         let mut given: Vec<Vector3<f64>> =
             mechanism.bodies.iter().map(|body| (mechanism.gravity * body.mass).push(0.0)).collect();
         for load in &mechanism.loads {
@@ -114,12 +199,14 @@ impl Tracker {
         let mut needed = DVector::zeros(3 * states.len());
         for (i, (body, given)) in mechanism.bodies.iter().zip(given).enumerate() {
             let masses = Vector3::new(body.mass, body.mass, body.inertia);
-            let wrench = masses.component_mul(&self.acceleration(i)) - given;
+            let mut wrench = masses.component_mul(&self.acceleration(mechanism, i)) - given;
+            let arm = states[i].rotation * self.centre(mechanism, i);
+            wrench.z += arm.perp(&wrench.xy());
             needed.fixed_rows_mut::<3>(3 * i).copy_from(&wrench);
         }
         for rotor in &mechanism.rotors {
             let bodies = mechanism.revolutes[rotor.joint].bodies();
-            let turn = |body: Option<usize>| body.map_or(0.0, |body| self.acceleration(body).z);
+            let turn = |body: Option<usize>| body.map_or(0.0, |body| self.accelerations[body].z);
             let torques = rotor.torques(bodies.map(turn));
             for (body, torque) in bodies.into_iter().zip(torques) {
                 if let Some(body) = body {
@@ -128,12 +215,6 @@ impl Tracker {
             }
         }
         needed
-    }
-
-    fn commands_now(&self) -> Vec<Command> {
-        let mut commands = vec![Command::default(); self.mechanism().actuators.len()];
-        self.mechanism().true_commands(self.time(), &mut commands);
-        commands
     }
 }
 
@@ -165,9 +246,10 @@ impl Mechanism {
 }
 
 /// Rows of joints, ready to say which forces in them come nearest to what bodies need.
+#[derive(Clone, Debug)]
 struct Held {
     rows: DMatrix<f64>,
-    gram: nalgebra::Cholesky<f64, nalgebra::Dyn>,
+    gram: nalgebra::Cholesky<f64, Dyn>,
     size: f64,
 }
 

@@ -2,10 +2,11 @@
 //! the ones before, so that it stays on the branch on which it was put together.
 
 use super::assembly::matrix;
+use super::factors::Factors;
 use super::motion::Motion;
 use super::rows::Row;
 use super::{Attachment, BodyState, Command, Mechanism};
-use nalgebra::{DMatrix, DVector, UnitComplex, Vector2, Vector3};
+use nalgebra::{DVector, Dim, Matrix, RawStorage, UnitComplex, Vector2, Vector3};
 use std::sync::Arc;
 
 /// Gaps in m and rad at which a state is closed: what Newton's method leaves on a machine of a metre.
@@ -163,13 +164,14 @@ impl Tracker {
     /// Takes closed states, with the velocities and accelerations that belong to them.
     fn accept(&mut self, mut states: Vec<BodyState>, t: f64) -> Option<()> {
         let system = self.system(&states, t);
-        let rates = solve(&system.rows, states.len(), &system.rates)?;
+        let factors = Factors::of(finite(matrix(&system.rows, states.len()))?);
+        let rates = finite(factors.solve(&system.rates)?)?;
         for (i, state) in states.iter_mut().enumerate() {
             state.twist = rates.fixed_rows::<3>(3 * i).into();
         }
-        // Biases depend on the velocities.
+        // Biases depend on the velocities, and rows do not.
         let system = self.system(&states, t);
-        self.accelerations = solve(&system.rows, states.len(), &system.accelerations)?;
+        self.accelerations = finite(factors.solve(&system.accelerations)?)?;
         (self.states, self.t) = (states, t);
         Some(())
     }
@@ -241,16 +243,15 @@ fn on(body: Option<usize>, jacobian: Vector3<f64>, bias: f64) -> Row {
 /// The motion of `bodies` bodies that meets the rows: exactly where they determine it, else the smallest
 /// in the sense of least squares.
 pub(super) fn solve(rows: &[Row], bodies: usize, right: &DVector<f64>) -> Option<DVector<f64>> {
-    let matrix: DMatrix<f64> = matrix(rows, bodies);
-    if matrix.iter().chain(right.iter()).any(|x| !x.is_finite()) {
-        return None;
-    }
-    let found = if matrix.is_square() {
-        matrix.lu().solve(right)
-    } else {
-        matrix.svd(true, true).solve(right, 1e-10).ok()
-    };
-    found.filter(|x| x.iter().all(|x| x.is_finite()))
+    let matrix = finite(matrix(rows, bodies))?;
+    finite(Factors::of(matrix).solve(right)?)
+}
+
+/// Numbers, if all of them are finite.
+fn finite<R: Dim, C: Dim, S: RawStorage<f64, R, C>>(
+    numbers: Matrix<f64, R, C, S>,
+) -> Option<Matrix<f64, R, C, S>> {
+    numbers.iter().all(|x| x.is_finite()).then_some(numbers)
 }
 
 impl Mechanism {

@@ -151,7 +151,7 @@ fn inverse_dynamics_takes_the_torque_of_the_closed_form() {
     for degree in 0..=360 {
         let t = TAU / SPEED * f64::from(degree) / 360.0;
         tracker.advance(t).unwrap();
-        let taken = tracker.taken(&mechanism, t, &[], &[]).unwrap();
+        let taken = tracker.posed().unwrap().taken(&mechanism, t, &[], &[]).unwrap();
         let [.., torque] = closed_form(SPEED * t, -9.81);
         assert!(
             (taken.efforts[0] - torque).abs() < 1e-9,

@@ -13,6 +13,7 @@ use crate::mechanism::{
     Mechanism, Reads, Tracker, TrackerFrame,
 };
 use nalgebra::{UnitComplex, Vector2, Vector3};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// What says how a machine without clearance stands, and the coordinates along which efforts are looked at.
@@ -83,7 +84,7 @@ impl Basis {
 
     /// Whether the machine can be put at its own first pose by what is shown of it.
     fn holds(&self, mechanism: &Mechanism) -> bool {
-        let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
+        let states = starts(mechanism);
         let Some((point, angle, offset)) = self.target(mechanism) else { return false };
         let place = point.attachment(mechanism).frame(&states).centre;
         let rotation = states[offset].rotation * UnitComplex::new(angle);
@@ -93,7 +94,7 @@ impl Basis {
             columns: [0, 1, 2].map(|k| [vec![at[k]; 2], vec![0.0; 2], vec![0.0; 2]]),
         };
         let ideal = self.ideal(mechanism);
-        let imposed = imposed(mechanism, point, angle, still);
+        let (imposed, states) = (imposed(&ideal, point, angle, still), starts(&ideal));
         Tracker::new(ideal, imposed, states, 0.0).is_ok()
     }
 
@@ -114,9 +115,9 @@ impl Basis {
         }
     }
 
-    /// The machine without clearance, its joints of the basis prescribed.
+    /// The geometry of a machine, its joints of the basis prescribed.
     fn ideal(&self, mechanism: &Mechanism) -> Mechanism {
-        let mut ideal = mechanism.without_clearance();
+        let mut ideal = mechanism.geometry();
         ideal.loads.clear();
         ideal.epoch = 0.0;
         ideal.commands = Arc::new(Idle);
@@ -132,29 +133,70 @@ impl Basis {
         ideal
     }
 
-    /// The machine without clearance and what moves it as a view shows: readings are corrected for what the
+    /// The geometry of a machine and what moves it as a view shows: readings are corrected for what the
     /// mechanism's sensors and drives are known to get wrong.
-    pub fn moved(&self, view: &View, mechanism: &Mechanism) -> (Mechanism, Imposed) {
+    pub fn moved(&self, view: &View, mechanism: &Mechanism) -> Moved {
         let mut ideal = self.ideal(mechanism);
-        match &self.shown {
-            Shown::Coordinates(sensors) => {
-                let joints = self.joints.iter().zip(sensors);
-                let columns =
-                    joints.map(|(joint, sensor)| coordinate(view, mechanism, *joint, *sensor));
-                ideal.commands =
-                    Arc::new(Measured { interval: view.interval, columns: columns.collect() });
-                (ideal, Imposed::Drives)
+        let mut columns = DefaultHasher::new();
+        match (&self.shown, self.target(mechanism)) {
+            (Shown::Pose(sensors), Some((point, angle, _))) => {
+                let motion = pose(view, mechanism, *sensors);
+                motion.columns.iter().for_each(|column| hash(column, &mut columns));
+                let imposed = imposed(&ideal, point, angle, motion);
+                Moved { ideal, imposed, columns: columns.finish() }
             }
-            Shown::Pose(sensors) => {
-                // A pose has a target: `tracked` found it.
-                let Some((point, angle, _)) = self.target(mechanism) else {
-                    return (ideal, Imposed::Drives);
-                };
-                let imposed = imposed(mechanism, point, angle, pose(view, mechanism, *sensors));
-                (ideal, imposed)
+            // A pose has a target: `tracked` found it.
+            (Shown::Pose(_), None) => {
+                Moved { ideal, imposed: Imposed::Drives, columns: columns.finish() }
+            }
+            (Shown::Coordinates(sensors), _) => {
+                let joints = self.joints.iter().zip(sensors);
+                let measured: Vec<[Vec<f64>; 3]> = joints
+                    .map(|(joint, sensor)| coordinate(view, mechanism, *joint, *sensor))
+                    .collect();
+                measured.iter().for_each(|columns_of| hash(columns_of, &mut columns));
+                ideal.commands = Arc::new(Measured { interval: view.interval, columns: measured });
+                Moved { ideal, imposed: Imposed::Drives, columns: columns.finish() }
             }
         }
     }
+}
+
+/// A machine's geometry and what moves it.
+#[derive(Debug)]
+pub struct Moved {
+    /// The geometry.
+    pub ideal: Mechanism,
+    /// What moves it.
+    pub imposed: Imposed,
+    /// Digest of how.
+    columns: u64,
+}
+
+impl Moved {
+    /// A number that is the same where geometry, start and motion are the same to the last bit.
+    pub fn digest(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        let Mechanism { revolutes, prismatics, actuators, .. } = &self.ideal;
+        let joints = revolutes.iter().map(|joint| (joint.ring, joint.journal));
+        let starts = starts(&self.ideal);
+        let joints: Vec<_> = joints.collect();
+        format!("{joints:?} {prismatics:?} {actuators:?} {starts:?}").hash(&mut hasher);
+        if let Imposed::Target { point, angle, .. } = &self.imposed {
+            format!("{point:?} {angle:?}").hash(&mut hasher);
+        }
+        self.columns.hash(&mut hasher);
+        hasher.finish()
+    }
+}
+
+/// Rates and accelerations follow from positions.
+fn hash([position, ..]: &[Vec<f64>; 3], hasher: &mut DefaultHasher) {
+    position.iter().for_each(|value| value.to_bits().hash(hasher));
+}
+
+fn starts(mechanism: &Mechanism) -> Vec<BodyState> {
+    mechanism.bodies.iter().map(|body| body.start).collect()
 }
 
 /// As many of these joints, driven ones first, as determine the machine; none where they do not.
@@ -162,7 +204,7 @@ fn independent<T>(
     mechanism: &Mechanism,
     mut from: Vec<(JointIndex, T)>,
 ) -> Option<Vec<(JointIndex, T)>> {
-    let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
+    let states = starts(mechanism);
     let mut ideal = mechanism.without_clearance();
     let driven = |joint| mechanism.actuators.iter().any(|drive| drive.joint == joint);
     from.sort_by_key(|(joint, _)| !driven(*joint));
@@ -276,6 +318,7 @@ impl Motion for Series {
 
 #[cfg(test)]
 mod tests {
+    use super::super::motions::Motions;
     use super::super::residual::{Kind, residuals};
     use super::super::start::machine;
     use super::*;
@@ -325,7 +368,8 @@ mod tests {
             let (mechanism, recording) = recorded(without);
             let basis = Basis::of(&mechanism, &recording).unwrap();
             let view = View::new(&recording, mechanism.sensors.len());
-            let found = residuals(&view, &mechanism, &basis, view.rows()).unwrap();
+            let found =
+                residuals(&view, &mechanism, &basis, view.rows(), &Motions::default()).unwrap();
             let closures = found.names.iter().zip(&found.signals);
             let closures: Vec<_> =
                 closures.filter(|(name, _)| name.kind == Kind::Closure).collect();

@@ -19,6 +19,7 @@ pub mod fit;
 pub mod hypotheses;
 pub mod left;
 pub mod limits;
+mod motions;
 pub mod noise;
 pub mod outcome;
 mod page;

@@ -2,6 +2,7 @@
 
 use super::basis::Basis;
 use super::estimate::View;
+use super::motions::Motions;
 use super::recording::Recording;
 use super::residual::{Residuals, residuals};
 use super::start::{StartError, machine, released, still};
@@ -71,6 +72,7 @@ pub struct Problem {
     /// Simulations that a mean is taken of: one, or several where joints rattle.
     pub replicas: usize,
     simulations: AtomicUsize,
+    motions: Motions,
 }
 
 /// Why a method cannot go on.
@@ -117,7 +119,8 @@ impl Problem {
         };
         let runs = recordings.into_iter().map(run).collect();
         let simulations = AtomicUsize::new(0);
-        Ok(Self { rig, declared, runs, basis, control, replicas: 1, simulations })
+        let motions = Motions::default();
+        Ok(Self { rig, declared, runs, basis, control, replicas: 1, simulations, motions })
     }
 
     /// The first run to fit on and the others to judge on; the halves of one where there is one alone.
@@ -276,14 +279,14 @@ impl Problem {
         mechanism: &Mechanism,
         segment: &Segment,
     ) -> Option<Residuals> {
-        residuals(view, mechanism, &self.basis, segment.rows.clone())
+        residuals(view, mechanism, &self.basis, segment.rows.clone(), &self.motions)
     }
 
     /// Names of the residuals.
     pub fn names(&self) -> Option<Vec<super::residual::Name>> {
         let view = &self.runs.first()?.view;
         let rows = view.rows().start..view.rows().start + 1;
-        Some(residuals(view, &self.declared, &self.basis, rows)?.names)
+        Some(residuals(view, &self.declared, &self.basis, rows, &self.motions)?.names)
     }
 
     /// Their coefficients by frequency.

@@ -8,12 +8,12 @@
 
 use super::basis::Basis;
 use super::estimate::{View, effort_sensor, position_sensor};
+use super::motions::Motions;
 use super::thresholds::{DYNAMICS_BAND, PLAIN_BAND};
 use crate::calibrate::spectrum::Signal;
 use crate::measure::filter::derivative;
 use crate::mechanism::{
-    Command, Drive, Evaluation, Imposed, JointIndex, Mechanism, Reads, Sensor, Taken, Tracker,
-    angle_near,
+    Command, Drive, Evaluation, JointIndex, Mechanism, Posed, Reads, Sensor, Taken, angle_near,
 };
 use std::ops::Range;
 
@@ -89,34 +89,18 @@ pub fn residuals(
     mechanism: &Mechanism,
     basis: &Basis,
     rows: Range<usize>,
+    motions: &Motions,
 ) -> Option<Residuals> {
     let look = Look { view, mechanism, basis, rates: rates(view, mechanism) };
     let mut found = Residuals::default();
     look.names(&mut found);
-    let (ideal, imposed) = basis.moved(view, mechanism);
-    let starts = ideal.bodies.iter().map(|body| body.start).collect();
-    let first = rows.start as f64 * view.interval;
-    let mut tracker = tracker_at(ideal, imposed, starts, first)?;
+    let poses = motions.of(view, mechanism, basis, rows.clone())?;
     let mut angles: Vec<f64> = mechanism.bodies.iter().map(|body| body.angle).collect();
     let mut now = Evaluation::new(mechanism);
-    for row in rows.step_by(view.stride) {
-        let t = row as f64 * view.interval;
-        tracker.advance(t).ok()?;
-        look.row(&tracker, t, row, &mut angles, &mut now, &mut found.signals)?;
+    for (row, pose) in rows.step_by(view.stride).zip(poses.iter()) {
+        look.row(pose, row, &mut angles, &mut now, &mut found.signals)?;
     }
     Some(found)
-}
-
-/// A tracker at time `t` s of a motion whose starts are near its pose at the first row.
-fn tracker_at(
-    ideal: Mechanism,
-    imposed: Imposed,
-    starts: Vec<crate::mechanism::BodyState>,
-    t: f64,
-) -> Option<Tracker> {
-    let mut tracker = Tracker::new(ideal, imposed, starts, 0.0).ok()?;
-    tracker.advance(t).ok()?;
-    Some(tracker)
 }
 
 fn rates(view: &View, mechanism: &Mechanism) -> Vec<Option<Vec<f64>>> {
@@ -231,13 +215,13 @@ impl<'a> Look<'a> {
 
     fn row(
         &self,
-        tracker: &Tracker,
-        t: f64,
+        pose: &Posed,
         row: usize,
         angles: &mut [f64],
         now: &mut Evaluation,
         signals: &mut [Signal],
     ) -> Option<()> {
+        let t = pose.time();
         let mut next = signals.iter_mut();
         let mut push = |value: f64| {
             if let Some(signal) = next.next() {
@@ -264,7 +248,7 @@ impl<'a> Look<'a> {
             .collect();
         let slow: Vec<Option<f64>> = efforts.iter().map(|e| e.map(|[_, slow]| slow)).collect();
         let Taken { efforts: taken, leaning, .. } =
-            tracker.taken(self.mechanism, t, &slow, &self.applied(t, row))?;
+            pose.taken(self.mechanism, t, &slow, &self.applied(t, row))?;
         for (effort, taken) in efforts.iter().zip(taken) {
             if let Some([effort, _]) = effort {
                 push(effort - taken);
@@ -273,11 +257,12 @@ impl<'a> Look<'a> {
         for (angle, state) in angles.iter_mut().zip(&leaning) {
             *angle = angle_near(state.rotation, *angle);
         }
-        self.fill(tracker, &leaning, angles, now);
+        self.fill(pose, &leaning, angles, now);
+        let states = pose.states(self.mechanism);
         for sensor in self.others() {
             let of = &self.mechanism.sensors[sensor];
             let states = match of.reads {
-                Reads::Acceleration(..) => tracker.states(),
+                Reads::Acceleration(..) => &states,
                 _ => &leaning,
             };
             let reading = of.reading(self.mechanism, states, angles, now);
@@ -313,13 +298,13 @@ impl<'a> Look<'a> {
     /// What sensors look at beside states.
     fn fill(
         &self,
-        tracker: &Tracker,
+        pose: &Posed,
         leaning: &[crate::mechanism::BodyState],
         angles: &[f64],
         now: &mut Evaluation,
     ) {
         for (i, acceleration) in now.accelerations.iter_mut().enumerate() {
-            *acceleration = tracker.acceleration(i);
+            *acceleration = pose.acceleration(self.mechanism, i);
         }
         for (length, joint) in now.lengths.iter_mut().zip(&self.mechanism.prismatics) {
             *length = joint.length(leaning);
