@@ -4,8 +4,9 @@ use super::failure::{Failure, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use crate::calibrate::errors::ChannelError;
-use crate::calibrate::predict::{ERRORS_FILE, check, into_folder};
+use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder};
 use crate::calibrate::result::CalibrateError;
+use crate::calibrate::sensed::predict as sensed;
 use crate::calibrate::sensed::windows::predict::{self as windows, Asked};
 use crate::calibrate::single::{self, Machine};
 use crate::calibrate::{quantity, recording};
@@ -72,6 +73,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {
             return by_windows(arguments, &model, &prepared);
         }
+        return along_commands(arguments, &model);
     }
     let read = recording::read_one(&arguments.data);
     let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
@@ -80,6 +82,30 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let predicted = Spinner::during(arguments.print.quiet, |tell| {
         into_folder(&model, &recording, folder, tell)
     })?;
+    shown(arguments, &predicted)
+}
+
+/// The same of a mechanism that its file describes and that drives hold, or joints with play.
+fn along_commands(arguments: &Arguments, model: &Scenario) -> Result<(), Failure> {
+    for (flag, given) in
+        [("window", arguments.window), ("fit", arguments.fit), ("from", arguments.from)]
+    {
+        if given.is_some() {
+            let message = format!(
+                "--{flag}: this machine is predicted from its release on, not over windows; leave it out"
+            );
+            return Err(Failure::Input(vec![message]));
+        }
+    }
+    let prepared = sensed::prepare(model, &arguments.data)?;
+    let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
+    let predicted = Spinner::during(arguments.print.quiet, |tell| {
+        sensed::into_folder(model, &prepared, folder, tell)
+    })?;
+    shown(arguments, &predicted)
+}
+
+fn shown(arguments: &Arguments, predicted: &Predicted) -> Result<(), Failure> {
     let p = &predicted.prediction;
     Ok(arguments.print.result(&predicted.json, || {
         text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder)

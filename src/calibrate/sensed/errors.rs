@@ -1,12 +1,11 @@
 //! By how much predictions miss a recording, column by column, and by how much any would.
 
-use super::problem::Problem;
 use super::recording::Recording;
 use super::simulate::with_noise;
 use super::thresholds::{DRAWS, TRIM};
 use crate::calibrate::errors::ChannelError;
 use crate::measure::filter::ZeroPhase;
-use crate::mechanism::Reads;
+use crate::mechanism::{Mechanism, Reads, Sensor};
 
 /// Corner in Hz of the low-pass that errors are looked at through: as agreed on with whoever reads them.
 const CORNER: f64 = 25.0;
@@ -35,8 +34,7 @@ fn rms(a: &Recording, b: &Recording, sensor: usize) -> Option<f64> {
 
 /// What sensor noise and rattle leave in a column to a perfect model: a replica with noise against the mean of
 /// the others.
-fn floor(problem: &Problem, clean: &[Recording], sensor: usize) -> Option<f64> {
-    let sensors = &problem.declared.sensors;
+fn floor(sensors: &[Sensor], clean: &[Recording], sensor: usize) -> Option<f64> {
     let mut squares = 0.0;
     for draw in 0..DRAWS {
         let own = draw % clean.len();
@@ -52,17 +50,16 @@ fn floor(problem: &Problem, clean: &[Recording], sensor: usize) -> Option<f64> {
     Some((squares / DRAWS as f64).sqrt())
 }
 
-/// Errors of all measured columns of run `index`: `before` and `after` are noiseless recordings of the declared
-/// and of the calibrated model.
+/// Errors of all measured columns of a recording of a machine: `before` and `after` are noiseless recordings of
+/// the declared and of the calibrated model.
 pub fn of_run(
-    problem: &Problem,
-    index: usize,
+    machine: &Mechanism,
+    recording: &Recording,
     role: &'static str,
     before: &[Recording],
     after: &[Recording],
 ) -> Vec<ChannelError> {
-    let sensors = &problem.declared.sensors;
-    let recording = &problem.runs[index].recording;
+    let sensors = &machine.sensors;
     let [declared, predicted] = [before, after].map(|logs| mean(logs, sensors.len()));
     let measured = |i: &usize| !matches!(sensors[*i].reads, Reads::Command(_));
     (0..sensors.len())
@@ -72,10 +69,10 @@ pub fn of_run(
                 run: recording.name.clone(),
                 role,
                 channel: sensors[i].column.clone(),
-                unit: sensors[i].unit(&problem.declared),
+                unit: sensors[i].unit(machine),
                 before: rms(recording, &declared, i)?,
                 after: rms(recording, &predicted, i)?,
-                floor: floor(problem, after, i)?,
+                floor: floor(sensors, after, i)?,
             })
         })
         .collect()

@@ -7,12 +7,14 @@
 //! [`search`] finds which effects are missing, by what `screen` finds promising, [`hypotheses`] simulates and `unseen`
 //! tries where residuals are blind; `calm` what shows in a
 //! rattle's size alone, `simpler` which of their values are needed; [`outcome`] is the
-//! whole way, [`report`] what is written of it.
+//! whole way, [`report`] what is written of it. Where a model explains every residual and still misses what was
+//! recorded, `swing` finds how the machine was let go.
 
 pub mod baseline;
 pub mod basis;
 mod calm;
 pub mod candidates;
+mod charts;
 pub mod errors;
 pub mod estimate;
 pub mod fit;
@@ -23,6 +25,7 @@ mod motions;
 pub mod noise;
 pub mod outcome;
 mod page;
+pub mod predict;
 pub mod problem;
 pub mod recording;
 pub mod report;
@@ -33,6 +36,7 @@ pub mod settle;
 mod simpler;
 pub mod simulate;
 pub mod start;
+mod swing;
 pub mod thresholds;
 pub mod trajectory;
 pub mod unnamed;

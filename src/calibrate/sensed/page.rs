@@ -1,76 +1,29 @@
 //! The page of a calibration and its pictures.
 
+use super::charts::{Drawn, of_run};
 use super::outcome::Outcome;
 use super::problem::Problem;
 use super::report::Report;
 use super::windows::report::Windows;
-use crate::calibrate::charts::{POINTS, panel, thinned};
 use crate::calibrate::page::{errors_table, verdict, why};
-use crate::mechanism::Reads;
-use crate::report::{
-    Curve, Part, Picture, ReportError, Style, Table, document, known_to, number, panels_svg,
-};
+use crate::report::{Part, Picture, ReportError, Style, Table, document, known_to, number};
 
 /// Runs that are drawn, the calibration run first: more would hide what matters.
 const DRAWN: usize = 3;
+
+const CAPTION: &str = "Declared: the rig as its file has it. Calibrated: with the effects found.";
 
 /// Each measured column of each run as it was recorded and as it is predicted, and what is missed.
 pub(super) fn pictures(problem: &Problem, outcome: &Outcome) -> Result<Vec<Picture>, ReportError> {
     let mut pictures = Vec::new();
     for (index, run) in problem.runs.iter().take(DRAWN).enumerate() {
-        let recording = &run.recording;
         let role = if index == 0 { "calibration" } else { "validation" };
-        let (mut signals, mut missed) = (Vec::new(), Vec::new());
-        for (i, sensor) in problem.declared.sensors.iter().enumerate() {
-            let measured = recording.get(i).filter(|_| !matches!(sensor.reads, Reads::Command(_)));
-            let (Some(measured), Some(declared), Some(predicted)) =
-                (measured, outcome.declared[index].get(i), outcome.predicted[index].get(i))
-            else {
-                continue;
-            };
-            let unit = sensor.unit(&problem.declared);
-            let curve = |name: &str, values: &[f64], style| {
-                let at = |(row, value): (usize, &f64)| {
-                    (recording.start + row as f64 * recording.interval, *value)
-                };
-                let points: Vec<(f64, f64)> = values.iter().enumerate().map(at).collect();
-                Curve { name: name.to_owned(), points: thinned(&points, POINTS), style }
-            };
-            let less = |model: &[f64]| -> Vec<f64> {
-                measured.iter().zip(model).map(|(a, b)| a - b).collect()
-            };
-            signals.push(panel(
-                sensor.column.clone(),
-                unit,
-                [
-                    curve("measured", measured, Style::Solid),
-                    curve("declared", declared, Style::Reference),
-                    curve("calibrated", predicted, Style::Solid),
-                ]
-                .into_iter(),
-            ));
-            missed.push(panel(
-                format!("{}, measured − model", sensor.column),
-                unit,
-                [
-                    curve("declared", &less(declared), Style::Reference),
-                    curve("calibrated", &less(predicted), Style::Solid),
-                ]
-                .into_iter(),
-            ));
-        }
-        for (panels, what, file) in
-            [(&signals, "Measured and predicted", "signals"), (&missed, "What is missed", "missed")]
-        {
-            pictures.push(Picture {
-                file: format!("{file}-{}.svg", index + 1),
-                title: format!("{what}, {} ({role})", recording.name),
-                caption:
-                    "Declared: the rig as its file has it. Calibrated: with the effects found."
-                        .to_owned(),
-                svg: panels_svg(panels)?,
-            });
-        }
+        let models = [
+            ("declared", Style::Reference, &outcome.declared[index]),
+            ("calibrated", Style::Solid, &outcome.predicted[index]),
+        ];
+        let drawn = Drawn { index, role, caption: CAPTION };
+        pictures.extend(of_run(&problem.declared, &run.recording, drawn, &models)?);
     }
     Ok(pictures)
 }

@@ -6,6 +6,7 @@ use super::motions::Motions;
 use super::recording::Recording;
 use super::residual::{Residuals, residuals};
 use super::start::{StartError, machine, released, still};
+use super::swing::as_recorded;
 use super::{simulate, thresholds};
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::spectrum::transform;
@@ -155,6 +156,24 @@ impl Problem {
         self.runs.par_iter().map(start).collect()
     }
 
+    /// The same starts with the swing that each recording shows, where a release does not give that one: nobody
+    /// knows how a machine was let go. What rattles has forgotten it.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn swinging(&self, starts: &[Start]) -> Result<Vec<Start>, Stopped> {
+        let start = |(run, let_go): (&Run, &Start)| -> Result<Start, Stopped> {
+            let Start { machine, still } = let_go;
+            let swinging = as_recorded(machine, still.as_ref(), &run.recording, self.control)?;
+            let machine = swinging.unwrap_or_else(|| machine.clone());
+            Ok(Start { machine, still: still.clone() })
+        };
+        if self.replicas > 1 {
+            return Ok(starts.to_vec());
+        }
+        self.runs.par_iter().zip(starts).map(start).collect()
+    }
+
     /// Noiseless recordings of a model that begins there, so many replicas of each run.
     ///
     /// # Errors
@@ -257,15 +276,8 @@ impl Problem {
     /// The same by simulations of two replicas or more of each run.
     pub fn rattle(&mut self, logs: &[Vec<Recording>]) -> f64 {
         let sensors = &self.declared.sensors;
-        let mut largest = 0.0f64;
-        for pair in logs {
-            for (i, sensor) in sensors.iter().enumerate() {
-                let (Some(a), Some(b)) = (pair[0].get(i), pair[1].get(i)) else { continue };
-                let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
-                let noise = simulate::deviation(sensor, a);
-                largest = largest.max((squares / a.len() as f64).sqrt() / noise);
-            }
-        }
+        let apart = |pair: &Vec<Recording>| simulate::apart(sensors, &pair[0], &pair[1]);
+        let largest = logs.iter().map(apart).fold(0.0, f64::max);
         if largest > thresholds::SEEN {
             self.replicas = thresholds::REPLICAS;
         }

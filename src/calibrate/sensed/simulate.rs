@@ -110,6 +110,16 @@ pub fn deviation(sensor: &Sensor, values: &[f64]) -> f64 {
     (EXACT * (high - low)).max(f64::MIN_POSITIVE)
 }
 
+/// Largest root mean square of the difference of two recordings in a column, in units of its sensor's noise.
+pub fn apart(sensors: &[Sensor], a: &Recording, b: &Recording) -> f64 {
+    let of = |(i, sensor): (usize, &Sensor)| {
+        let (a, b) = (a.get(i)?, b.get(i)?);
+        let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+        Some((squares / a.len() as f64).sqrt() / deviation(sensor, a))
+    };
+    sensors.iter().enumerate().filter_map(of).fold(0.0, f64::max)
+}
+
 /// The recording with the sensors' noise and rounding; commands are known.
 pub fn with_noise(clean: &Recording, sensors: &[Sensor], seed: u64) -> Recording {
     let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -1,0 +1,183 @@
+//! A model of any mechanism that drives hold or joints keep, driven by a recording's commands: what it predicts, and by
+//! how much it misses.
+
+use super::charts::{Drawn, of_run};
+use super::errors::{self, mean};
+use super::recording::Recording;
+use super::simulate::{apart, record};
+use super::start::{StartError, released, still};
+use super::swing::as_recorded;
+use super::thresholds::{MET, PREDICTING, SEEN};
+use crate::calibrate::errors::ChannelError;
+use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE, Predicted, Prediction};
+use crate::calibrate::predict_page;
+use crate::calibrate::report::RattleReport;
+use crate::calibrate::result::{CalibrateError, control, publish, refuse, to_json};
+use crate::engine::StepControl;
+use crate::mechanism::Mechanism;
+use crate::report::Style;
+use crate::scenario::{Law, Scenario};
+use crate::simulate::Provenance;
+use crate::study::{Folder, PAGE_FILE, RunError};
+use rayon::prelude::*;
+use std::path::Path;
+use std::time::Instant as Clock;
+
+const CAPTION: &str =
+    "Predicted: the model. Without effects: the same model without its [[effect]]s.";
+
+/// A model and a recording that nothing speaks against.
+#[derive(Debug)]
+pub struct Prepared {
+    machine: Mechanism,
+    recording: Recording,
+}
+
+/// Reads a recording of a described machine.
+///
+/// # Errors
+/// What is wrong with the model or the recording.
+pub fn prepare(model: &Scenario, path: &Path) -> Result<Prepared, CalibrateError> {
+    let machine = crate::model::parts_of(model)?;
+    let mut wrong = Vec::new();
+    if machine.sensors.is_empty() {
+        let help = "describe each column of the recording by a [[sensor]]";
+        let message = "is missing: nobody knows what the columns of the recording are".to_owned();
+        wrong.push(model.problem("sensor", message, help).to_string());
+    }
+    if model.contact.law == Law::Native {
+        let help = "write law = \"hertz-step\": predict needs a contact law whose error is known";
+        wrong.push(model.problem("contact.law", "is \"native\"", help).to_string());
+    }
+    refuse(wrong)?;
+    let recording = Recording::read(path, &machine.sensors, false);
+    let recording = recording.map_err(|error| CalibrateError::Input(vec![error.to_string()]))?;
+    super::start::machine(model, &model.effects, &recording)?;
+    Ok(Prepared { machine, recording })
+}
+
+impl From<StartError> for CalibrateError {
+    fn from(error: StartError) -> Self {
+        super::problem::Stopped::from(error).into()
+    }
+}
+
+/// Predicts and writes everything about it into `folder`. `tell` hears what is being done.
+///
+/// # Errors
+/// A model that cannot be simulated, files that cannot be written.
+pub fn into_folder(
+    model: &Scenario,
+    prepared: &Prepared,
+    folder: Folder,
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<Predicted, CalibrateError> {
+    let started = Clock::now();
+    let Prepared { machine, recording } = prepared;
+    tell("simulating two replicas: does it rattle?");
+    let along = Along { model, recording, like: &complete(machine, recording) };
+    let (after, difference) = along.predicted(machine, true)?;
+    let before = match model.effects.is_empty() {
+        true => None,
+        false => {
+            tell("predicting without effects");
+            let mut plain = model.clone();
+            plain.effects.clear();
+            Some(Along { model: &plain, ..along }.predicted(machine, false)?.0)
+        }
+    };
+    let reference = before.as_deref().unwrap_or(&after);
+    let mut errors = errors::of_run(machine, recording, "prediction", reference, &after);
+    if before.is_none() {
+        errors.iter_mut().for_each(|error| error.before = f64::NAN);
+    }
+    tell("drawing and writing");
+    let sensors = &machine.sensors;
+    let predicted = mean(&after, sensors.len());
+    let plain = before.as_deref().map(|logs| mean(logs, sensors.len()));
+    let mut models = Vec::new();
+    models.extend(plain.as_ref().map(|plain| ("without effects", Style::Reference, plain)));
+    models.push(("predicted", Style::Solid, &predicted));
+    let drawn = Drawn { index: 0, role: "prediction", caption: CAPTION };
+    let pictures = of_run(machine, recording, drawn, &models).map_err(RunError::from)?;
+    let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
+    let prediction = Prediction {
+        provenance: Provenance::of(model),
+        run: recording.name.clone(),
+        effects: model.effects.iter().map(ToString::to_string).collect(),
+        errors,
+        rattle: RattleReport {
+            chaotic: after.len() > 1,
+            difference,
+            channel: String::new(),
+            replicas: after.len(),
+        },
+        wall_s: started.elapsed().as_secs_f64(),
+        files: texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect(),
+    };
+    let (json, rows) = (to_json(&prediction), predicted.to_csv(sensors));
+    let page = predict_page::page(&prediction, &pictures);
+    let texts = [(ERRORS_FILE, &json), (PREDICTED_FILE, &rows), (PAGE_FILE, &page)];
+    let folder = publish(folder, &texts, &pictures)?;
+    Ok(Predicted { prediction, json, folder })
+}
+
+/// The recording with a column for every sensor; those that were not measured hold zeros.
+fn complete(machine: &Mechanism, recording: &Recording) -> Recording {
+    let column = |i: usize| {
+        let known = recording.get(i).map(<[f64]>::to_vec);
+        Some(known.unwrap_or_else(|| vec![0.0; recording.samples]))
+    };
+    recording.with((0..machine.sensors.len()).map(column).collect())
+}
+
+/// A model along a recording.
+#[derive(Clone, Copy)]
+struct Along<'a> {
+    model: &'a Scenario,
+    recording: &'a Recording,
+    /// The same with all columns.
+    like: &'a Recording,
+}
+
+impl Along<'_> {
+    /// What the model predicts, replica by replica if it rattles, and by how much two of them differ in units of
+    /// noise. Where it misses what was recorded it may have been let go with another swing, if one is to be
+    /// `sought`.
+    fn predicted(
+        &self,
+        machine: &Mechanism,
+        sought: bool,
+    ) -> Result<(Vec<Recording>, f64), CalibrateError> {
+        let Self { model, recording, like } = *self;
+        let control: StepControl = control(model);
+        let released = released(model, &model.effects, recording, control)?;
+        let replicas = |from: &Mechanism, replicas: std::ops::Range<usize>| {
+            let each = replicas.into_par_iter();
+            each.map(|replica| record(from, control, like, replica as u64))
+                .collect::<Result<Vec<Recording>, _>>()
+        };
+        let mut logs = replicas(&released, 0..2)?;
+        let difference = apart(&machine.sensors, &logs[0], &logs[1]);
+        if difference > SEEN {
+            logs.extend(replicas(&released, 2..PREDICTING)?);
+            return Ok((logs, difference));
+        }
+        logs.truncate(1);
+        let missed = |logs: &[Recording]| -> f64 {
+            let errors = errors::of_run(machine, recording, "prediction", logs, logs);
+            let ratio = |error: &ChannelError| error.after / error.floor;
+            errors.iter().map(ratio).fold(0.0, f64::max)
+        };
+        if sought && missed(&logs) > MET {
+            let still = still(&released, control)?;
+            if let Some(other) = as_recorded(&released, still.as_ref(), recording, control)? {
+                let swinging = replicas(&other, 0..1)?;
+                if missed(&swinging) < missed(&logs) {
+                    logs = swinging;
+                }
+            }
+        }
+        Ok((logs, difference))
+    }
+}
