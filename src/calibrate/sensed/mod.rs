@@ -7,7 +7,7 @@
 //! [`search`] finds which effects are missing, by what `screen` finds promising, [`hypotheses`] simulates and `unseen`
 //! tries where residuals are blind; `calm` what shows in a
 //! rattle's size alone, `simpler` which of their values are needed; [`outcome`] is the
-//! whole way, [`report`] what is written of it.
+//! whole way, [`report`] what is written of it; [`self_test`] says how often it is right.
 
 pub mod baseline;
 pub mod basis;
@@ -28,6 +28,7 @@ pub mod report;
 pub mod residual;
 mod screen;
 pub mod search;
+pub mod self_test;
 pub mod settle;
 mod simpler;
 pub mod simulate;
