@@ -76,8 +76,7 @@ fn all_tried(test: &SelfTest, mut all: Vec<Tried>) -> Result<Vec<Tried>, Failure
             other.version
         )]));
     }
-    let wanted = trials(test.seed, test.count, test.machines, test.only)
-        .map_err(|problem| Failure::Other(problem.to_string()))?;
+    let wanted = trials(test.seed, test.count, test.machines, test.only);
     if wanted.is_empty() {
         let message = format!("--hidden: {} is hidden in no trial of these", test.only.join(", "));
         return Err(Failure::Input(vec![message]));

@@ -106,14 +106,14 @@ impl Recording {
         })
     }
 
-    /// A recording called `name` of samples `interval` (s) apart from time 0 on, sensor by sensor.
-    pub fn of(name: &str, interval: f64, columns: Vec<Option<Vec<f64>>>) -> Self {
+    /// A recording called `name` of so many samples `interval` (s) apart from time 0 on, sensor by sensor.
+    pub fn of(name: &str, interval: f64, samples: usize, columns: Vec<Option<Vec<f64>>>) -> Self {
         Self {
             path: name.to_owned(),
             name: name.to_owned(),
             start: 0.0,
             interval,
-            samples: columns.iter().flatten().map(Vec::len).min().unwrap_or(0),
+            samples,
             columns,
             ignored: Vec::new(),
             jitter: 0.0,

@@ -3,7 +3,7 @@
 use super::dice::Dice;
 use super::families::{FAMILIES, Family};
 use super::motion::like;
-use super::rig::rig;
+use super::rig::{of_family, rig};
 use super::{Case, NOISE, Trial};
 use crate::calibrate::sensed::basis::Basis;
 use crate::calibrate::sensed::candidates::candidates;
@@ -46,11 +46,8 @@ const LEFT_OUT: f64 = 0.3;
 const DRAWS: usize = 20;
 
 impl Trial {
-    /// The trial of a seed.
-    ///
-    /// # Errors
-    /// A family whose rig cannot be put together.
-    pub fn draw(seed: u64) -> Result<Self, Problem> {
+    /// The trial of a seed. It hides nothing in a machine that cannot be put together, which says so when it is tried.
+    pub fn draw(seed: u64) -> Self {
         let mut dice = Dice::new(seed, 0);
         let family = dice.one_of(FAMILIES).map_or(&FAMILIES[0], |family| family);
         let [smallest, largest] = SIZES;
@@ -73,12 +70,12 @@ impl Trial {
             hidden: Vec::new(),
             wanted: Vec::new(),
         };
-        let mechanism = trial.instruments(family, &mut dice)?;
+        let Ok(mechanism) = trial.instruments(family, &mut dice) else { return trial };
         trial.case = case(&mut dice);
         trial.hidden = kinds(trial.case, &mechanism, &mut dice);
         trial.wanted =
             trial.hidden.iter().map(|_| dice.log_between(FLOORS[0], FLOORS[1])).collect();
-        Ok(trial)
+        trial
     }
 
     /// Leaves out sensors, but so that the others say how the machine stands. The machine with those that are left.
@@ -101,14 +98,7 @@ impl Trial {
 
 /// Columns of everything that a family's sensors measure.
 fn columns(family: &Family) -> Result<Vec<String>, Problem> {
-    let first = |problems: crate::scenario::Problems| problems.0.into_iter().next();
-    let rig = match crate::scenario::Scenario::from_text(&family.text.concat(), family.name, &[]) {
-        Ok(rig) => rig,
-        Err(problems) => match first(problems) {
-            Some(problem) => return Err(problem),
-            None => return Ok(Vec::new()),
-        },
-    };
+    let rig = of_family(family)?;
     let sensors = parts_of(&rig)?.sensors.into_iter();
     let measured = sensors.filter(|sensor| !matches!(sensor.reads, Reads::Command(_)));
     Ok(measured.map(|sensor| sensor.column).collect())
@@ -166,15 +156,7 @@ pub(super) fn word(case: Case) -> &'static str {
 
 /// The first `count` trials of a `seed` whose machine is one of `machines` and whose hidden effects are one of `only`
 /// (`nothing`, a kind, [`NOISE`], or `a+b`); of an empty list any. Fewer where they are too rare.
-///
-/// # Errors
-/// A family whose rig cannot be put together.
-pub fn trials(
-    seed: u64,
-    count: usize,
-    machines: &[String],
-    only: &[String],
-) -> Result<Vec<Trial>, Problem> {
+pub fn trials(seed: u64, count: usize, machines: &[String], only: &[String]) -> Vec<Trial> {
     let wanted = |trial: &Trial| {
         let hidden = match &trial.hidden[..] {
             [] => "nothing".to_owned(),
@@ -183,17 +165,8 @@ pub fn trials(
         (machines.is_empty() || machines.contains(&trial.machine))
             && (only.is_empty() || only.contains(&hidden))
     };
-    let mut found = Vec::new();
-    for number in 0..(count * RAREST) as u64 {
-        if found.len() == count {
-            break;
-        }
-        let trial = Trial::draw(seed * MOST + number)?;
-        if wanted(&trial) {
-            found.push(trial);
-        }
-    }
-    Ok(found)
+    let numbers = 0..(count * RAREST) as u64;
+    numbers.map(|number| Trial::draw(seed * MOST + number)).filter(wanted).take(count).collect()
 }
 
 /// Trials that one seed of a self-test has, at most.

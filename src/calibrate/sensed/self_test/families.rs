@@ -1,5 +1,6 @@
 //! The machines of the self-test at size one, and how each is moved.
 
+use super::Trial;
 use super::dice::Dice;
 use std::f64::consts::FRAC_PI_2;
 
@@ -85,12 +86,14 @@ pub fn machines() -> impl Iterator<Item = &'static str> {
     FAMILIES.iter().map(|family| family.name)
 }
 
-impl Family {
-    /// The family of this name.
-    pub fn named(name: &str) -> Option<&'static Self> {
-        FAMILIES.iter().find(|family| family.name == name)
+impl Trial {
+    /// The family that it is of; the first of an unknown name.
+    pub(super) fn family(&self) -> &'static Family {
+        FAMILIES.iter().find(|family| family.name == self.machine).unwrap_or(&FAMILIES[0])
     }
+}
 
+impl Family {
     /// Coordinates in rad from which a machine that falls is let go, joint by joint: the first hangs, the others
     /// are straight where they are 0. None of one that drives move.
     pub fn let_go_at(&self, dice: &mut Dice, joints: usize) -> Vec<f64> {

@@ -98,3 +98,46 @@ fn repeating(range: Range, dice: &mut Dice) -> f64 {
         Range::Orders([from, to, _]) => dice.log_between(from, to.min(WAVES)).round(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::record::Bench;
+    use super::super::{NOISE, Trial};
+    use super::*;
+    use crate::calibrate::sensed::candidates::candidates;
+
+    /// Every effect that a search has for a machine can be hidden in it: a size of nothing changes nothing, and a
+    /// small one gives a machine.
+    #[test]
+    fn every_candidate_has_a_shape() {
+        let mut dice = Dice::new(1, 0);
+        for seed in 0..12 {
+            let trial = Trial::draw(seed);
+            let Ok(bench) = Bench::new(&trial) else { continue };
+            for effect in candidates(&bench.declared, &[]) {
+                let shape = Shape::draw(&effect, &mut dice);
+                let small = shape.at(1e-3).unwrap_or_else(|| panic!("{effect}: out of bounds"));
+                assert!(small != shape.neutral, "{effect} has no size");
+                let mut machine = bench.declared.clone();
+                small.apply(&mut machine).unwrap_or_else(|wrong| panic!("{effect}: {wrong:?}"));
+            }
+        }
+    }
+
+    /// A trial is its seed's; all cases and machines come up.
+    #[test]
+    fn seeds_draw_all_sorts_of_trials() {
+        let all: Vec<Trial> = (0..60).map(|seed| Trial::draw(seed)).collect();
+        assert_eq!(all[7], Trial::draw(7));
+        let count = |is: &dyn Fn(&Trial) -> bool| all.iter().filter(|trial| is(trial)).count();
+        for machine in super::super::machines() {
+            assert!(count(&|trial| trial.machine == machine) > 2, "{machine}");
+        }
+        assert!(count(&|trial| trial.hidden.is_empty()) > 2);
+        assert!(count(&|trial| trial.hidden.len() == 2) > 1);
+        assert!(count(&|trial| trial.hidden.iter().any(|kind| kind == NOISE)) > 0);
+        let extremes = all.iter().map(|trial| trial.size);
+        let (low, high) = extremes.fold((f64::MAX, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
+        assert!(low < 0.3 && high > 3.5, "{low} {high}");
+    }
+}

@@ -163,3 +163,28 @@ fn values(lacking: &Setting, found: &[Estimated]) -> Vec<Value> {
     };
     lacking.values().filter_map(one).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Trial;
+    use super::super::record::Bench;
+    use super::*;
+    use crate::effects::{Kind, named};
+
+    /// A common cause is the same as a cause in each joint, and not the same as one in one of them.
+    #[test]
+    fn a_common_cause_goes_by_the_names_of_its_joints() {
+        let seed = (0..).find(|seed| Trial::draw(*seed).machine == "five-bar").unwrap();
+        let mechanism = Bench::new(&Trial::draw(seed)).unwrap().declared;
+        let kind: &'static Kind = named("journal-friction").unwrap();
+        let at = |joints: &[&str]| {
+            let target = Target::Joints(joints.iter().map(|&joint| joint.to_owned()).collect());
+            Setting::on(kind, target, &[("mu", 0.1)])
+        };
+        let of = |effects: &[Setting]| names(effects, &mechanism);
+        assert_eq!(of(&[at(&["A1", "A2"])]), of(&[at(&["A2"]), at(&["A1"])]));
+        assert_ne!(of(&[at(&["A1", "A2"])]), of(&[at(&["A1"])]));
+        let everywhere = Setting::on(kind, Target::Machine, &[("mu", 0.1)]);
+        assert!(of(&[at(&["A1", "A2", "E"])]).is_subset(&of(&[everywhere])));
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::Trial;
 use super::dice::Dice;
-use super::families::{Family, Moves};
+use super::families::Moves;
 use crate::calibrate::sensed::recording::Recording;
 use crate::mechanism::{JointIndex, Mechanism, Reads};
 use std::f64::consts::TAU;
@@ -64,7 +64,7 @@ pub(super) fn like(trial: &Trial, mechanism: &Mechanism, run: usize) -> Recordin
     let mut dice = Dice::new(trial.seed, 10 + run as u64);
     let interval = 1.0 / trial.rate;
     let samples = (trial.duration_s * trial.rate).round() as usize + 1;
-    let moves = Family::named(&trial.machine).map_or(Moves::Turns, |family| family.moves);
+    let family = trial.family();
     let pace = trial.size.sqrt().recip();
     let ways: Vec<Way> = mechanism
         .actuators
@@ -75,11 +75,10 @@ pub(super) fn like(trial: &Trial, mechanism: &Mechanism, run: usize) -> Recordin
                 JointIndex::Revolute(_) => 1.0,
             };
             let middle = mechanism.start_coordinate(drive.joint);
-            Way::draw(&mut dice, moves, middle, length, pace)
+            Way::draw(&mut dice, family.moves, middle, length, pace)
         })
         .collect();
-    let angles = Family::named(&trial.machine)
-        .map_or_else(Vec::new, |family| family.let_go_at(&mut dice, mechanism.revolutes.len()));
+    let angles = family.let_go_at(&mut dice, mechanism.revolutes.len());
     let columns = mechanism.sensors.iter().map(|sensor| {
         let value = |row: usize| match sensor.reads {
             Reads::Command(drive) => ways[drive].at(row as f64 * interval),
@@ -90,5 +89,5 @@ pub(super) fn like(trial: &Trial, mechanism: &Mechanism, run: usize) -> Recordin
         };
         Some((0..samples).map(value).collect())
     });
-    Recording::of(["run-a.csv", "run-b.csv"][run], interval, columns.collect())
+    Recording::of(["run-a.csv", "run-b.csv"][run], interval, samples, columns.collect())
 }

@@ -104,16 +104,25 @@ pub fn rates(all: &[Tried]) -> String {
     text += &line("simulations of a calibration: median, largest", "", &|machine| {
         middle_and_most(answered(machine).iter().map(|(_, answer)| answer.simulations as f64))
     });
-    let silent = all.iter().filter(|tried| tried.answer.is_none()).count();
     let versions: BTreeSet<&str> = all.iter().map(|tried| tried.version.as_str()).collect();
     let versions: Vec<&str> = versions.into_iter().collect();
+    let unasked: Vec<&Tried> = all.iter().filter(|tried| tried.answer.is_none()).collect();
+    let asked = all.len() - unasked.len();
     // Writing to a string cannot fail, here and below.
-    let _ = writeln!(
-        text,
-        "\n{} trials of {}; {silent} more drew what shows in no size or cannot be.",
-        all.len() - silent,
-        versions.join(", ")
-    );
+    let _ = writeln!(text, "\n{asked} trials of {}.", versions.join(", "));
+    if !unasked.is_empty() {
+        text += "\nNot asked:\n";
+    }
+    for tried in unasked {
+        let trial = &tried.trial;
+        let why = tried.unasked.as_deref().unwrap_or_default();
+        let hidden = trial.hidden.join(", ");
+        let _ = writeln!(
+            text,
+            "* {} {} × {:.2}, {hidden}: {why}",
+            trial.seed, trial.machine, trial.size
+        );
+    }
     text + &wrong(all)
 }
 

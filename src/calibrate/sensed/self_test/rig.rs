@@ -22,19 +22,23 @@ impl Scale {
     }
 }
 
+/// The rig of a family, as a described mechanism.
+///
+/// # Errors
+/// A text that is no rig.
+pub(super) fn of_family(family: &Family) -> Result<Scenario, Problem> {
+    match Scenario::from_text(&family.text.concat(), "self-test rig", &[]) {
+        Ok(rig) => expand(&rig),
+        Err(Problems(mut problems)) => Err(problems.swap_remove(0)),
+    }
+}
+
 /// The rig that a trial's maker declares.
 ///
 /// # Errors
-/// A trial of an unknown family.
+/// A family whose text is no rig.
 pub(super) fn rig(trial: &Trial) -> Result<Scenario, Problem> {
-    let text = Family::named(&trial.machine).map_or_else(String::new, |f| f.text.concat());
-    let first = |Problems(problems): Problems| problems.into_iter().next();
-    let read = Scenario::from_text(&text, "self-test rig", &[]);
-    let mut rig = match read.map_err(first) {
-        Ok(rig) => expand(&rig)?,
-        Err(Some(problem)) => return Err(problem),
-        Err(None) => unreachable!("a refused text has a problem"),
-    };
+    let mut rig = of_family(trial.family())?;
     let scale = Scale::of(trial);
     rig.name.clone_from(&trial.machine);
     rig.environment.gravity = [0.0, if trial.gravity { -9.81 } else { 0.0 }];
