@@ -14,6 +14,7 @@ use crate::engine::StepControl;
 use crate::mechanism::{Mechanism, Sensor};
 use crate::model::parts_of;
 use crate::scenario::Scenario;
+use rayon::prelude::*;
 
 /// The replica that is recorded, of those that calibrations do not have: its tolerance is a fifth of theirs.
 const RECORDED: u64 = 16;
@@ -61,6 +62,7 @@ impl Bench {
         };
         let machine = released(&self.rig, effects, &first, self.control).map_err(Stopped::from)?;
         (0..replicas)
+            .into_par_iter()
             .map(|replica| Ok(record(&machine, self.control, like, RECORDED + replica)?))
             .collect()
     }

@@ -6,16 +6,17 @@ use super::record::Bench;
 use super::{Case, NOISE, Trial};
 use crate::calibrate::sensed::candidates::candidates;
 use crate::calibrate::sensed::errors::of_run;
-use crate::calibrate::sensed::problem::Stopped;
+use crate::calibrate::sensed::problem::{Problem, Stopped};
+use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::SEEN;
 use crate::effects::Setting;
 use crate::mechanism::{Reads, Sensor};
 
 /// How often another target or way of an effect is drawn that does not show.
-const DRAWS: usize = 4;
+const DRAWS: usize = 3;
 
 /// Simulations of one draw, at most.
-const STEPS: usize = 8;
+const STEPS: usize = 6;
 
 /// Share of the wanted floors by which those of a size may differ from them.
 const NEAR: f64 = 0.2;
@@ -157,6 +158,8 @@ struct Look<'a> {
     bench: &'a Bench,
     /// Replicas of each model.
     replicas: u64,
+    /// What the declared model shows; none of a machine that falls, whose start is fitted to each recording.
+    declared: Option<Vec<Recording>>,
 }
 
 impl<'a> Look<'a> {
@@ -164,7 +167,10 @@ impl<'a> Look<'a> {
         let clean = bench.clean(&[], VALIDATION, 1)?;
         let mut problem = bench.of(clean)?;
         let rattles = problem.look_for_rattle(&[])? > SEEN;
-        Ok(Self { bench, replicas: if rattles { REPLICAS } else { 1 } })
+        let replicas = if rattles { REPLICAS } else { 1 };
+        let driven = !bench.declared.actuators.is_empty();
+        let declared = if driven { Some(declared(&problem, replicas)?) } else { None };
+        Ok(Self { bench, replicas, declared })
     }
 
     /// The largest error of the declared model on the validation run of one with these effects, in floors of that.
@@ -172,9 +178,16 @@ impl<'a> Look<'a> {
         let truth = self.bench.clean(effects, VALIDATION, self.replicas)?;
         let noisy = self.bench.noisy(&truth[0], &self.bench.declared.sensors, VALIDATION);
         let problem = self.bench.of(vec![noisy])?;
-        let starts = problem.let_go(&[])?;
-        let declared = problem.simulated(&starts, self.replicas as usize)?;
-        let errors = of_run(&problem, 0, "validation", &declared[0], &truth);
+        let before = match &self.declared {
+            Some(declared) => declared.clone(),
+            None => declared(&problem, self.replicas)?,
+        };
+        let errors = of_run(&problem, 0, "validation", &before, &truth);
         Ok(errors.iter().map(|error| error.before / error.floor).fold(0.0, f64::max))
     }
+}
+
+/// What the declared model shows of a problem's one run, so many replicas.
+fn declared(problem: &Problem, replicas: u64) -> Result<Vec<Recording>, Stopped> {
+    Ok(problem.simulated(&problem.let_go(&[])?, replicas as usize)?.swap_remove(0))
 }
