@@ -47,14 +47,20 @@ pub(super) struct Arguments {
     /// Do not look for this kind of effect, nor for what contains it; may be given many times
     #[arg(long, value_name = "KIND")]
     without: Vec<String>,
-    /// Instead of all this: hide known effects of random size in synthetic recordings, calibrate each,
-    /// and print which effect was taken for which (hours; --hidden for a part)
+    /// Instead of all this: hide known effects of random size in synthetic recordings of several machines,
+    /// calibrate each, and print how often the answer is right, and every wrong one (a minute a trial)
     #[arg(long, conflicts_with_all = ["rig", "data", "validate", "without"])]
     self_test: bool,
-    /// Hide this kind of effect only, or `nothing`, or `a+b`; may be given many times
+    /// Hide this kind of effect only, or `nothing`, `noise`, or `a+b`; may be given many times
     #[arg(long, value_name = "KIND", requires = "self_test")]
     hidden: Vec<String>,
-    /// Another set of random sizes, joints, motions and noise
+    /// Try this machine only; may be given many times
+    #[arg(long, value_name = "NAME", requires = "self_test")]
+    machine: Vec<String>,
+    /// Number of trials; with 0 the rates of the table that --trials names
+    #[arg(long, value_name = "N", requires = "self_test", default_value_t = 100)]
+    count: usize,
+    /// Another set of random machines, effects, motions and noise
     #[arg(long, value_name = "N", requires = "self_test", default_value_t = 1)]
     seed: u64,
     /// Keep finished trials in this file, one JSON object a line, and go on from there
@@ -78,8 +84,9 @@ Examples:
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let (Some(rig), false) = (&arguments.rig, arguments.data.is_empty()) else {
         let PrintOptions { json, quiet } = arguments.print;
-        let Arguments { hidden: only, seed, trials, .. } = arguments;
-        let test = SelfTest { only, seed: *seed, table: trials.as_deref(), json, quiet };
+        let Arguments { hidden: only, machine: machines, count, seed, trials, .. } = arguments;
+        let (count, seed, table) = (*count, *seed, trials.as_deref());
+        let test = SelfTest { only, machines, count, seed, table, json, quiet };
         return super::self_test::main(&test);
     };
     let without = without(&arguments.without)?;

@@ -3,7 +3,9 @@
 use super::failure::Failure;
 use super::output;
 use super::progress::Spinner;
-use crate::calibrate::self_test::{Trial, Tried, rates, run, trials};
+use crate::calibrate::sensed::self_test::{NOISE, Tried, machines, rates, run, trials};
+use crate::effects::named;
+use sha2::{Digest, Sha256};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -16,6 +18,10 @@ use std::thread;
 pub(super) struct SelfTest<'a> {
     /// Kinds to hide; all if empty.
     pub only: &'a [String],
+    /// Machines to try; all if empty.
+    pub machines: &'a [String],
+    /// How many trials.
+    pub count: usize,
     /// Everything random follows from it.
     pub seed: u64,
     /// Where finished trials are kept.
@@ -24,20 +30,59 @@ pub(super) struct SelfTest<'a> {
     pub quiet: bool,
 }
 
-/// Tries what is not in the table yet, prints what became of each and the rates.
+/// Tries what is not in the table yet, prints what became of each and the rates. Without trials to do, the rates of
+/// the table.
 pub(super) fn main(test: &SelfTest) -> Result<(), Failure> {
-    let wanted = trials(test.only, test.seed);
+    refuse_strangers(test)?;
+    let table = test.table.map(read).transpose()?.unwrap_or_default();
+    let tried = if test.count == 0 { table } else { all_tried(test, table)? };
+    let text = if test.json {
+        serde_json::to_string_pretty(&tried).map_err(|error| Failure::Other(error.to_string()))?
+            + "\n"
+    } else {
+        format!("\n{}", rates(&tried))
+    };
+    Ok(output::print(&text)?)
+}
+
+/// Refuses names of effects and of machines that are none.
+fn refuse_strangers(test: &SelfTest) -> Result<(), Failure> {
+    let known = |kind: &str| kind == "nothing" || kind == NOISE || named(kind).is_some();
+    let strange = test.only.iter().filter(|only| !only.split('+').all(known)).map(|only| {
+        format!(
+            "--hidden: {only} is hidden in no trial; expected `nothing`, `{NOISE}`, the name of an effect, or two \
+             of them with a plus"
+        )
+    });
+    let all: Vec<&str> = machines().collect();
+    let other = test.machines.iter().filter(|name| !all.contains(&name.as_str())).map(|name| {
+        format!(
+            "--machine: {name} is no machine of the self-test; expected one of {}",
+            all.join(", ")
+        )
+    });
+    let wrong: Vec<String> = strange.chain(other).collect();
+    if wrong.is_empty() { Ok(()) } else { Err(Failure::Input(wrong)) }
+}
+
+/// The wanted trials, those that the table lacks tried.
+fn all_tried(test: &SelfTest, mut all: Vec<Tried>) -> Result<Vec<Tried>, Failure> {
+    let version = version()?;
+    if let Some((table, other)) = test.table.zip(all.iter().find(|t| t.version != version)) {
+        return Err(Failure::Input(vec![format!(
+            "{}: holds trials of {}, and this is {version}; a table is of one program: give another file, or \
+             --count 0 for its rates",
+            table.display(),
+            other.version
+        )]));
+    }
+    let wanted = trials(test.seed, test.count, test.machines, test.only);
     if wanted.is_empty() {
-        let hidden = test.only.join(", ");
-        let message = format!(
-            "--hidden: {hidden} is hidden in no trial; expected `nothing`, the name of an effect \
-             that can be hidden, or two of them with a plus if this seed draws them"
-        );
+        let message = format!("--hidden: {} is hidden in no trial of these", test.only.join(", "));
         return Err(Failure::Input(vec![message]));
     }
-    let mut all = test.table.map(read).transpose()?.unwrap_or_default();
-    let done = |trial: &Trial| all.iter().find(|tried: &&Tried| tried.trial == *trial).cloned();
-    let known: Vec<Option<Tried>> = wanted.iter().map(done).collect();
+    let done = |seed: u64| all.iter().find(|tried| tried.trial.seed == seed).cloned();
+    let known: Vec<Option<Tried>> = wanted.iter().map(|trial| done(trial.seed)).collect();
     let missing: Vec<usize> = (0..wanted.len()).filter(|&i| known[i].is_none()).collect();
     let spinner = Spinner::new(test.quiet);
     let finished = AtomicUsize::new(wanted.len() - missing.len());
@@ -50,7 +95,7 @@ pub(super) fn main(test: &SelfTest) -> Result<(), Failure> {
     let results = Mutex::new((known, &mut all));
     let work = || -> Result<(), Failure> {
         while let Some(&i) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let tried = run(&wanted[i]).map_err(|error| Failure::Other(error.to_string()))?;
+            let tried = run(&wanted[i], &version);
             finished.fetch_add(1, Ordering::Relaxed);
             let (found, all) = &mut *results.lock().unwrap_or_else(PoisonError::into_inner);
             if !test.json && !test.quiet {
@@ -78,28 +123,35 @@ pub(super) fn main(test: &SelfTest) -> Result<(), Failure> {
     })?;
     spinner.clear();
     let (found, _) = results.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let found: Vec<Tried> = found.into_iter().flatten().collect();
-    let text = if test.json {
-        serde_json::to_string_pretty(&found).map_err(|error| Failure::Other(error.to_string()))?
-            + "\n"
-    } else {
-        format!("\n{}", rates(&found))
-    };
-    Ok(output::print(&text)?)
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// Version of the program, and which build of it: the first digits of its file's hash.
+fn version() -> Result<String, Failure> {
+    let read = std::env::current_exe().and_then(fs::read);
+    let program = read.map_err(|error| Failure::Other(format!("cannot read itself: {error}")))?;
+    let hash = Sha256::digest(&program);
+    let digits: String = hash.iter().take(4).map(|byte| format!("{byte:02x}")).collect();
+    Ok(format!("{} ({digits})", env!("CARGO_PKG_VERSION")))
 }
 
 /// One trial in a line.
 fn line(tried: &Tried) -> String {
+    let trial = &tried.trial;
+    let machine = format!("{} {} × {:.2}", trial.seed, trial.machine, trial.size);
+    let Some(answer) = &tried.answer else {
+        let why = tried.unasked.as_deref().unwrap_or_default();
+        return format!("      {machine}: {}: {why}\n", trial.hidden.join(", "));
+    };
     format!(
-        "{} {}, {:.1} floors{}: hidden {}; {}: {} ({} simulations)\n",
-        if tried.right { "right" } else { "WRONG" },
-        if tried.trial.gravity { "gravity" } else { "no gravity" },
-        tried.floors,
-        if tried.trial.withheld { ", withheld" } else { "" },
-        tried.lacks,
-        tried.verdict.word(),
-        tried.found,
-        tried.simulations
+        "{} {machine}, {:.1} floors: hidden {}; {}: {} ({} simulations, {:.0} s)\n",
+        if answer.right { "right" } else { "WRONG" },
+        answer.floors,
+        answer.lacks,
+        answer.verdict.word(),
+        answer.found,
+        answer.simulations,
+        answer.seconds,
     )
 }
 

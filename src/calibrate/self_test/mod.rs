@@ -9,6 +9,7 @@ mod rig;
 pub use grid::trials;
 pub use hidden::kinds;
 pub use rates::rates;
+pub(in crate::calibrate) use rates::{covered, is_phase, near, share};
 pub use rig::recorded;
 
 use super::errors;

@@ -82,20 +82,23 @@ fn found(tried: &Tried) -> String {
     format!("`{}`: {}", tried.verdict.word(), tried.found)
 }
 
-fn is_phase(value: &Value) -> bool {
+/// Whether a value is a phase, which near another one says nothing of its effect's size.
+pub(in crate::calibrate) fn is_phase(value: &Value) -> bool {
     value.name.ends_with("phase_rad")
 }
 
-fn near(value: &Value) -> bool {
+/// Whether a value was found within 10 %.
+pub(in crate::calibrate) fn near(value: &Value) -> bool {
     (value.value - value.truth).abs() < NEAR * value.truth.abs()
 }
 
-fn covered(value: &Value) -> bool {
+/// Whether the true value lies in the 95 % interval of the one that was found.
+pub(in crate::calibrate) fn covered(value: &Value) -> bool {
     value.std.is_some_and(|std| (value.value - value.truth).abs() < 1.96 * std)
 }
 
 /// `9 of 10 (90 %, 60–98)`.
-fn share(of: &[bool]) -> String {
+pub(in crate::calibrate) fn share(of: &[bool]) -> String {
     let right = of.iter().filter(|right| **right).count();
     let Some([low, high]) = wilson(right, of.len()) else { return "–".to_owned() };
     // No minus before a zero.

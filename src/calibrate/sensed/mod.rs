@@ -8,7 +8,7 @@
 //! tries where residuals are blind; `calm` what shows in a
 //! rattle's size alone, `simpler` which of their values are needed; [`outcome`] is the
 //! whole way, [`report`] what is written of it. Where a model explains every residual and still misses what was
-//! recorded, `swing` finds how the machine was let go.
+//! recorded, `swing` finds how the machine was let go. [`self_test`] says how often it is right.
 
 pub mod baseline;
 pub mod basis;
@@ -32,6 +32,7 @@ pub mod report;
 pub mod residual;
 mod screen;
 pub mod search;
+pub mod self_test;
 pub mod settle;
 mod simpler;
 pub mod simulate;

@@ -106,6 +106,20 @@ impl Recording {
         })
     }
 
+    /// A recording called `name` of so many samples `interval` (s) apart from time 0 on, sensor by sensor.
+    pub fn of(name: &str, interval: f64, samples: usize, columns: Vec<Option<Vec<f64>>>) -> Self {
+        Self {
+            path: name.to_owned(),
+            name: name.to_owned(),
+            start: 0.0,
+            interval,
+            samples,
+            columns,
+            ignored: Vec::new(),
+            jitter: 0.0,
+        }
+    }
+
     /// Samples of sensor `index`, if the recording has them.
     pub fn get(&self, index: usize) -> Option<&[f64]> {
         self.columns.get(index)?.as_deref()

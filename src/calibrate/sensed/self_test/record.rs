@@ -1,0 +1,94 @@
+//! A trial's rig, and recordings of the machine that it declares with something hidden in it.
+
+use super::Trial;
+use super::motion::like;
+use super::rig::rig;
+use super::sized::Hidden;
+use crate::calibrate::result::control;
+use crate::calibrate::sensed::problem::{Problem, Stopped};
+use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::simulate::{record, with_noise};
+use crate::calibrate::sensed::start::{machine, released};
+use crate::effects::Setting;
+use crate::engine::StepControl;
+use crate::mechanism::{Mechanism, Sensor};
+use crate::model::parts_of;
+use crate::scenario::Scenario;
+use rayon::prelude::*;
+
+/// The replica that is recorded, of those that calibrations do not have: its tolerance is a fifth of theirs.
+const RECORDED: u64 = 16;
+
+/// A rig and what its runs are recorded like.
+pub(super) struct Bench {
+    /// What its maker declares.
+    pub rig: Scenario,
+    /// The machine as declared at the first row of a run.
+    pub declared: Mechanism,
+    control: StepControl,
+    likes: [Recording; 2],
+    seed: u64,
+}
+
+impl Bench {
+    /// The bench of a trial.
+    ///
+    /// # Errors
+    /// A rig that cannot be put together.
+    pub fn new(trial: &Trial) -> Result<Self, Stopped> {
+        let rig = rig(trial)?;
+        let parts = parts_of(&rig)?;
+        let likes = [0, 1].map(|run| like(trial, &parts, run));
+        let declared = machine(&rig, &[], &likes[0])?;
+        Ok(Self { control: control(&rig), rig, declared, likes, seed: trial.seed })
+    }
+
+    /// What sensors without noise show of run `run` with these effects, so many replicas.
+    ///
+    /// # Errors
+    /// Effects that the machine cannot take, a run that broke down.
+    pub fn clean(
+        &self,
+        effects: &[Setting],
+        run: usize,
+        replicas: u64,
+    ) -> Result<Vec<Recording>, Stopped> {
+        let like = &self.likes[run];
+        // What falls is let go where the first row says; nothing else of it is known yet.
+        let first = if self.declared.actuators.is_empty() {
+            like.first(like.interval)
+        } else {
+            like.clone()
+        };
+        let machine = released(&self.rig, effects, &first, self.control).map_err(Stopped::from)?;
+        (0..replicas)
+            .into_par_iter()
+            .map(|replica| Ok(record(&machine, self.control, like, RECORDED + replica)?))
+            .collect()
+    }
+
+    /// The recording of run `run` that a clean one comes to by the noise of these sensors.
+    pub fn noisy(&self, clean: &Recording, sensors: &[Sensor], run: usize) -> Recording {
+        with_noise(clean, sensors, (self.seed << 1) + run as u64)
+    }
+
+    /// A problem of these recordings.
+    ///
+    /// # Errors
+    /// Sensors that do not say how the machine stands.
+    pub fn of(&self, recordings: Vec<Recording>) -> Result<Problem, Stopped> {
+        Problem::new(self.rig.clone(), recordings, self.control)
+    }
+
+    /// What a user would calibrate: both runs with what is hidden.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn problem(&self, hidden: &Hidden) -> Result<Problem, Stopped> {
+        let recorded = |run: usize| {
+            let clean = self.clean(&hidden.effects, run, 1)?;
+            Ok::<_, Stopped>(self.noisy(&clean[0], &hidden.sensors, run))
+        };
+        self.of(vec![recorded(0)?, recorded(1)?])
+    }
+}

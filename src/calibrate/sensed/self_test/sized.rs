@@ -1,0 +1,193 @@
+//! How large what is hidden is: so that the declared model misses the validation run by as many floors as drawn.
+
+use super::dice::Dice;
+use super::hidden::Shape;
+use super::record::Bench;
+use super::{Case, NOISE, Trial};
+use crate::calibrate::sensed::candidates::candidates;
+use crate::calibrate::sensed::errors::of_run;
+use crate::calibrate::sensed::problem::{Problem, Stopped};
+use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::thresholds::SEEN;
+use crate::effects::Setting;
+use crate::mechanism::{Reads, Sensor};
+
+/// How often another target or way of an effect is drawn that does not show.
+const DRAWS: usize = 3;
+
+/// Simulations of one draw, at most.
+const STEPS: usize = 6;
+
+/// Share of the wanted floors by which those of a size may differ from them.
+const NEAR: f64 = 0.2;
+
+/// The same of the last size that was tried, where a rattle scatters them.
+const NEAR_ENOUGH: f64 = 0.5;
+
+/// Replicas of a machine that rattles.
+const REPLICAS: u64 = 3;
+
+/// Factor by which noise is larger than declared where that is hidden.
+const NOISIER: f64 = 2.0;
+
+/// Run that errors are looked at of.
+const VALIDATION: usize = 1;
+
+/// What is hidden in a trial.
+#[derive(Clone, Debug)]
+pub(super) struct Hidden {
+    /// Effects.
+    pub effects: Vec<Setting>,
+    /// Sensors with the noise that they really have.
+    pub sensors: Vec<Sensor>,
+    /// The column whose noise is not as declared, if there is one.
+    pub noisier: Option<String>,
+    /// Floors of all of it together.
+    pub floors: f64,
+    /// Floors of the effect that shows least of several.
+    pub least: Option<f64>,
+}
+
+/// Hides what a trial has drawn; none where nothing of these kinds shows as it should.
+///
+/// # Errors
+/// A rig that cannot be simulated.
+pub(super) fn hide(trial: &Trial, bench: &Bench) -> Result<Option<Hidden>, Stopped> {
+    let mut dice = Dice::new(trial.seed, 1);
+    let mut sensors = bench.declared.sensors.clone();
+    let noisier = match trial.hidden.first() {
+        Some(kind) if kind == NOISE => Some(make_noisy(&mut sensors, &mut dice)),
+        _ => None,
+    };
+    let look = Look::new(bench)?;
+    let mut effects = Vec::new();
+    let mut floors: Vec<f64> = Vec::new();
+    for (kind, wanted) in trial.hidden.iter().zip(&trial.wanted) {
+        if noisier.is_some() {
+            break;
+        }
+        let Some((effect, shows)) = sized(&look, kind, *wanted, &mut dice)? else {
+            return Ok(None);
+        };
+        effects.push(effect);
+        floors.push(shows);
+    }
+    let least =
+        (trial.case == Case::Two).then(|| floors.iter().copied().fold(f64::INFINITY, f64::min));
+    let all = match floors[..] {
+        [one] => one,
+        _ => look.floors(&effects)?,
+    };
+    Ok(Some(Hidden { effects, sensors, noisier, floors: all, least }))
+}
+
+/// Makes one of the measuring sensors noisier; its column.
+fn make_noisy(sensors: &mut [Sensor], dice: &mut Dice) -> String {
+    let measuring: Vec<usize> =
+        (0..sensors.len()).filter(|&i| !matches!(sensors[i].reads, Reads::Command(_))).collect();
+    let sensor = &mut sensors[dice.one_of(&measuring).copied().unwrap_or_default()];
+    let rounding = sensor.resolution.powi(2) / 12.0;
+    let square = NOISIER.powi(2) * (sensor.std.powi(2) + rounding) - rounding;
+    sensor.std = square.max(0.0).sqrt();
+    sensor.column.clone()
+}
+
+/// An effect of a kind, somewhere on the machine, that shows by so many floors; and by how many it does.
+fn sized(
+    look: &Look,
+    kind: &str,
+    wanted: f64,
+    dice: &mut Dice,
+) -> Result<Option<(Setting, f64)>, Stopped> {
+    let mut all = candidates(&look.bench.declared, &[]);
+    all.retain(|effect| effect.kind.name == kind);
+    for _ in 0..DRAWS {
+        let Some(effect) = drawn(&all, dice) else { return Ok(None) };
+        let shape = Shape::draw(&effect, dice);
+        if let Some(found) = grown(look, &shape, wanted)? {
+            return Ok(Some(found));
+        }
+    }
+    Ok(None)
+}
+
+/// One of the targets, and one of the variants there.
+fn drawn(all: &[Setting], dice: &mut Dice) -> Option<Setting> {
+    let mut targets: Vec<&Setting> = Vec::new();
+    for effect in all {
+        if !targets.iter().any(|known| known.is(effect)) {
+            targets.push(effect);
+        }
+    }
+    let target = dice.one_of(&targets)?;
+    let variants: Vec<&Setting> = all.iter().filter(|effect| effect.is(target)).collect();
+    dice.one_of(&variants).map(|effect| (*effect).clone())
+}
+
+/// A shape in the size in which it shows by so many floors, if there is one.
+fn grown(look: &Look, shape: &Shape, wanted: f64) -> Result<Option<(Setting, f64)>, Stopped> {
+    // Beside the noise, whose square is one.
+    let beyond = |floors: f64| (floors * floors - 1.0).max(0.04).sqrt();
+    let (mut size, mut largest) = (1.0, f64::INFINITY);
+    let mut last = None;
+    for _ in 0..STEPS {
+        let there = match shape.at(size) {
+            // A machine that cannot be, or breaks down, has too much of it.
+            Some(effect) => look.floors(std::slice::from_ref(&effect)).ok().map(|f| (effect, f)),
+            None => None,
+        };
+        let Some((effect, floors)) = there.filter(|(_, floors)| floors.is_finite()) else {
+            largest = size;
+            size *= 0.3;
+            continue;
+        };
+        let off = (floors / wanted).ln().abs();
+        last = Some((effect, floors));
+        if off < NEAR {
+            return Ok(last);
+        }
+        let factor = (beyond(wanted) / beyond(floors)).clamp(0.02, 50.0);
+        // Between what shows too little and what cannot be there is room for half.
+        size = if size * factor < largest { size * factor } else { 0.5 * (size + largest) };
+    }
+    Ok(last.filter(|(_, floors)| (floors / wanted).ln().abs() < NEAR_ENOUGH))
+}
+
+/// Looks at what the declared model misses.
+struct Look<'a> {
+    bench: &'a Bench,
+    /// Replicas of each model.
+    replicas: u64,
+    /// What the declared model shows; none of a machine that falls, whose start is fitted to each recording.
+    declared: Option<Vec<Recording>>,
+}
+
+impl<'a> Look<'a> {
+    fn new(bench: &'a Bench) -> Result<Self, Stopped> {
+        let clean = bench.clean(&[], VALIDATION, 1)?;
+        let mut problem = bench.of(clean)?;
+        let rattles = problem.look_for_rattle(&[])? > SEEN;
+        let replicas = if rattles { REPLICAS } else { 1 };
+        let driven = !bench.declared.actuators.is_empty();
+        let declared = if driven { Some(declared(&problem, replicas)?) } else { None };
+        Ok(Self { bench, replicas, declared })
+    }
+
+    /// The largest error of the declared model on the validation run of one with these effects, in floors of that.
+    fn floors(&self, effects: &[Setting]) -> Result<f64, Stopped> {
+        let truth = self.bench.clean(effects, VALIDATION, self.replicas)?;
+        let noisy = self.bench.noisy(&truth[0], &self.bench.declared.sensors, VALIDATION);
+        let problem = self.bench.of(vec![noisy])?;
+        let before = match &self.declared {
+            Some(declared) => declared.clone(),
+            None => declared(&problem, self.replicas)?,
+        };
+        let errors = of_run(&problem, 0, "validation", &before, &truth);
+        Ok(errors.iter().map(|error| error.before / error.floor).fold(0.0, f64::max))
+    }
+}
+
+/// What the declared model shows of a problem's one run, so many replicas.
+fn declared(problem: &Problem, replicas: u64) -> Result<Vec<Recording>, Stopped> {
+    Ok(problem.simulated(&problem.let_go(&[])?, replicas as usize)?.swap_remove(0))
+}

@@ -1,0 +1,17 @@
+//! A fixed part of the self-test over machines, small enough to run each time: the quick ones of the trials of
+//! `freeplay calibrate --self-test`, by their seeds.
+
+use freeplay::calibrate::sensed::self_test::{Trial, Tried, run};
+
+/// A trial whose answer is right.
+fn right(seed: u64) -> Tried {
+    let tried = run(&Trial::draw(seed), "this");
+    let answer = tried.answer.as_ref().unwrap_or_else(|| panic!("{tried:?}"));
+    assert!(answer.right && !answer.wrong_name, "{tried:#?}");
+    tried
+}
+
+#[test]
+fn a_large_slider_crank_that_lacks_nothing_lacks_nothing() {
+    right(1_000_007);
+}
