@@ -111,8 +111,8 @@ impl Mechanism {
                 state.rotation *= UnitComplex::new(shift[3 * i + 2]);
             }
         }
-        // A millionth of what matters: joints may be closed but for rounding.
-        if remains.is_nan() || remains > 1e-12 {
+        // A millionth of what matters: joints may be closed but for rounding, which grows with the machine.
+        if remains.is_nan() || remains > 1e-12 * self.size().max(1.0) {
             return Err(remains);
         }
         // A drive that only pulls cannot have started the machine: it moves as commanded just before.

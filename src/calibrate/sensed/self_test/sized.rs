@@ -182,7 +182,8 @@ impl<'a> Look<'a> {
             Some(declared) => declared.clone(),
             None => declared(&problem, self.replicas)?,
         };
-        let errors = of_run(&problem, 0, "validation", &before, &truth);
+        let recording = &problem.runs[0].recording;
+        let errors = of_run(&problem.declared, recording, "validation", &before, &truth);
         Ok(errors.iter().map(|error| error.before / error.floor).fold(0.0, f64::max))
     }
 }
