@@ -15,6 +15,7 @@ mod calm;
 pub mod candidates;
 pub mod errors;
 pub mod estimate;
+pub mod events;
 pub mod fit;
 pub mod hypotheses;
 pub mod left;

@@ -160,3 +160,34 @@ pub const SURE_NOISE: f64 = 4.0;
 /// Ratio of what two variants of an effect leave within which looks do not tell which is right: what a look is wrong
 /// by changes with the effect by as much.
 pub const AS_MUCH: f64 = 2.0;
+
+/// Corner in Hz of the low-pass of efforts in which events are looked for: a blow of 5 ms passes at half its height, and
+/// what encoders' steps make of accelerations, which grows with the square of the frequency, does not.
+pub const EVENT_CORNER: f64 = 40.0;
+
+/// Shortest and longest stretch in s in which an event is looked for: a blow, and a push by hand. Longer ones show
+/// as several.
+pub const EVENT_WIDTHS: [f64; 2] = [0.02, 1.0];
+
+/// Time in s in which the largest mean of a stretch is taken, to know what is usual.
+pub const EVENT_BLOCK: f64 = 0.5;
+
+/// Ratio of a stretch's mean to the median of the largest ones of all blocks, from which it is an event.
+pub const EVENT_SCORE: f64 = 3.0;
+
+/// Ratio of the least event to the clearest stretch that is none.
+pub const EVENT_RATIO: f64 = 1.2;
+
+/// Time in s around an event in which no other one is looked for: filters smear it by 25 ms, and what a machine does
+/// at its end belongs to it.
+pub const EVENT_MARGIN: f64 = 0.1;
+
+/// Events of one recording at most: more are no events but a model that is wrong.
+pub const EVENTS: usize = 8;
+
+/// Share of an event's deviations from which another freedom is pushed as well.
+pub const EVENT_SHARE: f64 = 0.5;
+
+/// Rows in a recording for each function of the motion that is fitted to it, before events are looked for: 250 rows a
+/// second hold some 25 that are independent.
+pub const ROWS_A_FEATURE: usize = 40;
