@@ -2,6 +2,7 @@
 
 use super::candidates::candidates;
 use super::errors::of_run;
+use super::events::{Event, search::beside};
 use super::fit::Fit;
 use super::hypotheses::Round;
 use super::left::{Left, is_noise};
@@ -30,6 +31,8 @@ pub struct Outcome {
     /// The effects that were found; where the verdict is `unexplained`, a table of efforts alone, if there is
     /// one.
     pub effects: Vec<Estimated>,
+    /// What does not last.
+    pub events: Vec<Event>,
     /// What stands in for what has no name.
     pub described: Option<Described>,
     /// What the search held for the best, whatever the verdict.
@@ -68,12 +71,36 @@ pub fn calibrate(
     let logs = problem.simulated(&problem.let_go(&[])?, 2)?;
     let noises = noise::correct(problem, &logs);
     let mut rattle = problem.rattle(&logs);
+    let looked = !without.contains(&UNNAMED);
+    let mut events = Vec::new();
+    if looked {
+        tell("looking for what does not last");
+        events = beside(problem, &[], &logs)?;
+        problem.rig.effects = events.iter().map(Event::setting).collect();
+    }
     let split = problem.split();
     let candidates = candidates(&problem.declared, without);
     let names: Vec<Name> = problem.names().unwrap_or_default();
     let search = Search { problem: &*problem, split: &split, candidates, names, tell };
     let Found { mut best, declared, rounds } = search.run()?;
-    let Search { candidates, names, .. } = search;
+    let Search { mut candidates, mut names, .. } = search;
+    if looked && events.is_empty() && !best.fit.effects.is_empty() {
+        let search = Search { problem: &*problem, split: &split, candidates, names, tell };
+        let noise = is_noise(&search.left(&best));
+        (candidates, names) = (search.candidates, search.names);
+        if !noise {
+            tell("looking for what does not last beside the effects found");
+            let starts = problem.starts(&best.fit.effects)?;
+            let simulated = problem.simulated(&starts, problem.replicas)?;
+            events = beside(problem, &best.fit.effects, &simulated)?;
+        }
+        if !events.is_empty() {
+            problem.rig.effects = events.iter().map(Event::setting).collect();
+            let search = Search { problem: &*problem, split: &split, candidates, names, tell };
+            best = search.with_events(best)?;
+            (candidates, names) = (search.candidates, search.names);
+        }
+    }
     // A load may lift joints off that rest in the declared machine: what nobody can predict is no model's fault.
     if problem.replicas == 1 && !best.fit.effects.is_empty() {
         rattle = rattle.max(problem.look_for_rattle(&best.fit.effects)?);
@@ -85,8 +112,7 @@ pub fn calibrate(
             best = search.simplified(best)?;
         }
     }
-    let problem = &*problem;
-    let search = Search { problem, split: &split, candidates, names, tell };
+    let search = Search { problem: &*problem, split: &split, candidates, names, tell };
     let (before, after) = (search.left(&declared), search.left(&best));
     tell("predicting");
     let noise = is_noise(&after);
@@ -108,18 +134,21 @@ pub fn calibrate(
     let deviations = if noise { best.fit.deviations() } else { Vec::new() };
     let starts = problem.starts(&effects)?;
     let calibrated = problem.simulated_about(&effects, &deviations, &starts, replicas)?;
-    let plain = match effects.is_empty() {
+    // What the declared machine would have done knows of no event either.
+    problem.rig.effects.clear();
+    let plain = match effects.is_empty() && events.is_empty() {
         true => calibrated.clone(),
         false => problem.simulated(&problem.starts(&[])?, problem.replicas)?,
     };
     let mut errors = Vec::new();
     for index in 0..problem.runs.len() {
         let role = if index == 0 { "calibration" } else { "validation" };
-        errors.extend(of_run(problem, index, role, &plain[index], &calibrated[index]));
+        errors.extend(of_run(&*problem, index, role, &plain[index], &calibrated[index]));
     }
     // A model that misses the run that it was fitted to lacks something.
     let met = errors.iter().all(|error| error.after <= MET * error.floor);
-    let verdict = match (noise && met, best.fit.effects.is_empty()) {
+    let nothing = best.fit.effects.is_empty() && events.is_empty();
+    let verdict = match (noise && met, nothing) {
         (true, true) => Verdict::NothingMissing,
         (true, false) => Verdict::Explained,
         (false, _) => Verdict::Unexplained,
@@ -128,12 +157,15 @@ pub fn calibrate(
     let means = |logs: &[Vec<Recording>]| {
         logs.iter().map(|logs| super::errors::mean(logs, sensors)).collect::<Vec<_>>()
     };
+    let mut effects = match (verdict, &described) {
+        (Verdict::Explained, _) => estimated(&best, &split.on),
+        (_, Some((described, _))) => vec![(described.effect.clone(), Vec::new())],
+        (_, None) => Vec::new(),
+    };
+    effects.extend(events.iter().map(|event| (event.setting(), event.params())));
     Ok(Outcome {
-        effects: match (verdict, &described) {
-            (Verdict::Explained, _) => estimated(&best, &split.on),
-            (_, Some((described, _))) => vec![(described.effect.clone(), Vec::new())],
-            (_, None) => Vec::new(),
-        },
+        effects,
+        events,
         described: described.map(|(described, _)| described),
         verdict,
         tried: best.fit.effects.clone(),

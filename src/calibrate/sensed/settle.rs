@@ -97,6 +97,15 @@ impl Search<'_> {
         Ok(if refined.misfit < model.misfit { refined } else { model })
     }
 
+    /// The model again, now that events are known: its values anew, without what imitated them.
+    pub(super) fn with_events(&self, model: Model) -> Result<Model, Stopped> {
+        (self.tell)(&format!("simulating what does not last with {}", names(&model.fit.effects)));
+        let settled = self.settle(&model.fit.effects, 2)?.unwrap_or(model);
+        let best = self.needed(settled)?;
+        let bare = self.settle(&[], 1)?;
+        Ok(bare.filter(|bare| bare.cost() < best.cost() + price(&best)).unwrap_or(best))
+    }
+
     /// The model without effects that it does not need.
     pub(super) fn needed(&self, mut model: Model) -> Result<Model, Stopped> {
         let mut i = 0;

@@ -1,10 +1,10 @@
 //! Events: when, where, how much.
 
-use super::lasting::cleared;
-use super::scan::{Peak, scan};
-use super::series::{Series, means};
+use super::lasting::{Lasting, low};
+use super::scan::{Peak, Rulers, scan};
+use super::series::{Series, means, scatter};
 use crate::calibrate::report::{ActsOn, Depends, EffectReport, Fitted};
-use crate::calibrate::sensed::thresholds::{EVENT_MARGIN, EVENT_SHARE};
+use crate::calibrate::sensed::thresholds::{EVENT_MARGIN, EVENT_SHARE, RESTLESS};
 use crate::effects::{History, OverTime, Setting};
 
 /// Instants of a table at most.
@@ -29,15 +29,38 @@ pub struct Event {
     pub course: Vec<(f64, f64)>,
 }
 
-/// What does not last in a recording.
-pub fn events(series: &Series) -> Vec<Event> {
-    let cleared = cleared(series);
-    let (peaks, others) = scan(series, &cleared);
-    let mut found: Vec<Event> = joined(peaks, series)
-        .into_iter()
-        .map(|peak| event(series, &cleared, &peak, others))
-        .collect();
-    found.sort_by(|a, b| a.history.at_s.total_cmp(&b.history.at_s));
+/// What does not last in recordings of one machine. Each is held against itself; one that is far more restless than
+/// another is held against that: what acts on it half of the time is no ground to judge it by.
+pub fn events(all: &[Series]) -> Vec<Event> {
+    let efforts: Vec<Vec<Vec<f64>>> = all.iter().map(low).collect();
+    let lasting: Vec<Lasting> =
+        all.iter().zip(&efforts).map(|(series, low)| Lasting::of(series, low)).collect();
+    let own: Vec<Vec<Vec<f64>>> =
+        (0..all.len()).map(|run| lasting[run].cleared(&all[run], &efforts[run])).collect();
+    let unrest: Vec<Vec<f64>> =
+        own.iter().map(|cleared| cleared.iter().map(|effort| scatter(effort)).collect()).collect();
+    let calmest = |run: usize| {
+        let calmer = |other: &usize| {
+            let pairs = unrest[run].iter().zip(&unrest[*other]);
+            let alike = all[run].interval.total_cmp(&all[*other].interval).is_eq();
+            alike && pairs.clone().any(|(own, other)| *own > RESTLESS * other)
+        };
+        let total = |other: &usize| unrest[*other].iter().sum::<f64>();
+        let others = (0..all.len()).filter(calmer);
+        others.min_by(|a, b| total(a).total_cmp(&total(b))).unwrap_or(run)
+    };
+    let mut found = Vec::new();
+    for (run, series) in all.iter().enumerate() {
+        let by = calmest(run);
+        let cleared = lasting[by].cleared(series, &efforts[run]);
+        let (peaks, others) = scan(series, &cleared, &Rulers::of(&all[by], &own[by]));
+        let mut events: Vec<Event> = joined(peaks, series)
+            .into_iter()
+            .map(|peak| event(series, &cleared, &peak, others))
+            .collect();
+        events.sort_by(|a, b| a.history.at_s.total_cmp(&b.history.at_s));
+        found.extend(events);
+    }
     found
 }
 

@@ -21,24 +21,60 @@ const OUTSIDE: f64 = 1.345;
 /// Share of a feature's own square that is added to it, against features that say the same twice.
 const RIDGE: f64 = 1e-5;
 
-/// Efforts of each freedom below [`EVENT_CORNER`], without what the motion explains; where recordings are too short
-/// to tell that, without their median alone.
-pub fn cleared(series: &Series) -> Vec<Vec<f64>> {
+/// What recurs with the motion in one recording.
+#[derive(Clone, Debug)]
+pub struct Lasting {
+    /// Root mean square rate of each joint in that recording.
+    rates: Vec<f64>,
+    /// Whether the recording was long enough for functions of the motion, rather than a constant alone.
+    moving: bool,
+    /// Factors of the functions, freedom by freedom.
+    factors: Vec<DVector<f64>>,
+}
+
+impl Lasting {
+    /// Of a recording's efforts below [`EVENT_CORNER`].
+    pub fn of(series: &Series, low: &[Vec<f64>]) -> Self {
+        let rates: Vec<f64> = moving(series).map(|(_, [_, rate, _])| rms(rate)).collect();
+        let all = features(series, &rates);
+        let moving = series.count() >= ROWS_A_FEATURE * all.len();
+        let features = if moving { all } else { vec![vec![1.0; series.count()]] };
+        let factors = low.iter().map(|low| factors(low, &features)).collect();
+        Self { rates, moving, factors }
+    }
+
+    /// Efforts of a recording below [`EVENT_CORNER`] without it.
+    pub fn cleared(&self, series: &Series, low: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let features = match self.moving {
+            true => features(series, &self.rates),
+            false => vec![vec![1.0; series.count()]],
+        };
+        let clear = |(low, factors): (&Vec<f64>, &DVector<f64>)| {
+            let mut left = low.clone();
+            for (feature, factor) in features.iter().zip(factors.iter()) {
+                left.iter_mut().zip(feature).for_each(|(left, value)| *left -= factor * value);
+            }
+            left
+        };
+        low.iter().zip(&self.factors).map(clear).collect()
+    }
+}
+
+/// Efforts of each freedom below [`EVENT_CORNER`].
+pub fn low(series: &Series) -> Vec<Vec<f64>> {
     let nyquist = 0.5 / series.interval;
     let filter = (EVENT_CORNER < 0.9 * nyquist)
         .then(|| ZeroPhase::butterworth(4, EVENT_CORNER, series.interval));
-    let features = features(series);
-    let enough = series.count() >= ROWS_A_FEATURE * features.len();
-    let constant = vec![vec![1.0; series.count()]];
-    let features = if enough { &features } else { &constant };
-    let clear = |freedom: &Freedom| {
-        let low = match &filter {
-            Some(filter) => filter.apply(&freedom.effort),
-            None => freedom.effort.clone(),
-        };
-        without(&low, features)
+    let pass = |freedom: &Freedom| match &filter {
+        Some(filter) => filter.apply(&freedom.effort),
+        None => freedom.effort.clone(),
     };
-    series.freedoms.iter().map(clear).collect()
+    series.freedoms.iter().map(pass).collect()
+}
+
+/// Freedoms whose motion was measured.
+fn moving(series: &Series) -> impl Iterator<Item = (&Freedom, &[Vec<f64>; 3])> {
+    series.freedoms.iter().filter_map(|freedom| Some((freedom, freedom.motion.as_ref()?)))
 }
 
 fn rms(values: &[f64]) -> f64 {
@@ -57,15 +93,13 @@ fn slowed(values: &[f64], series: &Series) -> Vec<f64> {
 
 /// Functions of the motion at all instants: of each joint its direction at several speeds, its rate, drag, place
 /// and acceleration; of each pair the product of rates, and of angles their sum.
-fn features(series: &Series) -> Vec<Vec<f64>> {
+fn features(series: &Series, rates: &[f64]) -> Vec<Vec<f64>> {
     let mut features = vec![vec![1.0; series.count()]];
-    let moving: Vec<(&Freedom, &[Vec<f64>; 3])> =
-        series.freedoms.iter().filter_map(|f| Some((f, f.motion.as_ref()?))).collect();
+    let moving: Vec<_> = moving(series).collect();
     let map = |values: &[f64], by: &dyn Fn(f64) -> f64| values.iter().map(|v| by(*v)).collect();
     for (i, (freedom, [place, rate, acceleration])) in moving.iter().enumerate() {
-        let usual = rms(rate);
         for share in TURNING {
-            features.push(map(rate, &|v| (v / (share * usual)).tanh()));
+            features.push(map(rate, &|v| (v / (share * rates[i])).tanh()));
         }
         features.push(rate.clone());
         features.push(map(rate, &|v| v * v.abs()));
@@ -91,14 +125,14 @@ fn features(series: &Series) -> Vec<Vec<f64>> {
     features
 }
 
-/// A signal without what features explain, by least squares in which what stands out counts less (Huber, *Ann. Math.
-/// Stat.* 35, 1964).
-fn without(signal: &[f64], features: &[Vec<f64>]) -> Vec<f64> {
+/// Factors by which features explain a signal, by least squares in which what stands out counts less (Huber, *Ann.
+/// Math. Stat.* 35, 1964).
+fn factors(signal: &[f64], features: &[Vec<f64>]) -> DVector<f64> {
     let scales: Vec<f64> = features.iter().map(|feature| rms(feature)).collect();
     let matrix =
         DMatrix::from_fn(signal.len(), features.len(), |row, k| features[k][row] / scales[k]);
     let values = DVector::from_column_slice(signal);
-    let mut left = values.clone();
+    let mut factors = DVector::zeros(features.len());
     let mut weights = DVector::from_element(signal.len(), 1.0);
     for _ in 0..PASSES {
         let mut weighted = matrix.clone();
@@ -110,9 +144,10 @@ fn without(signal: &[f64], features: &[Vec<f64>]) -> Vec<f64> {
             normal[(k, k)] *= 1.0 + RIDGE;
         }
         let Some(solved) = normal.cholesky() else { break };
-        left = &values - &matrix * solved.solve(&weighted.tr_mul(&values));
+        factors = solved.solve(&weighted.tr_mul(&values));
+        let left = &values - &matrix * &factors;
         let usual = scatter(left.as_slice()).max(f64::MIN_POSITIVE);
         weights = left.map(|value| (OUTSIDE * usual / value.abs()).min(1.0));
     }
-    left.as_slice().to_vec()
+    DVector::from_fn(features.len(), |k, _| factors[k] / scales[k])
 }

@@ -8,6 +8,7 @@ pub mod found;
 mod lasting;
 pub mod picture;
 pub mod scan;
+pub mod search;
 pub mod series;
 mod spread;
 

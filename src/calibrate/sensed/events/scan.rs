@@ -1,7 +1,7 @@
 //! Every stretch of time held against the rest of a recording.
 
-use super::series::{Series, median};
-use super::spread::{apart, grounds, scaled};
+use super::series::Series;
+use super::spread::{Measured, Ruler, grounds, sizes};
 use crate::calibrate::sensed::thresholds::{
     EVENT_BLOCK, EVENT_MARGIN, EVENT_RATIO, EVENT_SCORE, EVENT_WIDTHS, EVENTS,
 };
@@ -23,18 +23,48 @@ pub struct Peak {
     pub units: Vec<f64>,
 }
 
+/// How the means of stretches scatter in a recording, width by width.
+#[derive(Clone, Debug)]
+pub struct Rulers {
+    sizes: Vec<[f64; 2]>,
+    widths: Vec<Ruler>,
+}
+
+impl Rulers {
+    /// Of a recording's efforts cleared of what lasts.
+    pub fn of(series: &Series, cleared: &[Vec<f64>]) -> Self {
+        let sizes = sizes(series);
+        let grounds = grounds(series, &sizes);
+        let block = series.instants(EVENT_BLOCK);
+        let ruler = |width| Ruler::of(cleared, &grounds, width, block);
+        Self { widths: widths(series).into_iter().map(ruler).collect(), sizes }
+    }
+}
+
+/// Widths of stretches in instants: each 1.4 times the one before, up to an eighth of the recording.
+fn widths(series: &Series) -> Vec<usize> {
+    let [shortest, longest] = EVENT_WIDTHS.map(|width| series.instants(width));
+    let first = shortest.max(5);
+    let next = |width: &usize| Some((*width as f64 * 1.4).ceil() as usize);
+    let all = std::iter::successors(Some(first), next);
+    all.take_while(|width| *width <= longest && *width * 8 <= series.count()).collect()
+}
+
 /// Statistics of all stretches of one width.
 struct Level {
     width: usize,
-    /// By freedom: deviations, what is usual of them, and plain deviations.
-    freedoms: Vec<(Vec<f64>, f64, Vec<f64>)>,
+    freedoms: Vec<Measured>,
 }
 
 /// Stretches that stand out of efforts cleared of what lasts, the clearest first, apart from each other, and how far
 /// the clearest of all others stands out.
-pub fn scan(series: &Series, cleared: &[Vec<f64>]) -> (Vec<Peak>, f64) {
+pub fn scan(series: &Series, cleared: &[Vec<f64>], rulers: &Rulers) -> (Vec<Peak>, f64) {
     let margin = series.instants(EVENT_MARGIN);
-    let levels = levels(series, cleared);
+    let grounds = grounds(series, &rulers.sizes);
+    let level =
+        |ruler: &Ruler| Level { width: ruler.width, freedoms: ruler.measure(cleared, &grounds) };
+    let fits = |ruler: &&Ruler| ruler.width * 8 <= series.count();
+    let levels: Vec<Level> = rulers.widths.iter().filter(fits).map(level).collect();
     let mut peaks: Vec<Peak> = Vec::new();
     let mut next = highest(&levels, &peaks, margin);
     while let Some(peak) = next.filter(|_| peaks.len() <= EVENTS) {
@@ -52,43 +82,18 @@ pub fn scan(series: &Series, cleared: &[Vec<f64>]) -> (Vec<Peak>, f64) {
     (peaks, others)
 }
 
-fn levels(series: &Series, cleared: &[Vec<f64>]) -> Vec<Level> {
-    let grounds = grounds(series);
-    let [shortest, longest] = EVENT_WIDTHS.map(|width| series.instants(width));
-    let longest = longest.min(series.count() / 8);
-    let mut widths = vec![shortest.max(5)];
-    while let Some(next) = widths.last().map(|w| (*w as f64 * 1.4).ceil() as usize)
-        && next <= longest
-    {
-        widths.push(next);
-    }
-    let level = |width: usize| {
-        let units: Vec<Vec<f64>> =
-            cleared.iter().map(|own| scaled(own, &grounds, width)).collect();
-        let block = series.instants(EVENT_BLOCK).max(width);
-        let usual = |deviations: &[f64]| {
-            let largest = |part: &[f64]| part.iter().fold(0.0f64, |max, v| max.max(v.abs()));
-            median(deviations.chunks_exact(block).map(largest).collect()).max(2.0)
-        };
-        let own = |(apart, units): (Vec<f64>, Vec<f64>)| (usual(&apart), apart, units);
-        let freedoms = apart(&units).into_iter().zip(units).map(own);
-        let freedoms = freedoms.map(|(usual, apart, units)| (apart, usual, units)).collect();
-        Level { width, freedoms }
-    };
-    widths.into_iter().filter(|width| *width * 8 <= series.count()).map(level).collect()
-}
-
 /// The stretch that stands out most, none that touches the margin of another peak.
 fn highest(levels: &[Level], but: &[Peak], margin: usize) -> Option<Peak> {
     let mut best: Option<(f64, usize, usize, usize)> = None;
     for (l, level) in levels.iter().enumerate() {
         let near = |first: &usize| {
             let touches = |peak: &Peak| {
-                *first < peak.first + peak.width + margin && peak.first < first + level.width + margin
+                *first < peak.first + peak.width + margin
+                    && peak.first < first + level.width + margin
             };
             but.iter().any(touches)
         };
-        for (f, (deviations, usual, _)) in level.freedoms.iter().enumerate() {
+        for (f, Measured { deviations, usual, .. }) in level.freedoms.iter().enumerate() {
             for (first, value) in deviations.iter().enumerate() {
                 let score = value.abs() / usual;
                 if best.is_none_or(|(most, ..)| score > most) && !near(&first) {
@@ -101,8 +106,8 @@ fn highest(levels: &[Level], but: &[Peak], margin: usize) -> Option<Peak> {
         freedom,
         first,
         width: levels[l].width,
-        deviations: levels[l].freedoms[freedom].0[first],
+        deviations: levels[l].freedoms[freedom].deviations[first],
         score,
-        units: levels[l].freedoms.iter().map(|(_, _, units)| units[first]).collect(),
+        units: levels[l].freedoms.iter().map(|own| own.units[first]).collect(),
     })
 }

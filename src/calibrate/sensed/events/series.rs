@@ -44,7 +44,8 @@ impl Series {
             .filter_map(|(name, signal)| {
                 let (_, joint) = mechanism.joints().find(|(known, _)| *known == name.of)?;
                 let effort = signal.values.iter().map(|value| -value).collect();
-                let at = |all: Vec<f64>| rows.clone().step_by(view.stride).map(|i| all[i]).collect();
+                let at =
+                    |all: Vec<f64>| rows.clone().step_by(view.stride).map(|i| all[i]).collect();
                 let motion = motion(view, mechanism, joint).map(|motion| motion.map(at));
                 let turns = matches!(joint, JointIndex::Revolute(_));
                 Some(Freedom { joint: name.of.clone(), turns, effort, motion })
@@ -91,8 +92,7 @@ fn motion(view: &View, mechanism: &Mechanism, joint: JointIndex) -> Option<[Vec<
     let sensor = position_sensor(mechanism, joint)?;
     let series = view.smooth(sensor)?;
     let errors = &mechanism.sensors[sensor];
-    let position: Vec<f64> =
-        (0..series.len()).map(|row| view.shown(errors, series, row)).collect();
+    let position: Vec<f64> = (0..series.len()).map(|row| view.shown(errors, series, row)).collect();
     let rate = derivative(&position, view.interval);
     let acceleration = derivative(&rate, view.interval);
     Some([position, rate, acceleration])

@@ -141,12 +141,7 @@ impl Bench {
 
     /// Efforts along a run that machines of all runs do not know of, where zeros are what sensors show too much in
     /// each; none where joints are not measured or the machine cannot be as it was.
-    pub fn series(
-        &self,
-        machines: &[Mechanism],
-        zeros: &[Vec<f64>],
-        run: usize,
-    ) -> Option<Series> {
+    pub fn series(&self, machines: &[Mechanism], zeros: &[Vec<f64>], run: usize) -> Option<Series> {
         let recording = &self.runs[run];
         let mut machine = machines[run].clone();
         let first = cut(run, recording, &self.sensors, [0.1, 0.1], [0.0, 0.3]);
@@ -173,7 +168,7 @@ impl Bench {
         let plain = |run: &Vec<[f64; 2]>| run.iter().map(|[zero, _]| *zero).collect();
         let zeros: Vec<Vec<f64>> = zeros.iter().map(plain).collect();
         let series = (0..self.runs.len()).filter_map(|run| self.series(&machines, &zeros, run));
-        series.flat_map(|series| events(&series)).collect()
+        events(&series.collect::<Vec<Series>>())
     }
 
     /// Root mean square motion of each compared sensor about its mean over all runs.

@@ -7,8 +7,8 @@ use super::report::{
 };
 use super::score::{Horizon, score};
 use crate::calibrate::errors::ChannelError;
-use crate::calibrate::report::EffectReport;
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
+use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, publish, refuse, to_json};
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::events::{Event, found};
