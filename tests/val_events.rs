@@ -80,7 +80,7 @@ fn torques_that_no_column_of_a_measured_arm_says_are_found() {
         place.expect("a column")
     };
     let torques = ["tau1_Nm", "tau2_Nm"].map(column);
-    let (mut k, mut false_alarms, mut large) = (0, 0, [[0; 2]; 2]);
+    let (mut k, mut false_alarms, mut large) = (0, 0, [[0u32; 2]; 2]);
     for size in [0.2, 0.35, 0.5, 0.7, 1.0] {
         for lasts in [0.05, 0.1, 0.2, 0.3] {
             let mut hits = [0; 2];
@@ -114,7 +114,7 @@ fn torques_that_no_column_of_a_measured_arm_says_are_found() {
                 hits[joint] += usize::from(hit);
                 if size >= [1.0, 0.5][joint] {
                     large[joint][0] += 1;
-                    large[joint][1] += usize::from(hit);
+                    large[joint][1] += u32::from(hit);
                 }
             }
             println!("{size} N m, {lasts} s: found {hits:?} of 5, joint right {placed:?}: {off:?}");

@@ -8,7 +8,7 @@ use super::hypotheses::Round;
 use super::left::{Left, is_noise};
 use super::limits::{Limit, limits};
 use super::noise::{self, OtherNoise};
-use super::problem::{Problem, Segment, Stopped};
+use super::problem::{Problem, Segment, Split, Stopped};
 use super::recording::Recording;
 use super::residual::Name;
 use super::search::{Found, Search};
@@ -83,23 +83,10 @@ pub fn calibrate(
     let names: Vec<Name> = problem.names().unwrap_or_default();
     let search = Search { problem: &*problem, split: &split, candidates, names, tell };
     let Found { mut best, declared, rounds } = search.run()?;
-    let Search { mut candidates, mut names, .. } = search;
+    let Search { candidates, names, .. } = search;
     if looked && events.is_empty() && !best.fit.effects.is_empty() {
-        let search = Search { problem: &*problem, split: &split, candidates, names, tell };
-        let noise = is_noise(&search.left(&best));
-        (candidates, names) = (search.candidates, search.names);
-        if !noise {
-            tell("looking for what does not last beside the effects found");
-            let starts = problem.starts(&best.fit.effects)?;
-            let simulated = problem.simulated(&starts, problem.replicas)?;
-            events = beside(problem, &best.fit.effects, &simulated)?;
-        }
-        if !events.is_empty() {
-            problem.rig.effects = events.iter().map(Event::setting).collect();
-            let search = Search { problem: &*problem, split: &split, candidates, names, tell };
-            best = search.with_events(best)?;
-            (candidates, names) = (search.candidates, search.names);
-        }
+        let parts = (candidates.as_slice(), names.as_slice());
+        (events, best) = looked_again(problem, &split, parts, best, tell)?;
     }
     // A load may lift joints off that rest in the declared machine: what nobody can predict is no model's fault.
     if problem.replicas == 1 && !best.fit.effects.is_empty() {
@@ -179,6 +166,32 @@ pub fn calibrate(
         predicted: means(&calibrated),
         rattle,
     })
+}
+
+/// What does not last beside the effects of a model, where that leaves more than noise, and the model settled anew.
+fn looked_again(
+    problem: &mut Problem,
+    split: &Split,
+    (candidates, names): (&[Setting], &[Name]),
+    best: Model,
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<(Vec<Event>, Model), Stopped> {
+    let (candidates, names) = (candidates.to_vec(), names.to_vec());
+    let search = Search { problem: &*problem, split, candidates, names, tell };
+    if is_noise(&search.left(&best)) {
+        return Ok((Vec::new(), best));
+    }
+    let Search { candidates, names, .. } = search;
+    tell("looking for what does not last beside the effects found");
+    let starts = problem.starts(&best.fit.effects)?;
+    let simulated = problem.simulated(&starts, problem.replicas)?;
+    let events = beside(problem, &best.fit.effects, &simulated)?;
+    if events.is_empty() {
+        return Ok((events, best));
+    }
+    problem.rig.effects = events.iter().map(Event::setting).collect();
+    let search = Search { problem: &*problem, split, candidates, names, tell };
+    Ok((events, search.with_events(best)?))
 }
 
 /// Values with standard deviations: `(JᵀJ)⁻¹`, J in units of noise; wider where the fit's own residual is larger

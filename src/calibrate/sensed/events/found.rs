@@ -4,7 +4,7 @@ use super::lasting::{Lasting, low};
 use super::scan::{Peak, Rulers, scan};
 use super::series::{Series, means, scatter};
 use crate::calibrate::report::{ActsOn, Depends, EffectReport, Fitted};
-use crate::calibrate::sensed::thresholds::{EVENT_MARGIN, EVENT_SHARE, RESTLESS};
+use crate::calibrate::sensed::thresholds::{EVENT_SHARE, RESTLESS};
 use crate::effects::{History, OverTime, Setting};
 
 /// Instants of a table at most.
@@ -54,69 +54,18 @@ pub fn events(all: &[Series]) -> Vec<Event> {
         let by = calmest(run);
         let cleared = lasting[by].cleared(series, &efforts[run]);
         let (peaks, others) = scan(series, &cleared, &Rulers::of(&all[by], &own[by]));
-        let mut events: Vec<Event> = joined(peaks, series)
-            .into_iter()
-            .map(|peak| event(series, &cleared, &peak, others))
-            .collect();
+        let mut events: Vec<Event> =
+            peaks.iter().map(|peak| event(series, &cleared, peak, others)).collect();
         events.sort_by(|a, b| a.history.at_s.total_cmp(&b.history.at_s));
         found.extend(events);
     }
     found
 }
 
-/// Peaks of one freedom and sign that follow on each other are one.
-fn joined(mut peaks: Vec<Peak>, series: &Series) -> Vec<Peak> {
-    let gap = 2 * series.instants(EVENT_MARGIN);
-    peaks.sort_by_key(|peak| peak.first);
-    let mut all: Vec<Peak> = Vec::new();
-    for peak in peaks {
-        let follows = |last: &&mut Peak| {
-            let same = last.deviations * peak.deviations > 0.0 && last.freedom == peak.freedom;
-            // Short ones are several.
-            let long = last.width.min(peak.width) >= gap;
-            same && long && peak.first <= last.first + last.width + gap
-        };
-        match all.last_mut().filter(follows) {
-            Some(last) => {
-                last.width = peak.first + peak.width - last.first;
-                if peak.score > last.score {
-                    last.score = peak.score;
-                    last.deviations = peak.deviations;
-                }
-            }
-            None => all.push(peak),
-        }
-    }
-    all
-}
-
-/// The stretch within reach of a peak, first and last instant, whose sum of efforts is largest beside that of noise
-/// of its length: `(Σ f)²/n`.
-fn stretch(effort: &[f64], peak: &Peak) -> [usize; 2] {
-    let from = peak.first.saturating_sub(peak.width / 2);
-    let until = (peak.first + peak.width + peak.width / 2).min(effort.len());
-    let mut sums = vec![0.0];
-    for value in &effort[from..until] {
-        sums.push(sums[sums.len() - 1] + value);
-    }
-    let (mut best, mut most) = ([peak.first, peak.first + peak.width], 0.0);
-    // Ends are sought in sixtieths of the reach: finer ones than are reported are not needed.
-    let step = ((until - from) / 60).max(1);
-    for a in (0..sums.len()).step_by(step) {
-        for b in (a + 2..sums.len()).step_by(step) {
-            let gain = (sums[b] - sums[a]).powi(2) / (b - a) as f64;
-            if gain > most {
-                (best, most) = ([from + a, from + b], gain);
-            }
-        }
-    }
-    best
-}
-
 fn event(series: &Series, cleared: &[Vec<f64>], peak: &Peak, others: f64) -> Event {
     let freedom = &series.freedoms[peak.freedom];
     let effort = &cleared[peak.freedom];
-    let [first, last] = stretch(effort, peak);
+    let [first, last] = [peak.first, peak.first + peak.width];
     let skirt = (last - first) / 4 + series.instants(0.01);
     let (from, until) = (first.saturating_sub(skirt), (last + skirt).min(series.count()));
     let impulse = |f: usize| cleared[f][from..until].iter().sum::<f64>() * series.interval;

@@ -2,14 +2,15 @@
 //! little off. Against that an event has to stand out.
 
 use super::series::{Freedom, Series, means, scatter};
-use crate::calibrate::sensed::thresholds::{EVENT_CORNER, ROWS_A_FEATURE};
+use crate::calibrate::sensed::thresholds::{EVENT_CORNER, RESTING, ROWS_A_FEATURE};
 use crate::measure::filter::ZeroPhase;
 use nalgebra::{DMatrix, DVector};
 
 /// Shares of a joint's root mean square rate at which friction turns round: steep, and as gears smear it.
 const TURNING: [f64; 3] = [0.02, 0.1, 0.4];
 
-/// Time in s over which accelerations are averaged for a feature: beyond the noise of their readings.
+/// Time in s over which accelerations are averaged for a feature, and rates to see rest: beyond the noise of their
+/// readings.
 const SLOW: f64 = 0.08;
 
 /// Passes of reweighting.
@@ -70,6 +71,17 @@ pub fn low(series: &Series) -> Vec<Vec<f64>> {
         None => freedom.effort.clone(),
     };
     series.freedoms.iter().map(pass).collect()
+}
+
+/// Where joints rest, freedom by freedom: 1 there, 0 where they move.
+pub fn rests(series: &Series) -> Vec<Vec<f64>> {
+    let of = |freedom: &Freedom| {
+        let Some([_, rate, _]) = &freedom.motion else { return vec![0.0; series.count()] };
+        let still = RESTING * rms(rate);
+        let slow = slowed(rate, series).into_iter();
+        slow.map(|rate| f64::from(u8::from(rate.abs() < still))).collect()
+    };
+    series.freedoms.iter().map(of).collect()
 }
 
 /// Freedoms whose motion was measured.

@@ -1,9 +1,11 @@
 //! Every stretch of time held against the rest of a recording.
 
-use super::series::Series;
+use super::lasting::rests;
+use super::series::{Series, means};
 use super::spread::{Measured, Ruler, grounds, sizes};
 use crate::calibrate::sensed::thresholds::{
-    EVENT_BLOCK, EVENT_MARGIN, EVENT_RATIO, EVENT_SCORE, EVENT_WIDTHS, EVENTS,
+    EVENT_BLOCK, EVENT_CORNER, EVENT_MARGIN, EVENT_RATIO, EVENT_SCORE, EVENT_STAYS, EVENT_WIDTHS,
+    EVENTS,
 };
 
 /// A stretch that stands out.
@@ -65,11 +67,13 @@ pub fn scan(series: &Series, cleared: &[Vec<f64>], rulers: &Rulers) -> (Vec<Peak
         |ruler: &Ruler| Level { width: ruler.width, freedoms: ruler.measure(cleared, &grounds) };
     let fits = |ruler: &&Ruler| ruler.width * 8 <= series.count();
     let levels: Vec<Level> = rulers.widths.iter().filter(fits).map(level).collect();
-    let mut peaks: Vec<Peak> = Vec::new();
-    let mut next = highest(&levels, &peaks, margin);
-    while let Some(peak) = next.filter(|_| peaks.len() <= EVENTS) {
-        peaks.push(peak);
-        next = highest(&levels, &peaks, margin);
+    let (mut peaks, mut seen): (Vec<Peak>, Vec<Peak>) = (Vec::new(), Vec::new());
+    while let Some(peak) = highest(&levels, &seen, margin).filter(|_| seen.len() <= 2 * EVENTS) {
+        let peak = grown(peak, cleared);
+        if peaks.len() <= EVENTS && stays(&peak, &cleared[peak.freedom], series) {
+            peaks.push(peak.clone());
+        }
+        seen.push(peak);
     }
     // The last one that is clear of what comes after it, and all before.
     let clear = |k: &usize| {
@@ -110,4 +114,59 @@ fn highest(levels: &[Level], but: &[Peak], margin: usize) -> Option<Peak> {
         score,
         units: levels[l].freedoms.iter().map(|own| own.units[first]).collect(),
     })
+}
+
+/// Whether the impulse of a peak stays when its surroundings are counted in. A reading that came late or a lost step
+/// of an encoder shows as a jump of the position and back, or of the position alone: its accelerations add up to
+/// nothing.
+fn stays(peak: &Peak, effort: &[f64], series: &Series) -> bool {
+    let skirt = peak.width.max(series.instants(1.0 / EVENT_CORNER));
+    let sum = |from: usize, until: usize| effort[from..until].iter().sum::<f64>();
+    let end = peak.first + peak.width;
+    let own = sum(peak.first, end);
+    let wide = sum(peak.first.saturating_sub(skirt), (end + skirt).min(effort.len()));
+    wide / own > EVENT_STAYS
+}
+
+/// The peak at its full length: the stretch within reach of it whose sum of efforts is largest beside that of noise
+/// of its length, `(Σ f)²/n`, again as long as it ends where reach does.
+fn grown(mut peak: Peak, cleared: &[Vec<f64>]) -> Peak {
+    let effort = &cleared[peak.freedom];
+    loop {
+        let from = peak.first.saturating_sub(peak.width / 2);
+        let until = (peak.first + peak.width + peak.width / 2).min(effort.len());
+        let [first, last] = stretch(&effort[from..until]);
+        let edge = step(until - from);
+        let held =
+            (first > edge || from == 0) && (last + edge < until - from || until == effort.len());
+        let longer = last - first > peak.width;
+        (peak.first, peak.width) = (from + first, last - first);
+        if held || !longer {
+            return peak;
+        }
+    }
+}
+
+/// Ends of stretches are sought in sixtieths of the reach: finer ones than are reported are not needed.
+fn step(reach: usize) -> usize {
+    (reach / 60).max(1)
+}
+
+/// First and last instant of the stretch with the largest `(Σ f)²/n`.
+fn stretch(effort: &[f64]) -> [usize; 2] {
+    let mut sums = vec![0.0];
+    for value in effort {
+        sums.push(sums[sums.len() - 1] + value);
+    }
+    let (mut best, mut most) = ([0, effort.len()], 0.0);
+    let step = step(effort.len());
+    for a in (0..sums.len()).step_by(step) {
+        for b in (a + 2..sums.len()).step_by(step) {
+            let gain = (sums[b] - sums[a]).powi(2) / (b - a) as f64;
+            if gain > most {
+                (best, most) = ([a, b], gain);
+            }
+        }
+    }
+    best
 }
