@@ -63,8 +63,16 @@ struct Level {
 pub fn scan(series: &Series, cleared: &[Vec<f64>], rulers: &Rulers) -> (Vec<Peak>, f64) {
     let margin = series.instants(EVENT_MARGIN);
     let grounds = grounds(series, &rulers.sizes);
-    let level =
-        |ruler: &Ruler| Level { width: ruler.width, freedoms: ruler.measure(cleared, &grounds) };
+    let rests = rests(series);
+    let level = |ruler: &Ruler| {
+        let mut freedoms = ruler.measure(cleared, &grounds);
+        for (own, rests) in freedoms.iter_mut().zip(&rests) {
+            let still = means(rests, ruler.width).into_iter().map(|share| share > 0.5);
+            let all = own.deviations.iter_mut().zip(still);
+            all.filter(|(_, still)| *still).for_each(|(value, _)| *value = 0.0);
+        }
+        Level { width: ruler.width, freedoms }
+    };
     let fits = |ruler: &&Ruler| ruler.width * 8 <= series.count();
     let levels: Vec<Level> = rulers.widths.iter().filter(fits).map(level).collect();
     let (mut peaks, mut seen): (Vec<Peak>, Vec<Peak>) = (Vec::new(), Vec::new());
