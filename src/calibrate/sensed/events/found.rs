@@ -155,9 +155,13 @@ impl Event {
     /// What it rests on.
     pub fn evidence(&self) -> String {
         let [own, others] = self.scores;
+        let rest = match others > 0.0 {
+            true => format!("no other stretch more than {others:.1} times"),
+            false => "no other stretch keeps its impulse".to_owned(),
+        };
         format!(
             "the mean effort of that stretch is {:.0} deviations of such means; it stands out {own:.1} times as far \
-             as the largest of half a second usually does, no other stretch more than {others:.1} times",
+             as the largest of half a second usually does, {rest}",
             self.deviations.abs()
         )
     }
