@@ -59,7 +59,7 @@ fn even(k: usize) -> f64 {
 }
 
 /// Recordings of a measured arm: nothing is found in them; of torques that are hidden for a while those at the elbow
-/// from 0.5 N·m on are, at the shoulder, which the whole arm's inertia and its gear's play blur, most of 1 N·m.
+/// from 0.5 N·m on are, at the shoulder, which the whole arm's inertia and its gear's play blur, half of those of 1 N·m.
 #[test]
 fn torques_that_no_column_of_a_measured_arm_says_are_found() {
     let Some(files) = measured(&ARM.map(|name| format!("two-link-arm/{name}.csv"))) else { return };

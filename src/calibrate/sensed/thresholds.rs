@@ -173,9 +173,11 @@ pub const EVENT_WIDTHS: [f64; 2] = [0.02, 1.0];
 pub const EVENT_BLOCK: f64 = 0.5;
 
 /// Ratio of a stretch's mean to the median of the largest ones of all blocks, from which it is an event.
+/// Chosen on five recordings of a two-link arm that hold none: after stretches at rest and jumps of readings are left
+/// out none reaches it, and of 200 trials with a hidden torque on them three have one elsewhere.
 pub const EVENT_SCORE: f64 = 3.0;
 
-/// Ratio of the least event to the clearest stretch that is none.
+/// Ratio of the least event to the clearest stretch that is none: a gap between events and the rest. A choice.
 pub const EVENT_RATIO: f64 = 1.2;
 
 /// Time in s around an event in which no other one is looked for: filters smear it by 25 ms, and what a machine does

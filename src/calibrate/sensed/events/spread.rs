@@ -12,8 +12,8 @@ const CUT: f64 = 3.0;
 /// Largest correlation of two freedoms that is believed: robust estimates are wrong by some per cent.
 const CORRELATED: f64 = 0.97;
 
-/// Share of the usual variance that there is at least anywhere: two recordings of an arm that begin and end at rest
-/// show what stands out 4 and 5.5 times as far as usual there without.
+/// Share of the usual variance that there is at least anywhere: half the usual deviation. A choice, not a
+/// measurement; it removed no false alarm by itself.
 const LEAST: f64 = 0.25;
 
 /// Deviations that the largest of a block is at least believed to reach: of two independent normal numbers it
