@@ -7,7 +7,7 @@ use super::model::Case;
 use super::outcome::{MET, Outcome, Verdict};
 use super::rattle::Rattle;
 use super::way::name;
-use crate::effects::{DependsOn, Over, Setting, Target};
+use crate::effects::{DependsOn, Over, OverTime, Setting, Target};
 use crate::engine::StepControl;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -51,22 +51,23 @@ pub struct Report {
 
 /// What an effect acts on, by the key that names it in a file; `joint` is null where it is no joint.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ActsOn(Target);
+pub struct ActsOn(Target, Option<String>);
 
 impl ActsOn {
     /// The whole machine.
     pub fn machine() -> Self {
-        Self(Target::Machine)
+        Self(Target::Machine, None)
     }
 
     /// Of an effect.
     pub fn of(effect: &Setting) -> Self {
-        Self::at(&effect.target)
+        let run = effect.history().and_then(|history| history.run.clone());
+        Self(effect.target.clone(), run)
     }
 
     /// What a target names.
     pub fn at(target: &Target) -> Self {
-        Self(target.clone())
+        Self(target.clone(), None)
     }
 
     /// In words, as in " at A1"; empty of the whole machine.
@@ -88,6 +89,9 @@ impl Serialize for ActsOn {
             };
             map.insert(key.to_owned(), names);
         }
+        if let Some(run) = &self.1 {
+            map.insert("run".to_owned(), json!(run));
+        }
         map.serialize(serializer)
     }
 }
@@ -100,13 +104,17 @@ pub enum Depends {
     Map(DependsOn),
     /// A table of efforts in joints.
     Efforts(Over),
+    /// A history of efforts.
+    History(OverTime),
 }
 
 impl Depends {
     /// Of an effect, if it has no name.
     pub fn of(effect: &Setting) -> Option<Self> {
         let map = effect.map().map(|map| Self::Map(map.depends_on));
-        map.or(effect.efforts().map(|table| Self::Efforts(table.depends_on)))
+        let table = || effect.efforts().map(|table| Self::Efforts(table.depends_on));
+        let history = || effect.history().map(|history| Self::History(history.depends_on));
+        map.or_else(table).or_else(history)
     }
 }
 

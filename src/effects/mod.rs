@@ -54,12 +54,14 @@ mod twins;
 mod unbalance;
 mod unnamed;
 mod unnamed_efforts;
+mod unnamed_history;
 
 pub use kind::{Joints, Kind, Parameter, Range, Scan, Senses, Targets};
 pub use setting::{Setting, Wrong};
 pub use target::Target;
 pub use unnamed::{DependsOn, Map, Motion, UNNAMED};
 pub use unnamed_efforts::{Efforts, Over};
+pub use unnamed_history::{History, OverTime};
 
 /// Every effect there is, in the order in which they are listed.
 pub const ALL: &[&Kind] = &[

@@ -1,6 +1,6 @@
 //! An effect with its numbers.
 
-use super::{Efforts, Kind, Map, Parameter, Target, Targets, named};
+use super::{Efforts, History, Kind, Map, Parameter, Target, Targets, named};
 use crate::measure::spelling::nearest;
 use crate::mechanism::{Axes, JointIndex, Mark, Mechanism};
 use nalgebra::Vector2;
@@ -31,6 +31,8 @@ pub struct Setting {
     pub(super) map: Option<Arc<Map>>,
     /// The same of a mechanism's joints.
     pub(super) efforts: Option<Arc<Efforts>>,
+    /// The same over time.
+    pub(super) history: Option<Arc<History>>,
 }
 
 impl PartialEq for Setting {
@@ -39,6 +41,7 @@ impl PartialEq for Setting {
             && self.values == other.values
             && self.map == other.map
             && self.efforts == other.efforts
+            && self.history == other.history
     }
 }
 
@@ -61,7 +64,7 @@ impl Setting {
 
     /// The effect `kind` of a target, with these values of its parameters.
     pub fn on(kind: &'static Kind, target: Target, values: &[(&'static str, f64)]) -> Self {
-        Self { kind, target, values: values.to_vec(), map: None, efforts: None }
+        Self { kind, target, values: values.to_vec(), map: None, efforts: None, history: None }
     }
 
     /// The effect `kind` of a target of `mechanism`, where a variant's values change nothing.
@@ -96,6 +99,24 @@ impl Setting {
         Self { efforts: Some(Arc::new(table)), ..Self::on(kind, Target::Machine, &[]) }
     }
 
+    /// A history of efforts in joints that has no name.
+    pub fn unnamed_history(history: History) -> Self {
+        let target = Target::Joints(vec![history.joint.clone()]);
+        let kind = &super::unnamed::KIND;
+        Self { history: Some(Arc::new(history)), ..Self::on(kind, target, &[]) }
+    }
+
+    /// The history of an effect without a name that does not last.
+    pub fn history(&self) -> Option<&History> {
+        self.history.as_deref()
+    }
+
+    /// Whether the effect acts in the recording of this name: a history belongs to the one that it was found in.
+    pub fn acts_in(&self, run: &str) -> bool {
+        let own = self.history().and_then(|history| history.run.as_deref());
+        own.is_none_or(|own| own == run)
+    }
+
     /// The table of efforts of an effect without a name.
     pub fn efforts(&self) -> Option<&Efforts> {
         self.efforts.as_deref()
@@ -123,6 +144,9 @@ impl Setting {
         };
         let mut setting = Self::on(kind, Target::Machine, &[]);
         if kind.name == super::unnamed::KIND.name {
+            if table.get("depends_on").and_then(toml::Value::as_str) == Some("time") {
+                return Ok(Self::unnamed_history(History::from_table(table)?));
+            }
             if table.contains_key("joints") {
                 setting.efforts = Some(Arc::new(Efforts::from_table(table)?));
             } else {
@@ -213,7 +237,7 @@ impl Setting {
     }
 
     /// What is wrong with a name of its target: `known` are the names of such `things` that the machine has.
-    fn stranger(&self, name: &str, things: &str, known: &[&str]) -> Wrong {
+    pub(super) fn stranger(&self, name: &str, things: &str, known: &[&str]) -> Wrong {
         let all = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
         let article = if things.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
         Wrong {
@@ -378,6 +402,18 @@ impl Serialize for Setting {
             map.serialize_entry("reach", &table.reach)?;
             map.serialize_entry("rates", &table.rates)?;
             map.serialize_entry("coefficients", &table.coefficients)?;
+        }
+        if let Some(history) = &self.history {
+            map.serialize_entry("depends_on", &history.depends_on)?;
+            if let Some(run) = &history.run {
+                map.serialize_entry("run", run)?;
+            }
+            map.serialize_entry("at_s", &history.at_s)?;
+            map.serialize_entry("until_s", &history.until_s)?;
+            map.serialize_entry("impulse", &history.impulse)?;
+            map.serialize_entry("joints", &history.joints)?;
+            map.serialize_entry("t", &history.t)?;
+            map.serialize_entry("efforts", &history.efforts)?;
         }
         map.end()
     }

@@ -200,6 +200,9 @@ impl Load for Applied {
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    if let Some(history) = &setting.history {
+        return super::unnamed_history::apply(history, setting, mechanism);
+    }
     let Some(map) = &setting.map else { return super::unnamed_efforts::apply(setting, mechanism) };
     let components = map.components(mechanism.actuators.len());
     if map.coefficients.len() != components {

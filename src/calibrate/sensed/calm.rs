@@ -2,7 +2,6 @@
 //! noise than joints make that rattle on.
 
 use super::hypotheses::{Round, Tried};
-use super::left::is_noise;
 use super::problem::Stopped;
 use super::search::{Search, name};
 use super::settle::Model;
@@ -45,7 +44,7 @@ impl Search<'_> {
         }
         round.tried.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         let enough = model.cost() - CALMER * self.names.len() as f64;
-        let calmer = best.filter(|best| best.cost() < enough && is_noise(&self.left(best)));
+        let calmer = best.filter(|best| best.cost() < enough && self.is_noise(best));
         round.added = calmer.as_ref().and_then(|best| best.fit.effects.last().cloned());
         Ok((round, calmer))
     }

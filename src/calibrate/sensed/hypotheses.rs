@@ -1,6 +1,5 @@
 //! Models with one effect more than another one has, simulated.
 
-use super::left::is_noise;
 use super::problem::Stopped;
 use super::search::{Search, names};
 use super::settle::Model;
@@ -66,7 +65,7 @@ impl Search<'_> {
         // What residuals see is tried before what they hardly see.
         let seen =
             |tried: &Tried| tried.simulated && tried.gain > price(model) && tried.share > MOSTLY;
-        let noise = |model: &Model| is_noise(&self.left(model));
+        let noise = |model: &Model| self.is_noise(model);
         if !tried.iter().any(seen) && !found.iter().any(noise) {
             found.extend(self.unseen(model, &mut tried)?);
         }

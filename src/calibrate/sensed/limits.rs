@@ -6,7 +6,6 @@
 //! two kinds of error that a limit is a balance of.
 
 use super::fit::Target as Fitted;
-use super::left::is_noise;
 use super::search::Search;
 use super::settle::Model;
 use super::thresholds::{GAIN, GAIN_PER_VALUE, LARGEST, NOISE, SURE};
@@ -39,7 +38,7 @@ struct Part {
 /// Limits of all candidates beside a model whose residuals are noise, on the data that they are judged on; none
 /// where residuals are not.
 pub fn limits(search: &Search, model: &Model) -> Vec<Limit> {
-    if !is_noise(&search.left(model)) {
+    if !search.is_noise(model) {
         return Vec::new();
     }
     let hold =

@@ -17,6 +17,7 @@ pub mod candidates;
 mod charts;
 pub mod errors;
 pub mod estimate;
+pub mod events;
 pub mod fit;
 pub mod hypotheses;
 pub mod left;

@@ -1,15 +1,15 @@
 //! The whole way: from a rig and its recordings to a verdict, values with intervals, and errors.
 
 use super::candidates::candidates;
-use super::errors::of_run;
+use super::errors::{mean, of_run};
+use super::events::{Event, search::beside};
 use super::fit::Fit;
 use super::hypotheses::Round;
 use super::left::{Left, is_noise};
 use super::limits::{Limit, limits};
 use super::noise::{self, OtherNoise};
-use super::problem::{Problem, Segment, Start, Stopped};
+use super::problem::{Problem, Segment, Split, Start, Stopped};
 use super::recording::Recording;
-use super::residual::Name;
 use super::search::{Found, Search};
 use super::settle::Model;
 use super::thresholds::{MET, PREDICTING};
@@ -30,6 +30,8 @@ pub struct Outcome {
     /// The effects that were found; where the verdict is `unexplained`, a table of efforts alone, if there is
     /// one.
     pub effects: Vec<Estimated>,
+    /// What does not last.
+    pub events: Vec<Event>,
     /// What stands in for what has no name.
     pub described: Option<Described>,
     /// What the search held for the best, whatever the verdict.
@@ -69,29 +71,24 @@ pub fn calibrate(
     let noises = noise::correct(problem, &logs);
     let mut rattle = problem.rattle(&logs);
     let split = problem.split();
-    let candidates = candidates(&problem.declared, without);
-    let names: Vec<Name> = problem.names().unwrap_or_default();
-    let search = Search { problem: &*problem, split: &split, candidates, names, tell };
-    let Found { mut best, declared, rounds } = search.run()?;
-    let Search { candidates, names, .. } = search;
-    // A load may lift joints off that rest in the declared machine: what nobody can predict is no model's fault.
-    if problem.replicas == 1 && !best.fit.effects.is_empty() {
-        rattle = rattle.max(problem.look_for_rattle(&best.fit.effects)?);
-        if problem.replicas > 1 {
-            tell("simulating replicas: joints lift off");
-            let (candidates, names) = (Vec::new(), names.clone());
-            let search = Search { problem: &*problem, split: &split, candidates, names, tell };
-            best = search.settle(&best.fit.effects, 2)?.unwrap_or(best);
-            best = search.simplified(best)?;
+    let asked = Asked { split: &split, candidates: candidates(&problem.declared, without), tell };
+    let mut found = searched(problem, &asked, &mut rattle)?;
+    let unnamed = !without.contains(&UNNAMED);
+    // What is noise as a whole hides nothing that does not last.
+    let mut events = Vec::new();
+    if unnamed && !asked.search(problem).is_noise(&found.best) {
+        events = what_does_not_last(problem, &found, &logs, tell)?;
+        if !events.is_empty() {
+            problem.rig.effects = events.iter().map(Event::setting).collect();
+            found = searched(problem, &asked, &mut rattle)?;
         }
     }
-    let problem = &*problem;
-    let search = Search { problem, split: &split, candidates, names, tell };
+    let Found { best, declared, rounds } = found;
+    let search = asked.search(problem);
     let (before, after) = (search.left(&declared), search.left(&best));
-    tell("predicting");
     let noise = is_noise(&after);
     let limits = limits(&search, &best);
-    let described = match noise || without.contains(&UNNAMED) {
+    let described = match noise || !unnamed {
         true => None,
         false => {
             tell("looking for what the residual depends on");
@@ -105,34 +102,25 @@ pub fn calibrate(
     };
     let after = described.as_ref().map_or(after, |(_, model)| search.left(model));
     let deviations = if noise { best.fit.deviations() } else { Vec::new() };
-    let mut predicting = Predicting::of(problem, &effects, &deviations)?;
-    let mut errors = predicting.errors(problem);
-    // A model that misses the run that it was fitted to lacks something.
-    let met = |errors: &[ChannelError]| errors.iter().all(|error| error.after <= MET * error.floor);
-    if noise && !met(&errors) {
-        tell("looking for the swing in which recordings begin");
-        if let Some(swinging) = predicting.swinging(problem)? {
-            let again = swinging.errors(problem);
-            if met(&again) {
-                (predicting, errors) = (swinging, again);
-            }
-        }
-    }
-    let verdict = match (noise && met(&errors), best.fit.effects.is_empty()) {
+    tell("predicting");
+    let (predicting, errors, met) = predicted(problem, &effects, &deviations, noise, tell)?;
+    let nothing = best.fit.effects.is_empty() && events.is_empty();
+    let verdict = match (noise && met, nothing) {
         (true, true) => Verdict::NothingMissing,
         (true, false) => Verdict::Explained,
         (false, _) => Verdict::Unexplained,
     };
-    let sensors = problem.declared.sensors.len();
-    let means = |logs: &[Vec<Recording>]| {
-        logs.iter().map(|logs| super::errors::mean(logs, sensors)).collect::<Vec<_>>()
+    let mut effects = match (verdict, &described) {
+        (Verdict::Explained, _) => estimated(&best, &split.on),
+        (_, Some((described, _))) => vec![(described.effect.clone(), Vec::new())],
+        (_, None) => Vec::new(),
     };
+    effects.extend(events.iter().map(|event| (event.setting(), event.params())));
+    let sensors = problem.declared.sensors.len();
+    let means = |logs: &[Vec<Recording>]| logs.iter().map(|logs| mean(logs, sensors)).collect();
     Ok(Outcome {
-        effects: match (verdict, &described) {
-            (Verdict::Explained, _) => estimated(&best, &split.on),
-            (_, Some((described, _))) => vec![(described.effect.clone(), Vec::new())],
-            (_, None) => Vec::new(),
-        },
+        effects,
+        events,
         described: described.map(|(described, _)| described),
         verdict,
         tried: best.fit.effects.clone(),
@@ -148,6 +136,80 @@ pub fn calibrate(
     })
 }
 
+/// What a search is asked.
+struct Asked<'a> {
+    split: &'a Split,
+    candidates: Vec<Setting>,
+    tell: &'a (dyn Fn(&str) + Sync),
+}
+
+impl Asked<'_> {
+    fn search<'b>(&'b self, problem: &'b Problem) -> Search<'b> {
+        Search::new(problem, self.split, &self.candidates, self.tell)
+    }
+}
+
+/// What a search finds; a load may lift joints off that rest in the declared machine: what nobody can predict is no
+/// model's fault, and is simulated several times then.
+fn searched(problem: &mut Problem, asked: &Asked, rattle: &mut f64) -> Result<Found, Stopped> {
+    let mut found = asked.search(problem).run()?;
+    let effects = found.best.fit.effects.clone();
+    if problem.replicas == 1 && !effects.is_empty() {
+        *rattle = rattle.max(problem.look_for_rattle(&effects)?);
+        if problem.replicas > 1 {
+            (asked.tell)("simulating replicas: joints lift off");
+            let search = asked.search(problem);
+            let best = search.settle(&effects, 2)?.unwrap_or(found.best);
+            found.best = search.simplified(best)?;
+        }
+    }
+    Ok(found)
+}
+
+/// What does not last, beside the declared model, or, where nothing of it shows there, beside what was found.
+fn what_does_not_last(
+    problem: &Problem,
+    found: &Found,
+    declared: &[Vec<Recording>],
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<Vec<Event>, Stopped> {
+    tell("looking for what does not last");
+    let events = beside(problem, &[], declared)?;
+    let effects = &found.best.fit.effects;
+    if !events.is_empty() || effects.is_empty() {
+        return Ok(events);
+    }
+    let simulated = problem.simulated(&problem.starts(effects)?, problem.replicas)?;
+    beside(problem, effects, &simulated)
+}
+
+/// What the declared model and the one with these effects predict, the errors, and whether they are met: a model that
+/// misses the run that it was fitted to lacks something. Where residuals are noise and recordings are missed all the
+/// same, they may have begun with another swing.
+fn predicted(
+    problem: &mut Problem,
+    effects: &[Setting],
+    deviations: &[f64],
+    noise: bool,
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<(Predicting, Vec<ChannelError>, bool), Stopped> {
+    let met = |errors: &[ChannelError]| errors.iter().all(|error| error.after <= MET * error.floor);
+    let predicting = Predicting::of(problem, effects, deviations)?;
+    let errors = predicting.errors(problem);
+    if !noise || met(&errors) {
+        let met = met(&errors);
+        return Ok((predicting, errors, met));
+    }
+    tell("looking for the swing in which recordings begin");
+    if let Some(swinging) = predicting.swinging(problem)? {
+        let again = swinging.errors(problem);
+        if met(&again) {
+            return Ok((swinging, again, true));
+        }
+    }
+    Ok((predicting, errors, false))
+}
+
 /// What the declared and the calibrated model predict, replicas run by run.
 struct Predicting {
     starts: Vec<Start>,
@@ -156,11 +218,13 @@ struct Predicting {
 }
 
 impl Predicting {
-    fn of(problem: &Problem, effects: &[Setting], deviations: &[f64]) -> Result<Self, Stopped> {
+    /// Leaves the rig as it was declared: what the declared machine would have done knows of nothing that does not last.
+    fn of(problem: &mut Problem, effects: &[Setting], deviations: &[f64]) -> Result<Self, Stopped> {
         let replicas = if problem.replicas > 1 { PREDICTING } else { 1 };
         let starts = problem.starts(effects)?;
         let calibrated = problem.simulated_about(effects, deviations, &starts, replicas)?;
-        let declared = match effects.is_empty() {
+        let acting = std::mem::take(&mut problem.rig.effects);
+        let declared = match effects.is_empty() && acting.is_empty() {
             true => calibrated.clone(),
             false => problem.simulated(&problem.starts(&[])?, problem.replicas)?,
         };

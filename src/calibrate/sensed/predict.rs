@@ -52,7 +52,7 @@ pub fn prepare(model: &Scenario, path: &Path) -> Result<Prepared, CalibrateError
     refuse(wrong)?;
     let recording = Recording::read(path, &machine.sensors, false);
     let recording = recording.map_err(|error| CalibrateError::Input(vec![error.to_string()]))?;
-    super::start::machine(model, &model.effects, &recording)?;
+    super::start::machine(model, &[], &recording)?;
     Ok(Prepared { machine, recording })
 }
 
@@ -151,7 +151,7 @@ impl Along<'_> {
     ) -> Result<(Vec<Recording>, f64), CalibrateError> {
         let Self { model, recording, like } = *self;
         let control: StepControl = control(model);
-        let released = released(model, &model.effects, recording, control)?;
+        let released = released(model, &[], recording, control)?;
         let replicas = |from: &Mechanism, replicas: std::ops::Range<usize>| {
             let each = replicas.into_par_iter();
             each.map(|replica| record(from, control, like, replica as u64))

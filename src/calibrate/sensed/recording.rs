@@ -125,6 +125,11 @@ impl Recording {
         self.columns.get(index)?.as_deref()
     }
 
+    /// Number of sensors that it may have samples of.
+    pub fn sensors(&self) -> usize {
+        self.columns.len()
+    }
+
     /// The same recording with other columns.
     pub fn with(&self, columns: Vec<Option<Vec<f64>>>) -> Self {
         Self { columns, ..self.clone() }

@@ -1,5 +1,7 @@
 //! `report.json` and the folder of results.
 
+use super::events::found::sentence;
+use super::events::picture::pictures as events_drawn;
 use super::hypotheses::Tried;
 use super::left::Left;
 use super::limits::Limit;
@@ -200,7 +202,8 @@ pub fn into_folder(
     let mut problem = Problem::new(prepared.rig, prepared.recordings, control)?;
     let outcome = calibrate(&mut problem, without, tell)?;
     tell("drawing and writing");
-    let pictures = page::pictures(&problem, &outcome).map_err(RunError::from)?;
+    let mut pictures = page::pictures(&problem, &outcome).map_err(RunError::from)?;
+    pictures.extend(events_drawn(&outcome.events).map_err(RunError::from)?);
     let sensors = &problem.declared.sensors;
     let mut files: Vec<(String, String)> = Vec::new();
     for (run, predicted) in problem.runs.iter().zip(&outcome.predicted) {
@@ -214,7 +217,12 @@ pub fn into_folder(
     let report = Report {
         provenance: Provenance::of(&problem.rig),
         verdict: outcome.verdict,
-        summary: format!("{}{}", summary(&outcome), noises(&outcome.noises)),
+        summary: format!(
+            "{}{}{}",
+            summary(&outcome),
+            sentence(&outcome.events),
+            noises(&outcome.noises)
+        ),
         effects: effects(&outcome),
         errors: outcome.errors.clone(),
         ranking: ranking(&outcome),
@@ -252,7 +260,8 @@ pub fn into_folder(
 }
 
 fn summary(outcome: &Outcome) -> String {
-    let list = outcome.effects.iter().map(|(e, _)| name(e)).collect::<Vec<_>>().join(", ");
+    let lasting = outcome.effects.iter().filter(|(effect, _)| effect.history().is_none());
+    let list = lasting.map(|(e, _)| name(e)).collect::<Vec<_>>().join(", ");
     let worst = worst(&outcome.errors).map_or_else(String::new, |error| {
         format!(
             " (worst: {} of {}, {:.2} floors)",
@@ -264,6 +273,9 @@ fn summary(outcome: &Outcome) -> String {
     match outcome.verdict {
         Verdict::NothingMissing => format!(
             "The declared model explains the recordings to within noise: nothing is missing{worst}."
+        ),
+        Verdict::Explained if list.is_empty() => format!(
+            "With what does not last the declared model explains the recordings to within noise{worst}."
         ),
         Verdict::Explained => format!(
             "The declared model lacks {list}. With it the recordings are explained to within noise{worst}."
@@ -293,6 +305,10 @@ fn noises(noises: &[OtherNoise]) -> String {
 
 fn effects(outcome: &Outcome) -> Vec<EffectReport> {
     let report = |(effect, params): &super::outcome::Estimated| {
+        let own = outcome.events.iter().find(|event| Some(&event.history) == effect.history());
+        if let Some(event) = own {
+            return event.report();
+        }
         let round = outcome
             .rounds
             .iter()

@@ -29,14 +29,36 @@ pub struct Search<'a> {
     /// Which data count for what.
     pub split: &'a Split,
     /// Effects at their neutral values.
-    pub candidates: Vec<Setting>,
+    pub candidates: &'a [Setting],
     /// Names of the residuals.
     pub names: Vec<Name>,
     /// Hears what is being tried.
     pub tell: &'a (dyn Fn(&str) + Sync),
+    /// Simulations before it began.
+    before: usize,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    /// A search in a problem, and who hears what is being tried.
+    pub fn new(
+        problem: &'a Problem,
+        split: &'a Split,
+        candidates: &'a [Setting],
+        tell: &'a (dyn Fn(&str) + Sync),
+    ) -> Self {
+        let names = problem.names().unwrap_or_default();
+        Self { problem, split, candidates, names, tell, before: problem.simulations() }
+    }
+
+    /// Whether it has taken as many simulations as it may.
+    pub(super) fn is_spent(&self) -> bool {
+        self.problem.simulations() - self.before >= BUDGET
+    }
+
+    /// Whether a model leaves nothing but noise.
+    pub fn is_noise(&self, model: &Model) -> bool {
+        is_noise(&self.left(model))
+    }
     pub(super) fn target<'b>(&'b self, baseline: &'b Baseline, held: bool) -> Target<'b> {
         let on = if held { &self.split.hold } else { &self.split.on };
         Target { problem: self.problem, baseline, on }
@@ -56,16 +78,13 @@ impl Search<'_> {
         let mut best = declared.clone();
         let mut rounds = Vec::new();
         let mut hypotheses = vec![declared.clone()];
-        while best.fit.effects.len() < EFFECTS
-            && self.problem.simulations() < BUDGET
-            && !is_noise(&self.left(&best))
-        {
+        while best.fit.effects.len() < EFFECTS && !self.is_spent() && !self.is_noise(&best) {
             let mut next: Vec<Model> = Vec::new();
             let mut round = Round::default();
             let mut enough: Option<Setting> = None;
             for (i, model) in hypotheses.iter().enumerate() {
                 let (own, found) = match &enough {
-                    _ if i > 0 && self.problem.simulations() > BUDGET => break,
+                    _ if i > 0 && self.is_spent() => break,
                     Some(effect) => (Round::default(), self.also(model, effect)?),
                     None => self.beside(model)?,
                 };
@@ -73,7 +92,7 @@ impl Search<'_> {
                     round = own;
                 }
                 if enough.is_none() {
-                    let last = found.iter().find(|model| is_noise(&self.left(model)));
+                    let last = found.iter().find(|model| self.is_noise(model));
                     enough = last.and_then(|model| model.fit.effects.last().cloned());
                 }
                 next.extend(found);
@@ -92,7 +111,7 @@ impl Search<'_> {
             rounds.push(round);
             let before = best.cost();
             best = next[0].clone();
-            if !is_noise(&self.left(&best)) {
+            if !self.is_noise(&best) {
                 best = self.refined(best)?;
                 next[0] = best.clone();
             }
@@ -103,10 +122,7 @@ impl Search<'_> {
         }
         // What is noise already is not explained any better; that recorded joints rattle less than a model's does
         // not show in what is left, only in its size.
-        while best.baseline.rattles
-            && best.fit.effects.len() < EFFECTS
-            && is_noise(&self.left(&best))
-        {
+        while best.baseline.rattles && best.fit.effects.len() < EFFECTS && self.is_noise(&best) {
             let (round, calmer) = self.calmer(&best)?;
             rounds.push(round);
             let Some(calmer) = calmer else { break };
@@ -114,14 +130,14 @@ impl Search<'_> {
         }
         if !best.fit.effects.is_empty() {
             // Values that leave noise are left alone: looks alone do not find them as well again.
-            if !is_noise(&self.left(&best)) {
+            if !self.is_noise(&best) {
                 (self.tell)(&format!("settling {}", names(&best.fit.effects)));
                 let settled = self.settle(&best.fit.effects, 4)?;
                 best = settled.filter(|model| model.misfit < best.misfit).unwrap_or(best);
             }
             best = self.simplified(best)?;
             best = self.needed(best)?;
-            if !is_noise(&self.left(&best)) {
+            if !self.is_noise(&best) {
                 best = self.refined(best)?;
             }
         }

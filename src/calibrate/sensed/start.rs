@@ -123,7 +123,8 @@ fn closed(
     known: Option<&[f64]>,
 ) -> Result<Closed, Problem> {
     let mut scenario = rig.clone();
-    scenario.effects = effects.to_vec();
+    let acting = rig.effects.iter().chain(effects).filter(|e| e.acts_in(&recording.name));
+    scenario.effects = acting.cloned().collect();
     let mut held = Vec::new();
     let mechanism = recorded(&scenario, &mut |mechanism| {
         mechanism.commands = commands(mechanism, recording);

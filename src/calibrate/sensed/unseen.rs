@@ -4,7 +4,7 @@ use super::hypotheses::Tried;
 use super::problem::Stopped;
 use super::search::{Search, names};
 use super::settle::Model;
-use super::thresholds::{BUDGET, GAIN};
+use super::thresholds::GAIN;
 use crate::effects::{Joints, Setting, Targets};
 
 /// How far from its neutral value an effect that only simulations show is tried, in steps of its parameters: a
@@ -25,7 +25,7 @@ impl Search<'_> {
             bearing.contains(&targets) && tried.gain < GAIN[0]
         };
         for candidate in tried.iter_mut().filter(of_bearings) {
-            if self.problem.simulations() > BUDGET {
+            if self.is_spent() {
                 break;
             }
             let effects = [model.fit.effects.as_slice(), &[away(&candidate.effect)]].concat();

@@ -4,6 +4,9 @@ use super::inputs::{input_sensor, inputs};
 use super::pose::{Coordinates, Pose};
 use super::shooting::{Fitted, Shooting, Value};
 use super::window::{Shooter, Start, Window, compared, cut};
+use crate::calibrate::sensed::basis::Basis;
+use crate::calibrate::sensed::estimate::View;
+use crate::calibrate::sensed::events::{Event, Series, events};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::{OWN, ZERO};
 use crate::effects::Setting;
@@ -99,9 +102,16 @@ impl Bench {
 
     /// The machines of all runs with these effects; none where there is no such machine.
     pub fn machines(&self, effects: &[Setting]) -> Option<Vec<Mechanism>> {
-        let machine = built(&self.rig, effects).ok()?;
+        let lasting: Vec<Setting> =
+            effects.iter().filter(|e| e.history().is_none()).cloned().collect();
+        let common = built(&self.rig, &lasting).ok()?;
         let run = |run: &Recording| {
-            Some(Mechanism { commands: inputs(&machine, run)?, ..machine.clone() })
+            let own = || effects.iter().filter(|e| e.acts_in(&run.name)).cloned();
+            let machine = match lasting.len() == effects.len() {
+                true => common.clone(),
+                false => built(&self.rig, &own().collect::<Vec<_>>()).ok()?,
+            };
+            Some(Mechanism { commands: inputs(&machine, run)?, ..machine })
         };
         self.runs.iter().map(run).collect()
     }
@@ -127,6 +137,38 @@ impl Bench {
             starts.push(last.clone());
         }
         Some(starts)
+    }
+
+    /// Efforts along a run that machines of all runs do not know of, where zeros are what sensors show too much in
+    /// each; none where joints are not measured or the machine cannot be as it was.
+    pub fn series(&self, machines: &[Mechanism], zeros: &[Vec<f64>], run: usize) -> Option<Series> {
+        let recording = &self.runs[run];
+        let mut machine = machines[run].clone();
+        let first = cut(run, recording, &self.sensors, [0.1, 0.1], [0.0, 0.3]);
+        let start = self.starts(machines, zeros, &first[..first.len().min(1)])?.pop()?;
+        for ((body, state), angle) in
+            machine.bodies.iter_mut().zip(start.near.states).zip(start.near.angles)
+        {
+            (body.start, body.angle) = (state, angle);
+        }
+        for (sensor, zero) in self.sensors.iter().zip(&zeros[run]) {
+            machine.sensors[*sensor].offset += zero;
+        }
+        let basis = Basis::of(&machine, recording)?;
+        let view = View::new(recording, machine.sensors.len());
+        Series::of(&recording.name, &view, &machine, &basis)
+    }
+
+    /// What does not last in the runs; nothing in those of which efforts cannot be told.
+    pub fn events(&self) -> Vec<Event> {
+        let Some(machines) = self.machines(&self.declared) else { return Vec::new() };
+        let Some(zeros) = self.own_zeros(&self.declared, &self.zeros_of_runs()) else {
+            return Vec::new();
+        };
+        let plain = |run: &Vec<[f64; 2]>| run.iter().map(|[zero, _]| *zero).collect();
+        let zeros: Vec<Vec<f64>> = zeros.iter().map(plain).collect();
+        let series = (0..self.runs.len()).filter_map(|run| self.series(&machines, &zeros, run));
+        events(&series.collect::<Vec<Series>>())
     }
 
     /// Root mean square motion of each compared sensor about its mean over all runs.

@@ -7,9 +7,10 @@ use super::sought::{Sought, sought};
 use super::window::{Window, cut};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::report::Fitted as Estimate;
+use crate::calibrate::sensed::events::Event;
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::{CERTAIN, COVERED, HORIZONS, MET, OWN, PHASE, WINDOWS};
-use crate::effects::{Setting, Target, named};
+use crate::effects::{Setting, Target, UNNAMED, named};
 use crate::scenario::{Problem, Scenario};
 use nalgebra::{DMatrix, DVector};
 
@@ -53,6 +54,8 @@ pub struct Outcome {
     pub verdict: Verdict,
     /// What was found.
     pub effects: Vec<Certain>,
+    /// What does not last.
+    pub events: Vec<Event>,
     /// All effects of the calibrated model, declared ones among them.
     pub model: Vec<Setting>,
     /// What was fitted in vain.
@@ -124,8 +127,19 @@ pub fn calibrate(
     let found = zeros_of_all(&all, &model, &names, &search.zeros_known());
     effects.extend(found.iter().cloned());
     model.extend(found.into_iter().map(|certain| certain.effect));
+    let mut calibrated = Bench::new(&with(rig, &model), all.runs)?;
+    let events = match without.contains(&UNNAMED) {
+        true => Vec::new(),
+        false => {
+            tell("looking for what does not last");
+            calibrated.events()
+        }
+    };
     tell("predicting");
-    let calibrated = Bench::new(&with(rig, &model), all.runs)?;
+    if !events.is_empty() {
+        model.extend(events.iter().map(Event::setting));
+        calibrated = Bench::new(&with(rig, &model), calibrated.runs)?;
+    }
     let (judged, zeros) = judge(&calibrated, rig)?;
     let held = |j: &&Judged| j.run >= fits || fits == calibrated.runs.len();
     let met = |score: &dyn Fn(&Judged) -> &Score| {
@@ -135,16 +149,18 @@ pub fn calibrate(
         })
     };
     let verdict = match (met(&|j| &j.before), met(&|j| &j.after)) {
-        (true, _) => Verdict::NothingMissing,
-        (false, true) => Verdict::Explained,
-        (false, false) => Verdict::Unexplained,
+        (true, _) if events.is_empty() => Verdict::NothingMissing,
+        (_, true) => Verdict::Explained,
+        (_, false) => Verdict::Unexplained,
     };
     if verdict == Verdict::NothingMissing {
         effects.clear();
         model.clone_from(&bench.declared);
     }
     let lengths = search.lengths;
-    Ok((calibrated, Outcome { verdict, effects, model, left_out, judged, zeros, lengths, fitted }))
+    let outcome =
+        Outcome { verdict, effects, events, model, left_out, judged, zeros, lengths, fitted };
+    Ok((calibrated, outcome))
 }
 
 /// Zeros of each run's sensors, with their standard deviations.

@@ -8,12 +8,15 @@ use super::report::{
 use super::score::{Horizon, score};
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
+use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, publish, refuse, to_json};
+use crate::calibrate::sensed::events::picture::pictures as events_drawn;
+use crate::calibrate::sensed::events::{Event, found};
 use crate::calibrate::sensed::recording::Recording;
 use crate::report::{Part, Style, Table, document, number};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
-use crate::study::{Folder, PAGE_FILE};
+use crate::study::{Folder, PAGE_FILE, RunError};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant as Clock;
@@ -44,6 +47,8 @@ pub struct Prediction {
     pub errors: Vec<ChannelError>,
     /// Errors by horizons.
     pub windows: Vec<HorizonErrors>,
+    /// What acted on the machine for a while and the model does not know of.
+    pub events: Vec<EffectReport>,
     /// Zeros that belong to this run, found in its first seconds.
     pub run_zeros: Vec<RunZero>,
     /// What drives gave, by column.
@@ -160,7 +165,10 @@ pub fn into_folder(
     let mut models = Vec::new();
     models.extend(before.as_ref().map(|before| ("without effects", Style::Reference, before)));
     models.push(("predicted", Style::Solid, &after));
-    let drawn = pictures(bench, 0, "prediction", &models)?;
+    tell("looking for what does not last");
+    let events = bench.events();
+    let mut drawn = pictures(bench, 0, "prediction", &models)?;
+    drawn.extend(events_drawn(&events).map_err(RunError::from)?);
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let prediction = Prediction {
         provenance: Provenance::of(model),
@@ -168,6 +176,7 @@ pub fn into_folder(
         effects: model.effects.iter().map(crate::calibrate::way::name).collect(),
         errors: windows[0].errors.clone(),
         windows,
+        events: events.iter().map(Event::report).collect(),
         run_zeros: run_zeros(bench, &zeros),
         inputs: input_columns(bench),
         remarks: remarks(&bench.runs),
@@ -176,20 +185,20 @@ pub fn into_folder(
     };
     let json = to_json(&prediction);
     let rows = predicted(bench, 0, &after).to_csv(&bench.mechanism.sensors);
-    let page = page(&prediction, &drawn);
+    let page = page(&prediction, &found::sentence(&events), &drawn);
     let texts = [(ERRORS_FILE, &json), (PREDICTED_FILE, &rows), (PAGE_FILE, &page)];
     let folder = publish(folder, &texts, &drawn)?;
     Ok(Predicted { prediction, json, folder })
 }
 
 /// The page.
-fn page(p: &Prediction, pictures: &[crate::report::Picture]) -> String {
+fn page(p: &Prediction, events: &str, pictures: &[crate::report::Picture]) -> String {
     let effects = if p.effects.is_empty() {
         "without effects".to_owned()
     } else {
         format!("with {}", p.effects.join(", "))
     };
-    let lead = format!("{} {effects}, against {}.", p.provenance.scenario_name, p.run);
+    let lead = format!("{} {effects}, against {}.{events}", p.provenance.scenario_name, p.run);
     let head =
         ["window", "fitted to", "from", "column", "unit", "without effects", "predicted", "floor"];
     let rows = p.windows.iter().flat_map(|of| {

@@ -9,6 +9,8 @@ use crate::calibrate::outcome::Verdict;
 use crate::calibrate::recording::stem_of;
 use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
 use crate::calibrate::result::{CALIBRATED_FILE, CalibrateError, REPORT_FILE, publish, to_json};
+use crate::calibrate::sensed::events::picture::pictures as events_drawn;
+use crate::calibrate::sensed::events::{self, Event};
 use crate::calibrate::sensed::page;
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::report::{Calibrated, Report};
@@ -229,14 +231,15 @@ pub fn into_folder(
         let (horizon, windows) = (*horizon, after.windows);
         horizons.push(HorizonErrors { run: name, role, horizon, windows, errors: of });
     }
+    drawn.extend(events_drawn(&outcome.events).map_err(RunError::from)?);
     let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let names = files.iter().map(|(name, _)| name.clone());
     let listed = texts.chain(names).chain(drawn.iter().map(|p| p.file.clone())).collect();
     let report = Report {
         provenance: Provenance::of(rig),
         verdict: outcome.verdict,
-        summary: summary(&outcome),
-        effects: outcome.effects.iter().map(effect).collect(),
+        summary: format!("{}{}", summary(&outcome), events::found::sentence(&outcome.events)),
+        effects: effects(&outcome),
         errors,
         ranking: ranking(&outcome),
         noises: Vec::new(),
@@ -282,6 +285,9 @@ fn summary(outcome: &Outcome) -> String {
         (Verdict::NothingMissing, _) => {
             "The declared model predicts the recordings to within noise: nothing is missing.".to_owned()
         }
+        (Verdict::Explained, _) if list.is_empty() => {
+            "With what does not last the declared model predicts the recordings to within noise.".to_owned()
+        }
         (Verdict::Explained, _) => format!(
             "The declared model lacks {list}. With it the recordings are predicted to within noise."
         ),
@@ -294,6 +300,12 @@ fn summary(outcome: &Outcome) -> String {
             "The declared model certainly lacks {list}. More is missing: what remains stands above the sensors' noise."
         ),
     }
+}
+
+/// What lasts, then what does not.
+fn effects(outcome: &Outcome) -> Vec<EffectReport> {
+    let lasting = outcome.effects.iter().map(effect);
+    lasting.chain(outcome.events.iter().map(Event::report)).collect()
 }
 
 fn effect(certain: &Certain) -> EffectReport {
