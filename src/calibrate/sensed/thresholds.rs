@@ -131,6 +131,10 @@ pub const COVERED: f64 = 45.0;
 /// [`GAIN`].
 pub const CERTAIN: f64 = 28.0;
 
+/// Share of a value's trace that the traces of others do not make up from which windows tell it apart: below that it
+/// would be known a hundred times worse than by itself, and by what the model gets wrong rather than by it.
+pub const TOLD: f64 = 1e-2;
+
 /// First seconds of a run that its own zeros are taken from where a model is judged by the rest.
 pub const OWN: f64 = 3.0;
 

@@ -228,7 +228,8 @@ impl Bench {
         let scales: Vec<f64> = self.motion().iter().map(|motion| 1e-3 * motion).collect();
         let sought: [Value; 0] = [];
         let machines = |_: &[f64]| self.machines(effects);
-        let fitted = self.fit(&machines, &windows, &sought, Vec::new(), &priors, scales, 20)?;
+        let fitted =
+            self.fit(&machines, &windows, &sought, Vec::new(), &priors, scales, 20, false)?;
         let zero = |run: usize, i: usize| {
             let place = run * n + i;
             [fitted.zeros[run][i], fitted.covariance[(place, place)].max(0.0).sqrt()]
@@ -236,7 +237,8 @@ impl Bench {
         Some((0..self.runs.len()).map(|run| (0..n).map(|i| zero(run, i)).collect()).collect())
     }
 
-    /// Fits values and zeros over windows whose starts are fitted to their first rows before.
+    /// Fits values and zeros over windows whose starts are fitted to their first rows before; where it `predicts`,
+    /// they stay fitted to these.
     #[expect(clippy::too_many_arguments, reason = "each is one input of one problem")]
     pub fn fit(
         &self,
@@ -247,6 +249,7 @@ impl Bench {
         priors: &[Vec<[f64; 2]>],
         scales: Vec<f64>,
         head: usize,
+        predicts: bool,
     ) -> Option<Fitted> {
         let zeros: Vec<Vec<f64>> =
             priors.iter().map(|run| run.iter().map(|[centre, _]| *centre).collect()).collect();
@@ -258,9 +261,12 @@ impl Bench {
         };
         let starts = windows.iter().zip(guesses).map(better).collect();
         let shooter = self.shooter(&self.mechanism, &[]);
-        let shooting = Shooting { machines, shooter, windows, sought, zeros: priors };
-        let (squares, covariance) = (f64::INFINITY, DMatrix::zeros(0, 0));
-        shooting.fit(Fitted { values, zeros, starts, scales, squares, covariance })
+        let predicted = predicts.then_some(head);
+        let shooting =
+            Shooting { machines, shooter, windows, sought, head: predicted, zeros: priors };
+        let [covariance, information] = [DMatrix::zeros(0, 0), DMatrix::zeros(0, 0)];
+        let squares = f64::INFINITY;
+        shooting.fit(Fitted { values, zeros, starts, scales, squares, covariance, information })
     }
 }
 

@@ -2,10 +2,13 @@
 //!
 //! Whole runs of such machines cannot be simulated: their starts are unknown, and errors grow. [`window`] cuts
 //! runs into windows and fits the start in each; [`roll`] moves a machine along one; [`shooting`] fits values of
-//! effects, zeros of runs and starts together; [`sought`] says which values; [`score`] by how much predictions
+//! effects, zeros of runs and starts together; [`sought`] says which values; [`fits`] goes from
+//! short windows to long ones, and [`eliminate`] leaves out what is not certain; [`score`] by how much predictions
 //! miss; [`outcome`] is the whole way, [`predict`] that of a prediction.
 
 pub mod bench;
+pub mod eliminate;
+pub mod fits;
 pub mod inputs;
 pub mod outcome;
 pub mod pose;

@@ -2,17 +2,17 @@
 //! is left out, and the rest is fitted again.
 
 use super::bench::Bench;
+use super::eliminate::{Kept, eliminated, is_nothing};
+use super::fits::Search;
 use super::score::{Horizon, Score, score};
-use super::sought::{Sought, sought};
-use super::window::{Window, cut};
+use super::sought::sought;
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::report::Fitted as Estimate;
 use crate::calibrate::sensed::events::Event;
 use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::thresholds::{CERTAIN, COVERED, HORIZONS, MET, OWN, PHASE, WINDOWS};
+use crate::calibrate::sensed::thresholds::{CERTAIN, HORIZONS, MET, OWN, WINDOWS};
 use crate::effects::{Setting, Target, UNNAMED, named};
 use crate::scenario::{Problem, Scenario};
-use nalgebra::{DMatrix, DVector};
 
 /// An effect, estimates of its values, and what it takes off Σ of squares as windows vary.
 #[derive(Clone, Debug)]
@@ -87,30 +87,32 @@ pub fn calibrate(
     if without.contains(&"encoder-zero") {
         names.fill(0.0);
     }
-    let mut search = Search {
-        priors: vec![names.iter().map(|std| [0.0, *std]).collect(); fits],
-        scales: bench.motion().iter().map(|motion| 1e-3 * motion).collect(),
-        lengths: Vec::new(),
-        zeros: Vec::new(),
-        covariance: DMatrix::zeros(0, 0),
-        bench: &bench,
-        tell,
-    };
+    let priors = vec![names.iter().map(|std| [0.0, *std]).collect(); fits];
+    let mut search = Search::new(&bench, priors, tell);
     let everything = sought(&bench.mechanism, &bench.declared, &bench.runs, without);
     let first = search.stages(&everything, everything.start.clone(), &WINDOWS);
     let mut left_out = Vec::new();
     let mut effects = Vec::new();
     let mut model = bench.declared.clone();
     let fitted = first.is_some();
+    let mut known = Vec::new();
     if let Some(values) = first {
-        let gains = search.eliminated(&everything, &values);
-        let dropped: Vec<usize> = gains.iter().map(|(i, _)| *i).collect();
+        let Search { covariance, information, .. } = &search;
+        let Kept { fixed, values, gains } =
+            eliminated(&everything, values, covariance.clone(), information);
         let named = everything.settings(&values);
         left_out.extend(gains.iter().map(|&(i, gain)| LeftOut { effect: named[i].clone(), gain }));
-        let rest = everything.without(&dropped, &values);
+        let rest = everything.with_fixed(&fixed, &values);
         let longest = search.lengths.last().copied().unwrap_or(WINDOWS[0]);
-        let again =
+        let mut again =
             search.stages(&rest, rest.start.clone(), &[longest]).unwrap_or(rest.start.clone());
+        known = search.zeros_known();
+        if search.lengths.len() == WINDOWS.len() {
+            // A model that keeps its phase is judged by predictions, and fitted to them.
+            search.predicts = true;
+            again = search.stages(&rest, again.clone(), &[longest]).unwrap_or(again);
+        }
+        let (rest, again) = search.held_or_sliding(rest, again, longest, without);
         model = rest.settings(&again);
         let gains = search.gains(&rest, &again);
         for (i, gain) in gains {
@@ -122,9 +124,10 @@ pub fn calibrate(
                 .collect();
             effects.push(Certain { effect: model[i].clone(), params, gain });
         }
+        model.retain(|effect| !is_nothing(effect));
     }
     tell("finding the zeros of runs");
-    let found = zeros_of_all(&all, &model, &names, &search.zeros_known());
+    let found = zeros_of_all(&all, &model, &names, &known);
     effects.extend(found.iter().cloned());
     model.extend(found.into_iter().map(|certain| certain.effect));
     let mut calibrated = Bench::new(&with(rig, &model), all.runs)?;
@@ -251,148 +254,4 @@ fn zeros_of_all(
         });
     }
     found
-}
-
-/// Fits of one bench.
-struct Search<'a> {
-    bench: &'a Bench,
-    priors: Vec<Vec<[f64; 2]>>,
-    scales: Vec<f64>,
-    lengths: Vec<f64>,
-    zeros: Vec<Vec<f64>>,
-    covariance: DMatrix<f64>,
-    tell: &'a (dyn Fn(&str) + Sync),
-}
-
-impl Search<'_> {
-    fn windows(&self, length: f64) -> Vec<Window> {
-        let total: f64 = self.bench.runs.iter().map(Recording::duration).sum();
-        let step = length * (total / COVERED).max(1.0);
-        let runs = self.bench.runs.iter().enumerate();
-        runs.flat_map(|(i, run)| {
-            cut(i, run, &self.bench.sensors, [length, step], [0.0, f64::INFINITY])
-        })
-        .collect()
-    }
-
-    /// Values that fit windows of these lengths, one after another, as long as the model keeps the phase.
-    fn stages(
-        &mut self,
-        sought: &Sought,
-        mut values: Vec<f64>,
-        lengths: &[f64],
-    ) -> Option<Vec<f64>> {
-        let motion = self.bench.motion();
-        let mut done = false;
-        for &length in lengths {
-            let windows = self.windows(length);
-            if windows.is_empty() {
-                break;
-            }
-            (self.tell)(&format!("fitting windows of {length} s"));
-            let mut priors = self.priors.clone();
-            for (run, zeros) in self.zeros.iter().enumerate() {
-                for (prior, zero) in priors[run].iter_mut().zip(zeros) {
-                    // Where it goes on from; its prior is as wide as before.
-                    prior[0] = *zero;
-                }
-            }
-            let machines = |values: &[f64]| self.bench.machines(&sought.settings(values));
-            let head = (0.3 * length / windows[0].rows.interval) as usize;
-            let fit = |values: Vec<f64>, scales: Vec<f64>| {
-                self.bench.fit(&machines, &windows, &sought.values, values, &priors, scales, head)
-            };
-            let Some(fitted) = fit(values.clone(), self.scales.clone()) else { break };
-            let rows: f64 = windows.iter().map(|w| (w.rows.count + 1) as f64).sum();
-            let missed = (fitted.squares / (rows * motion.len() as f64)).sqrt();
-            values = fitted.values;
-            self.zeros = fitted.zeros;
-            self.covariance = fitted.covariance;
-            if lengths.len() > 1 {
-                self.lengths.push(length);
-            }
-            done = true;
-            let share = missed * self.scales[0] / motion[0];
-            (self.tell)(&format!(
-                "windows of {length} s: {:.2} % of the motion is missed",
-                100.0 * share
-            ));
-            if length > WINDOWS[0] && share > PHASE {
-                break;
-            }
-        }
-        done.then_some(values)
-    }
-
-    /// Zeros of the runs that were fitted, and their standard deviations.
-    fn zeros_known(&self) -> Vec<Vec<[f64; 2]>> {
-        let n = self.bench.sensors.len();
-        let first = self.covariance.nrows().saturating_sub(n * self.zeros.len());
-        let zero = |run: usize, i: usize| [self.zeros[run][i], self.deviation(first + run * n + i)];
-        (0..self.zeros.len()).map(|run| (0..n).map(|i| zero(run, i)).collect()).collect()
-    }
-
-    fn deviation(&self, k: usize) -> f64 {
-        self.covariance[(k, k)].max(0.0).sqrt()
-    }
-
-    /// What each effect's change from what is declared takes off, as windows vary: `θᵀ C⁻¹ θ`.
-    fn gains(&self, sought: &Sought, values: &[f64]) -> Vec<(usize, f64)> {
-        let change = self.change(sought, values);
-        let effects = (0..sought.effects.len()).filter(|&i| !sought.of(i).is_empty());
-        effects.map(|i| (i, gain(&self.covariance, &change, &sought.of(i)))).collect()
-    }
-
-    /// By how much values differ from what is declared; zeros of runs are no change.
-    fn change(&self, sought: &Sought, values: &[f64]) -> DVector<f64> {
-        DVector::from_fn(self.covariance.nrows(), |k, _| {
-            sought.values.get(k).map_or(0.0, |value| values[k] - value.prior[0])
-        })
-    }
-
-    /// Effects that are not certain, the least certain first: each is taken back to what is declared, and the
-    /// others become what they then are, `θ − C_d C_dd⁻¹ θ_d` with covariance `C − C_d C_dd⁻¹ C_dᵀ`.
-    fn eliminated(&self, sought: &Sought, values: &[f64]) -> Vec<(usize, f64)> {
-        let mut change = self.change(sought, values);
-        let mut covariance = self.covariance.clone();
-        let mut left: Vec<usize> =
-            (0..sought.effects.len()).filter(|&i| !sought.of(i).is_empty()).collect();
-        let mut out = Vec::new();
-        while let Some((least, lost)) = left
-            .iter()
-            .map(|&i| (i, gain(&covariance, &change, &sought.of(i))))
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .filter(|(_, gain)| *gain < CERTAIN)
-        {
-            out.push((least, lost));
-            left.retain(|i| *i != least);
-            let places = sought.of(least);
-            let across = covariance.select_columns(&places);
-            let block = across.select_rows(&places);
-            let part = change.select_rows(&places);
-            let Some(inverse) = inverse(&block) else { continue };
-            change -= &across * (&inverse * part);
-            covariance -= &across * inverse * across.transpose();
-        }
-        out
-    }
-}
-
-/// Inverse of a covariance, in units of its deviations; values that are not known at all are left alone.
-fn inverse(block: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale: Vec<f64> = (0..block.nrows()).map(|i| block[(i, i)].max(1e-300).sqrt()).collect();
-    let unit = DMatrix::from_fn(block.nrows(), block.ncols(), |i, j| {
-        block[(i, j)] / (scale[i] * scale[j]) + if i == j { 1e-9 } else { 0.0 }
-    });
-    let inverse = unit.try_inverse()?;
-    Some(DMatrix::from_fn(block.nrows(), block.ncols(), |i, j| {
-        inverse[(i, j)] / (scale[i] * scale[j])
-    }))
-}
-
-/// `θᵀ C⁻¹ θ` of some places.
-fn gain(covariance: &DMatrix<f64>, change: &DVector<f64>, places: &[usize]) -> f64 {
-    let block = covariance.select_columns(places).select_rows(places);
-    let part = change.select_rows(places);
-    inverse(&block).map_or(0.0, |inverse| part.dot(&(inverse * &part)))
 }

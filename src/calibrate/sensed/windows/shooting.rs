@@ -42,6 +42,8 @@ pub struct Fitted {
     pub squares: f64,
     /// Covariance of values and zeros from how differently windows pull at them.
     pub covariance: DMatrix<f64>,
+    /// What the windows say of values and zeros: Σ of products of derivatives, starts eliminated.
+    pub information: DMatrix<f64>,
 }
 
 /// The problem.
@@ -54,6 +56,9 @@ pub struct Shooting<'a> {
     pub windows: &'a [Window],
     /// Values sought.
     pub sought: &'a [Value],
+    /// How many first rows starts are fitted to where what is made least is the error of predictions; none where
+    /// starts are fitted to all rows.
+    pub head: Option<usize>,
     /// Prior of each zero of each run: where it is, and one standard deviation; 0 keeps it there.
     pub zeros: &'a [Vec<[f64; 2]>],
 }
@@ -62,12 +67,27 @@ pub struct Shooting<'a> {
 struct Part {
     squares: f64,
     weight: f64,
+    /// Whether B and r are those of a start that follows the values.
+    predicts: bool,
     /// Aᵀ A, Aᵀ B, Aᵀ r of the start; Bᵀ B, Bᵀ r of values and zeros.
     aa: DMatrix<f64>,
     ab: DMatrix<f64>,
     ar: DVector<f64>,
     bb: DMatrix<f64>,
     br: DVector<f64>,
+}
+
+impl Part {
+    /// Equations of the values alone, damped: the start is taken out of them.
+    fn reduced(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let bb = damped(&self.bb, damping);
+        if self.predicts {
+            return Some((bb, self.br.clone()));
+        }
+        let factor = damped(&self.aa, damping).cholesky()?;
+        let across = self.ab.transpose();
+        Some((bb - &across * factor.solve(&self.ab), &self.br - across * factor.solve(&self.ar)))
+    }
 }
 
 impl Shooting<'_> {
@@ -124,17 +144,21 @@ impl Shooting<'_> {
                 b[(row, column)] = 1.0 / fitted.scales[sensor];
             }
         }
-        let at = a.transpose();
+        let squares = r.norm_squared();
+        let seen = self.head.map_or(rows, |head| ((head + 1) * n).min(rows));
+        let first = a.rows(0, seen).into_owned();
+        let at = first.transpose();
+        let (aa, ab, ar) = (&at * &first, &at * b.rows(0, seen), &at * r.rows(0, seen));
+        let predicts = self.head.is_some();
+        let (b, r) = if predicts {
+            let factor = aa.clone().cholesky()?;
+            (b - &a * factor.solve(&ab), r - &a * factor.solve(&ar))
+        } else {
+            (b, r)
+        };
         let bt = b.transpose();
-        Some(Part {
-            squares: r.norm_squared(),
-            weight: 1.0,
-            aa: &at * &a,
-            ab: &at * &b,
-            ar: &at * &r,
-            bb: &bt * &b,
-            br: &bt * &r,
-        })
+        let (bb, br) = (&bt * &b, &bt * &r);
+        Some(Part { squares, weight: 1.0, predicts, aa, ab, ar, bb, br })
     }
 
     fn step(&self, fitted: &Fitted, k: usize, value: &Value) -> f64 {
@@ -180,6 +204,8 @@ impl Shooting<'_> {
             let before = data + penalty(&priors);
             fitted.squares = data;
             fitted.covariance = self.covariance(&parts, &priors, &fitted);
+            let said = self.reduced(&parts, &[], 0.0);
+            fitted.information = said.map_or_else(|| DMatrix::zeros(0, 0), |(matrix, _)| matrix);
             if last || round == STEPS {
                 break;
             }
@@ -233,10 +259,9 @@ impl Shooting<'_> {
         let mut matrix = DMatrix::zeros(unknowns, unknowns);
         let mut right = DVector::zeros(unknowns);
         for part in parts {
-            let factor = damped(&part.aa, damping).cholesky()?;
-            let bb = damped(&part.bb, damping);
-            matrix += (bb - part.ab.transpose() * factor.solve(&part.ab)) * part.weight;
-            right += (&part.br - part.ab.transpose() * factor.solve(&part.ar)) * part.weight;
+            let (own, pull) = part.reduced(damping)?;
+            matrix += own * part.weight;
+            right += pull * part.weight;
         }
         for (k, prior) in priors.iter().enumerate() {
             if let Some([distance, weight]) = prior {
@@ -310,8 +335,7 @@ impl Shooting<'_> {
                 meat[(k, k)] = prior.map_or(0.0, |[_, weight]| weight);
             }
             for part in parts {
-                let factor = part.aa.clone().cholesky()?;
-                let pull = (&part.br - part.ab.transpose() * factor.solve(&part.ar)) * part.weight;
+                let pull = part.reduced(0.0)?.1 * part.weight;
                 meat += &pull * pull.transpose();
             }
             Some(&inverse * meat * &inverse)

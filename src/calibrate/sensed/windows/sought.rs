@@ -14,6 +14,10 @@ const INERTIA: f64 = 0.3;
 /// Share of what gravity does to the machine that friction is expected to be.
 const FRICTION: f64 = 0.2;
 
+/// What the air can do: `½ ρ c_w` of a plate across the flow, `½ · 1.2 kg/m³ · 2` in N s²/m⁴, on the square of the
+/// machine's size (Hoerner, *Fluid-Dynamic Drag*, 1965, ch. 3: c_w of 2 for a long plate).
+const AIR: f64 = 1.2;
+
 /// Expected share by which the scale of an effort is off, and the offset in shares of what gravity does.
 const SCALE: f64 = 0.1;
 const OFFSET: f64 = 0.02;
@@ -67,30 +71,89 @@ impl Sought {
         self.of(effect).into_iter().map(|k| names[self.places[k].1]).collect()
     }
 
-    /// The same without some effects, or, of those that the rig declares, as it declares them; values start at
-    /// `values`.
-    pub fn without(&self, dropped: &[usize], values: &[f64]) -> Self {
-        let mut kept = values.to_vec();
-        for k in dropped.iter().flat_map(|&effect| self.of(effect)) {
-            kept[k] = self.values[k].prior[0];
+    /// Values that come and go together: each amount (which is nothing at 0 and never less) is one of its own,
+    /// the others of an effect belong together.
+    pub fn terms(&self) -> Vec<Vec<usize>> {
+        let mut terms: Vec<Vec<usize>> = Vec::new();
+        for k in 0..self.values.len() {
+            let beside = |term: &&mut Vec<usize>| {
+                let first = term[0];
+                !self.is_amount(first) && self.places[first].0 == self.places[k].0
+            };
+            match terms.iter_mut().find(beside).filter(|_| !self.is_amount(k)) {
+                Some(term) => term.push(k),
+                None => terms.push(vec![k]),
+            }
         }
-        let mut left = Self { effects: Vec::new(), declared: 0, ..self.clone() };
-        (left.places, left.values, left.start) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, effect) in self.settings(&kept).into_iter().enumerate() {
-            let declared = i < self.declared;
-            if !dropped.contains(&i) {
-                for k in self.of(i) {
-                    left.places.push((left.effects.len(), self.places[k].1));
-                    left.values.push(self.values[k].clone());
-                    left.start.push(kept[k]);
-                }
-            } else if !declared {
+        terms
+    }
+
+    /// Whether a value is an amount of something that is not there at 0.
+    pub fn is_amount(&self, k: usize) -> bool {
+        self.values[k].bounds[0] == 0.0
+    }
+
+    /// The effect that a value belongs to.
+    pub fn effect_of(&self, k: usize) -> usize {
+        self.places[k].0
+    }
+
+    /// The same with some values kept where `fixed` says, the others sought from `values` on; without effects of
+    /// which nothing is sought any more and that the rig does not declare.
+    pub fn with_fixed(&self, fixed: &[Option<f64>], values: &[f64]) -> Self {
+        let at = fixed.iter().zip(values).map(|(fixed, value)| fixed.unwrap_or(*value));
+        let at: Vec<f64> = at.collect();
+        let mut left = Self {
+            effects: Vec::new(),
+            declared: self.declared,
+            places: Vec::new(),
+            values: Vec::new(),
+            start: Vec::new(),
+        };
+        for (i, effect) in self.settings(&at).into_iter().enumerate() {
+            let free: Vec<usize> = self.of(i).into_iter().filter(|&k| fixed[k].is_none()).collect();
+            if free.is_empty() && i >= self.declared {
                 continue;
             }
-            left.declared += usize::from(declared);
+            for k in free {
+                left.places.push((left.effects.len(), self.places[k].1));
+                left.values.push(self.values[k].clone());
+                left.start.push(at[k]);
+            }
             left.effects.push(effect);
         }
         left
+    }
+
+    /// The same with dry friction of a pivot (effect `index`) as that of bristles, which hold what has stopped and
+    /// bend before it slides; none of other effects. Values start at `values`.
+    pub fn with_bristles(
+        &self,
+        index: usize,
+        values: &[f64],
+        mechanism: &Mechanism,
+    ) -> Option<Self> {
+        let friction = &self.effects[index];
+        let Target::Joints(joints) = &friction.target else { return None };
+        let turns = |name: &String| {
+            mechanism
+                .joints()
+                .any(|(of, joint)| of == name && matches!(joint, JointIndex::Revolute(_)))
+        };
+        let k = self.of(index).into_iter().zip(self.names(index));
+        let (k, _) = k.into_iter().find(|(_, name)| *name == "coulomb")?;
+        if friction.kind.name != "joint-friction" || !joints.iter().all(turns) {
+            return None;
+        }
+        let mut nothing = values.to_vec();
+        nothing[k] = 0.0;
+        let mut other = Self { start: values.to_vec(), ..self.clone() };
+        other.effects = self.settings(&nothing);
+        let kind = named("bristle-friction")?;
+        let dry = [(kind.parameters[0].name, values[k])];
+        other.places[k] = (other.effects.len(), 0);
+        other.effects.push(Setting::on(kind, friction.target.clone(), &dry));
+        Some(other)
     }
 
     fn add(
@@ -176,6 +239,10 @@ pub fn sought(
         }
         if allowed("mass-properties") {
             sought.add("mass-properties", Target::Body(name.clone()), &sizes, &[]);
+        }
+        if allowed("air-drag") {
+            let sizes = [("force_Ns2_m2", AIR * size.powi(2)), ("torque_Nms2", AIR * size.powi(5))];
+            sought.add("air-drag", Target::Body(name.clone()), &sizes, &[]);
         }
     }
     let joints: Vec<(String, JointIndex)> =
