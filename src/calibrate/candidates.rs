@@ -34,7 +34,7 @@ fn targets(kind: &Kind, mechanism: &Mechanism) -> Vec<On> {
     }
     let each = || kind.joints_of(mechanism).into_iter().map(|name| On::Joints(vec![name]));
     match kind.targets {
-        Targets::Machine | Targets::Body => vec![On::Machine],
+        Targets::Machine | Targets::Commands | Targets::Body => vec![On::Machine],
         Targets::Joint(Joints::Any) => Vec::new(),
         Targets::Joint(_) => each().collect(),
         Targets::JointOrAll(_) => each().chain([On::Machine]).collect(),

@@ -118,7 +118,7 @@ fn paragraph(first: &str, next: &str, words: &str) -> String {
 fn example(kind: &Kind) -> String {
     let mut text = format!("Example:\n\n    [[effect]]\n    kind = \"{}\"\n", kind.name);
     text += match kind.targets {
-        Targets::Machine | Targets::Tracker => "",
+        Targets::Machine | Targets::Commands | Targets::Tracker => "",
         Targets::Joint(joints) => match joints {
             Joints::Prismatic | Joints::DrivenPrismatic | Joints::Driven => "    joint = \"P1\"\n",
             Joints::Anchor | Joints::Any => "    joint = \"A1\"\n",
@@ -166,6 +166,7 @@ fn number(value: f64) -> String {
 fn rule(targets: Targets) -> &'static str {
     match targets {
         Targets::Machine => "none: it acts on the whole machine",
+        Targets::Commands => "none: it acts on the commands of all drives",
         Targets::Joint(joints) => match joints {
             Joints::Prismatic => {
                 "a prismatic joint, such as \"P1\", or a list of some with a common cause"
@@ -236,7 +237,7 @@ fn described(kind: &Kind) -> Value {
         Some(Joints::Any) => "any",
     };
     let target = match kind.targets {
-        Targets::Machine => "machine",
+        Targets::Machine | Targets::Commands => "machine",
         Targets::Tracker => "tracker",
         of_one => of_one.key().unwrap_or_default(),
     };

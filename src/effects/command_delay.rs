@@ -11,7 +11,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "the drives follow q_cmd(t - delay); the sensors are not late",
     source: "definition",
     trace: "measured forces against the servo's own law: with the commanded speed",
-    targets: Targets::Machine,
+    targets: Targets::Commands,
     parameters: &[Parameter::size("delay_s", "s", "delay", 0.5, 1e-5)],
     variants: &[&["delay_s"]],
     neutral: defaults,

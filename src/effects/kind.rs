@@ -1,7 +1,7 @@
 //! What is said of an effect once, whatever machine it acts on.
 
 use super::{Setting, Target, Wrong};
-use crate::mechanism::{Bearing, JointIndex, Mechanism, Reads, Sensor};
+use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism, Reads, Sensor};
 
 /// One number of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +40,8 @@ impl Parameter {
 pub enum Targets {
     /// The whole machine.
     Machine,
+    /// The commands of all drives together.
+    Commands,
     /// One joint, or several with a common cause (key `joint`).
     Joint(Joints),
     /// The same, or all of them where none is named.
@@ -94,7 +96,7 @@ impl Targets {
     /// The key that names what the effect acts on, if it takes one.
     pub fn key(self) -> Option<&'static str> {
         match self {
-            Targets::Machine | Targets::Tracker => None,
+            Targets::Machine | Targets::Commands | Targets::Tracker => None,
             Targets::Joint(_) | Targets::JointOrAll(_) => Some("joint"),
             Targets::Body => Some("body"),
             Targets::Point => Some("point"),
@@ -230,6 +232,11 @@ impl Kind {
         };
         match self.targets {
             Targets::Machine => vec![Target::Machine],
+            // An effort that is given is recorded as it is given.
+            Targets::Commands => {
+                let follows = mechanism.actuators.iter().any(|drive| drive.drive != Drive::Effort);
+                follows.then_some(Target::Machine).into_iter().collect()
+            }
             Targets::Joint(joints) | Targets::JointOrAll(joints) => {
                 let mut names = self.joints_of(mechanism);
                 names.retain(|name| joints != Joints::Bearing || worn(name));

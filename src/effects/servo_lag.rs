@@ -11,7 +11,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "tau dq_f/dt = q_cmd - q_f; the servo follows q_f",
     source: "definition",
     trace: "measured forces against the servo's own law: with the commanded speed, less acceleration times tau",
-    targets: Targets::Machine,
+    targets: Targets::Commands,
     parameters: &[Parameter::size(
         "time_constant_s",
         "s",

@@ -356,7 +356,7 @@ fn target(targets: Targets, value: &toml::Value) -> Option<Target> {
         _ => one().map(|name| vec![name]),
     };
     match targets {
-        Targets::Machine | Targets::Tracker => None,
+        Targets::Machine | Targets::Commands | Targets::Tracker => None,
         Targets::Joint(_) | Targets::JointOrAll(_) => several().map(Target::Joints),
         Targets::Sensor(_) => several().map(Target::Sensors),
         Targets::Body => one().map(Target::Body),

@@ -8,7 +8,7 @@ use super::hypotheses::Round;
 use super::left::{Left, is_noise};
 use super::limits::{Limit, limits};
 use super::noise::{self, OtherNoise};
-use super::problem::{Problem, Segment, Split, Start, Stopped};
+use super::problem::{Problem, Segment, Split, Stopped};
 use super::recording::Recording;
 use super::search::{Found, Search};
 use super::settle::Model;
@@ -84,6 +84,7 @@ pub fn calibrate(
         }
     }
     let Found { best, declared, rounds } = found;
+    let best = swinging(problem, &asked, best)?;
     let search = asked.search(problem);
     let (before, after) = (search.left(&declared), search.left(&best));
     let noise = is_noise(&after);
@@ -103,9 +104,10 @@ pub fn calibrate(
     let after = described.as_ref().map_or(after, |(_, model)| search.left(model));
     let deviations = if noise { best.fit.deviations() } else { Vec::new() };
     tell("predicting");
-    let (predicting, errors, met) = predicted(problem, &effects, &deviations, noise, tell)?;
+    let predicting = Predicting::of(problem, &effects, &deviations)?;
+    let errors = errors(problem, &predicting.declared, &predicting.calibrated);
     let nothing = best.fit.effects.is_empty() && events.is_empty();
-    let verdict = match (noise && met, nothing) {
+    let verdict = match (noise && met(&errors), nothing) {
         (true, true) => Verdict::NothingMissing,
         (true, false) => Verdict::Explained,
         (false, _) => Verdict::Unexplained,
@@ -183,36 +185,53 @@ fn what_does_not_last(
     beside(problem, effects, &simulated)
 }
 
-/// What the declared model and the one with these effects predict, the errors, and whether they are met: a model that
-/// misses the run that it was fitted to lacks something. Where residuals are noise and recordings are missed all the
-/// same, they may have begun with another swing.
-fn predicted(
-    problem: &mut Problem,
-    effects: &[Setting],
-    deviations: &[f64],
-    noise: bool,
-    tell: &(dyn Fn(&str) + Sync),
-) -> Result<(Predicting, Vec<ChannelError>, bool), Stopped> {
-    let met = |errors: &[ChannelError]| errors.iter().all(|error| error.after <= MET * error.floor);
-    let predicting = Predicting::of(problem, effects, deviations)?;
-    let errors = predicting.errors(problem);
-    if !noise || met(&errors) {
-        let met = met(&errors);
-        return Ok((predicting, errors, met));
+/// Whether errors are met: a model that misses the run that it was fitted to lacks something.
+fn met(errors: &[ChannelError]) -> bool {
+    errors.iter().all(|error| error.after <= MET * error.floor)
+}
+
+/// A model, settled with the swing that recordings begin with where its residuals are noise and it misses them all the
+/// same, if it meets them then: nobody knows how a machine was let go. What rattles has forgotten that.
+fn swinging(problem: &mut Problem, asked: &Asked, best: Model) -> Result<Model, Stopped> {
+    let effects = best.fit.effects.clone();
+    let meets = |problem: &Problem, effects: &[Setting]| -> Result<bool, Stopped> {
+        let simulated = problem.simulated(&problem.starts(effects)?, 1)?;
+        Ok(met(&errors(problem, &simulated, &simulated)))
+    };
+    let rattles = problem.replicas > 1;
+    if rattles || !asked.search(problem).is_noise(&best) || meets(problem, &effects)? {
+        return Ok(best);
     }
-    tell("looking for the swing in which recordings begin");
-    if let Some(swinging) = predicting.swinging(problem)? {
-        let again = swinging.errors(problem);
-        if met(&again) {
-            return Ok((swinging, again, true));
+    (asked.tell)("looking for the swing in which recordings begin");
+    if problem.look_for_swing(&effects)? {
+        let search = asked.search(problem);
+        let settled = search.settle(&effects, 4)?;
+        if let Some(model) = settled.map(|model| search.refined(model)).transpose()?
+            && meets(problem, &model.fit.effects)?
+        {
+            return Ok(model);
         }
+        problem.forget_swing();
     }
-    Ok((predicting, errors, false))
+    Ok(best)
+}
+
+/// Errors of all runs of two models, simulated replica by replica.
+fn errors(
+    problem: &Problem,
+    declared: &[Vec<Recording>],
+    calibrated: &[Vec<Recording>],
+) -> Vec<ChannelError> {
+    let of = |index: usize| {
+        let role = if index == 0 { "calibration" } else { "validation" };
+        let recording = &problem.runs[index].recording;
+        of_run(&problem.declared, recording, role, &declared[index], &calibrated[index])
+    };
+    (0..problem.runs.len()).flat_map(of).collect()
 }
 
 /// What the declared and the calibrated model predict, replicas run by run.
 struct Predicting {
-    starts: Vec<Start>,
     declared: Vec<Vec<Recording>>,
     calibrated: Vec<Vec<Recording>>,
 }
@@ -228,26 +247,7 @@ impl Predicting {
             true => calibrated.clone(),
             false => problem.simulated(&problem.starts(&[])?, problem.replicas)?,
         };
-        Ok(Self { starts, declared, calibrated })
-    }
-
-    /// The same with the swing that recordings begin with; none where joints rattle, which have forgotten it.
-    fn swinging(&self, problem: &Problem) -> Result<Option<Self>, Stopped> {
-        if problem.replicas > 1 {
-            return Ok(None);
-        }
-        let starts = problem.swinging(&self.starts)?;
-        let calibrated = problem.simulated(&starts, 1)?;
-        Ok(Some(Self { starts, declared: self.declared.clone(), calibrated }))
-    }
-
-    fn errors(&self, problem: &Problem) -> Vec<ChannelError> {
-        let of = |index: usize| {
-            let role = if index == 0 { "calibration" } else { "validation" };
-            let (declared, calibrated) = (&self.declared[index], &self.calibrated[index]);
-            of_run(&problem.declared, &problem.runs[index].recording, role, declared, calibrated)
-        };
-        (0..problem.runs.len()).flat_map(of).collect()
+        Ok(Self { declared, calibrated })
     }
 }
 

@@ -6,7 +6,7 @@ use super::errors::{self, mean};
 use super::recording::Recording;
 use super::simulate::{apart, record};
 use super::start::{StartError, released, still};
-use super::swing::as_recorded;
+use super::swing::Swing;
 use super::thresholds::{MET, PREDICTING, SEEN};
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE, Predicted, Prediction};
@@ -171,8 +171,9 @@ impl Along<'_> {
         };
         if sought && missed(&logs) > MET {
             let still = still(&released, control)?;
-            if let Some(other) = as_recorded(&released, still.as_ref(), recording, control)? {
-                let swinging = replicas(&other, 0..1)?;
+            let swing = Swing::of(&released, still.as_ref(), recording, control)?;
+            if let Some((swing, still)) = swing.zip(still) {
+                let swinging = replicas(&swing.given_to(&still), 0..1)?;
                 if missed(&swinging) < missed(&logs) {
                     logs = swinging;
                 }

@@ -151,21 +151,35 @@ impl Judge {
     }
 }
 
-/// The machine with the swing that a recording shows; none where it swings as it was `released`, where it was not
-/// at rest (`still`) before, or where no kicks show the recorded swing.
-///
-/// # Errors
-/// A run that broke down, but for a kick that the machine does not stand: that is not what was recorded.
-pub fn as_recorded(
-    released: &Mechanism,
-    still: Option<&Mechanism>,
-    recording: &Recording,
-    control: StepControl,
-) -> Result<Option<Mechanism>, Halt> {
-    let Some(still) = still else { return Ok(None) };
-    let ways = ways(still, recording, control)?;
-    let seen = as_seen(released, still, &ways, recording, control);
-    Ok(seen.ok().flatten().map(|kicks| kicked(still, &ways, &kicks)))
+/// The swing that a recording begins with.
+#[derive(Clone, Debug)]
+pub struct Swing {
+    ways: Ways,
+    kicks: Kicks,
+}
+
+impl Swing {
+    /// That of a recording; none where the machine swings so as it was `released`, where it was not at rest (`still`)
+    /// before, or where no kicks show the recorded swing.
+    ///
+    /// # Errors
+    /// A run that broke down, but for a kick that the machine does not stand: that is not what was recorded.
+    pub fn of(
+        released: &Mechanism,
+        still: Option<&Mechanism>,
+        recording: &Recording,
+        control: StepControl,
+    ) -> Result<Option<Self>, Halt> {
+        let Some(still) = still else { return Ok(None) };
+        let ways = ways(still, recording, control)?;
+        let seen = as_seen(released, still, &ways, recording, control);
+        Ok(seen.ok().flatten().map(|kicks| Self { ways, kicks }))
+    }
+
+    /// A machine at rest that is kicked so that it swings like this.
+    pub fn given_to(&self, still: &Mechanism) -> Mechanism {
+        kicked(still, &self.ways, &self.kicks)
+    }
 }
 
 /// The ways in which kicks change what sensors see of a machine at rest, those that matter alone.

@@ -15,17 +15,17 @@ use crate::mechanism::{Reads, Sensor};
 /// How often another target or way of an effect is drawn that does not show.
 const DRAWS: usize = 3;
 
-/// Simulations of one draw, at most.
-const STEPS: usize = 6;
+/// Sizes of one draw that are simulated, at most.
+const STEPS: usize = 5;
 
-/// Share of the wanted floors by which those of a size may differ from them.
-const NEAR: f64 = 0.2;
+/// Share of the wanted floors by which those of a size may differ from them: they are drawn over a factor of eight.
+const NEAR: f64 = 0.3;
 
 /// The same of the last size that was tried, where a rattle scatters them.
 const NEAR_ENOUGH: f64 = 0.5;
 
-/// Replicas of a machine that rattles.
-const REPLICAS: u64 = 3;
+/// Replicas of a machine that rattles: two are the fewest that tell a floor.
+const REPLICAS: u64 = 2;
 
 /// Factor by which noise is larger than declared where that is hidden.
 const NOISIER: f64 = 2.0;
