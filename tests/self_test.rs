@@ -5,7 +5,7 @@ use freeplay::calibrate::sensed::self_test::{Trial, Tried, run};
 
 /// A trial whose answer is right.
 fn right(seed: u64) -> Tried {
-    let tried = run(&Trial::draw(seed), "this");
+    let tried = run(&Trial::draw(seed), "this", &|_| {});
     let answer = tried.answer.as_ref().unwrap_or_else(|| panic!("{tried:?}"));
     assert!(answer.right && !answer.wrong_name, "{tried:#?}");
     tried

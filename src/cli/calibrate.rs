@@ -66,6 +66,9 @@ pub(super) struct Arguments {
     /// Keep finished trials in this file, one JSON object a line, and go on from there
     #[arg(long, value_name = "FILE.jsonl", requires = "self_test")]
     trials: Option<PathBuf>,
+    /// Keep the rig and the recordings of each trial in a folder in this one, to calibrate them by themselves
+    #[arg(long, value_name = "DIR", requires = "self_test")]
+    keep: Option<PathBuf>,
     #[command(flatten)]
     sets: Sets,
     #[command(flatten)]
@@ -84,9 +87,11 @@ Examples:
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let (Some(rig), false) = (&arguments.rig, arguments.data.is_empty()) else {
         let PrintOptions { json, quiet } = arguments.print;
-        let Arguments { hidden: only, machine: machines, count, seed, trials, .. } = arguments;
-        let (count, seed, table) = (*count, *seed, trials.as_deref());
-        let test = SelfTest { only, machines, count, seed, table, json, quiet };
+        let Arguments { hidden: only, machine: machines, count, seed, trials, keep, .. } =
+            arguments;
+        let (count, seed) = (*count, *seed);
+        let (table, keep) = (trials.as_deref(), keep.as_deref());
+        let test = SelfTest { only, machines, count, seed, table, keep, json, quiet };
         return super::self_test::main(&test);
     };
     let without = without(&arguments.without)?;

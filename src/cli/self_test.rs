@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::output;
 use super::progress::Spinner;
+use crate::calibrate::sensed::problem::Problem;
 use crate::calibrate::sensed::self_test::{NOISE, Tried, machines, rates, run, trials};
 use crate::effects::named;
 use sha2::{Digest, Sha256};
@@ -26,6 +27,8 @@ pub(super) struct SelfTest<'a> {
     pub seed: u64,
     /// Where finished trials are kept.
     pub table: Option<&'a Path>,
+    /// Where rigs and recordings are kept.
+    pub keep: Option<&'a Path>,
     pub json: bool,
     pub quiet: bool,
 }
@@ -95,7 +98,13 @@ fn all_tried(test: &SelfTest, mut all: Vec<Tried>) -> Result<Vec<Tried>, Failure
     let results = Mutex::new((known, &mut all));
     let work = || -> Result<(), Failure> {
         while let Some(&i) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let tried = run(&wanted[i], &version);
+            let kept = Mutex::new(Ok(()));
+            let tried = run(&wanted[i], &version, &|problem| {
+                let Some(folder) = test.keep else { return };
+                let written = keep(&folder.join(wanted[i].seed.to_string()), problem);
+                *kept.lock().unwrap_or_else(PoisonError::into_inner) = written;
+            });
+            kept.into_inner().unwrap_or_else(PoisonError::into_inner)?;
             finished.fetch_add(1, Ordering::Relaxed);
             let (found, all) = &mut *results.lock().unwrap_or_else(PoisonError::into_inner);
             if !test.json && !test.quiet {
@@ -124,6 +133,20 @@ fn all_tried(test: &SelfTest, mut all: Vec<Tried>) -> Result<Vec<Tried>, Failure
     spinner.clear();
     let (found, _) = results.into_inner().unwrap_or_else(PoisonError::into_inner);
     Ok(found.into_iter().flatten().collect())
+}
+
+/// Writes the rig and the recordings of a trial, to be calibrated like any others.
+fn keep(folder: &Path, problem: &Problem) -> Result<(), Failure> {
+    let write = |name: &str, text: &str| {
+        let path = folder.join(name);
+        fs::write(&path, text).map_err(|error| refused(&path, &error))
+    };
+    fs::create_dir_all(folder).map_err(|error| refused(folder, &error))?;
+    write("rig.toml", &problem.rig.to_toml())?;
+    for (run, name) in problem.runs.iter().zip(["run-a.csv", "run-b.csv"]) {
+        write(name, &run.recording.to_csv(&problem.declared.sensors))?;
+    }
+    Ok(())
 }
 
 /// Version of the program, and which build of it: the first digits of its file's hash.

@@ -27,10 +27,19 @@ pub struct Basis {
 
 #[derive(Clone, Debug)]
 enum Shown {
-    /// A sensor of each of the joints.
-    Coordinates(Vec<usize>),
+    /// What says the coordinate of each of the joints.
+    Coordinates(Vec<Source>),
     /// Sensors of x, y and angle of one body.
     Pose([usize; 3]),
+}
+
+/// What says a coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Source {
+    /// A sensor of it.
+    Sensor(usize),
+    /// The command of a drive whose joint nobody measures, less what the drive yields under its effort.
+    Command(usize),
 }
 
 impl Basis {
@@ -39,16 +48,29 @@ impl Basis {
         Self::tracked(mechanism, recording).or_else(|| Self::measured(mechanism, recording))
     }
 
-    /// Sensors of joints: those of driven joints first, then others, each if it adds something.
+    /// Sensors of joints, and commands of drives whose joints have none: those of driven joints first, then others, each
+    /// if it adds something.
     fn measured(mechanism: &Mechanism, recording: &Recording) -> Option<Self> {
+        let read = |reads: &dyn Fn(&Reads) -> bool| {
+            let mut sensors = mechanism.sensors.iter().enumerate();
+            sensors.find(|(i, sensor)| recording.get(*i).is_some() && reads(&sensor.reads))
+        };
+        let drives = mechanism.actuators.iter().enumerate().filter_map(|(index, drive)| {
+            let holds = matches!(drive.drive, Drive::Servo { .. } | Drive::Prescribed);
+            let told = read(&|reads| matches!(reads, Reads::Command(of) if *of == index));
+            let seen =
+                read(&|reads| matches!(reads, Reads::Position(joint) if *joint == drive.joint));
+            (holds && told.is_some() && seen.is_none())
+                .then_some((drive.joint, Source::Command(index)))
+        });
         let sensors = mechanism.sensors.iter().enumerate();
-        let read = sensors.filter_map(|(i, sensor)| match sensor.reads {
-            Reads::Position(joint) => recording.get(i).map(|_| (joint, i)),
+        let joints = sensors.filter_map(|(i, sensor)| match sensor.reads {
+            Reads::Position(joint) => recording.get(i).map(|_| (joint, Source::Sensor(i))),
             _ => None,
         });
-        let found = independent(mechanism, read.collect())?;
-        let (joints, sensors) = found.into_iter().unzip();
-        Some(Self { joints, shown: Shown::Coordinates(sensors) })
+        let found = independent(mechanism, drives.chain(joints).collect())?;
+        let (joints, sources) = found.into_iter().unzip();
+        Some(Self { joints, shown: Shown::Coordinates(sources) })
     }
 
     /// A tracked body that determines a machine whose joints have play.
@@ -110,7 +132,7 @@ impl Basis {
     /// Whether the motion is taken from a sensor.
     pub fn needs(&self, sensor: usize) -> bool {
         match &self.shown {
-            Shown::Coordinates(sensors) => sensors.contains(&sensor),
+            Shown::Coordinates(sources) => sources.contains(&Source::Sensor(sensor)),
             Shown::Pose(sensors) => sensors.contains(&sensor),
         }
     }
@@ -149,10 +171,13 @@ impl Basis {
             (Shown::Pose(_), None) => {
                 Moved { ideal, imposed: Imposed::Drives, columns: columns.finish() }
             }
-            (Shown::Coordinates(sensors), _) => {
-                let joints = self.joints.iter().zip(sensors);
+            (Shown::Coordinates(sources), _) => {
+                let joints = self.joints.iter().zip(sources);
                 let measured: Vec<[Vec<f64>; 3]> = joints
-                    .map(|(joint, sensor)| coordinate(view, mechanism, *joint, *sensor))
+                    .map(|(joint, source)| match source {
+                        Source::Sensor(sensor) => coordinate(view, mechanism, *joint, *sensor),
+                        Source::Command(drive) => commanded(view, mechanism, *drive),
+                    })
                     .collect();
                 measured.iter().for_each(|columns_of| hash(columns_of, &mut columns));
                 ideal.commands = Arc::new(Measured { interval: view.interval, columns: measured });
@@ -236,6 +261,31 @@ fn coordinate(
     if let (Some(link), Some(effort)) = (link, effort) {
         // The encoder sits at the drive's end of what gives way.
         position.iter_mut().zip(effort).for_each(|(q, force)| *q -= link.pressed(*force));
+    }
+    derived(position, view.interval)
+}
+
+/// Coordinate, rate and acceleration that a drive is told at each row, less what it yields: a servo's error e follows
+/// from its effort, `k_p e + k_d ė = F`, which is zero where nobody measured it.
+fn commanded(view: &View, mechanism: &Mechanism, drive: usize) -> [Vec<f64>; 3] {
+    let mut commands = vec![Command::default(); mechanism.actuators.len()];
+    let mut told = |row: usize| {
+        mechanism.commands.at(row as f64 * view.interval, &mut commands);
+        commands[drive].position
+    };
+    let mut position: Vec<f64> = (0..view.samples()).map(&mut told).collect();
+    let effort = effort_sensor(mechanism, drive).filter(|sensor| view.smooth(*sensor).is_some());
+    if let (Some(sensor), Drive::Servo { stiffness, damping }) =
+        (effort, mechanism.actuators[drive].drive)
+    {
+        let effort = shown(view, mechanism, sensor);
+        // The exact answer of e to an effort that stays as it is between two rows.
+        let decay = (-stiffness / damping * view.interval).exp();
+        let mut error = effort.first().map_or(0.0, |first| first / stiffness);
+        for (position, effort) in position.iter_mut().zip(effort) {
+            error = effort / stiffness + (error - effort / stiffness) * decay;
+            *position -= error;
+        }
     }
     derived(position, view.interval)
 }

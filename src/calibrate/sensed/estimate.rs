@@ -43,6 +43,11 @@ impl View {
         Self { interval: h, stride, trim, samples: recording.samples, plain, smooth, slow }
     }
 
+    /// Number of rows.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
     /// The rows that residuals can be had of: all but the ends.
     pub fn rows(&self) -> Range<usize> {
         let available = self.samples.saturating_sub(2 * self.trim) / self.stride;

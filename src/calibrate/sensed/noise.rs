@@ -1,7 +1,7 @@
 //! Noise of sensors that is not what is declared.
 //!
 //! Near half the rate of sampling machines hardly move, and what a sensor shows there is noise: the power
-//! in a band, less that of a simulated recording without noise, beside what the declared noise has there
+//! in a band in short blocks, less that of a simulated recording without noise, beside what the declared noise has there
 //! (Welch, *IEEE Trans. Audio Electroacoust.* 15 (1967) 70–73, averages a spectrum over a band alike).
 
 use super::problem::Problem;
@@ -34,24 +34,31 @@ pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<Other
         if matches!(sensor.reads, Reads::Command(_)) || !noisy {
             continue;
         }
-        let (mut excess, mut expected, mut count) = (0.0, 0.0, 0usize);
+        let mut quiet: Vec<[f64; 2]> = Vec::new();
         for (run, simulated) in problem.runs.iter().zip(simulated) {
             let (Some(clean), Some(log)) = (simulated.first(), run.recording.get(i)) else {
                 continue;
             };
             let Some(values) = clean.get(i) else { continue };
-            let (own, lines) = power(values);
-            let draws = (0..NOISE_DRAWS).filter_map(|seed| {
+            let block = (BLOCK / run.recording.interval).ceil() as usize;
+            let own = powers(values, block);
+            let mut expected = vec![0.0; own.len()];
+            for seed in 0..NOISE_DRAWS {
                 let noisy = with_noise(clean, &problem.declared.sensors, 3000 + seed);
-                noisy.get(i).map(|noisy| power(noisy).0 - own)
-            });
-            excess += power(log).0 - own;
-            expected += draws.sum::<f64>() / NOISE_DRAWS as f64;
-            count += lines;
+                let powers = noisy.get(i).map_or_else(Vec::new, |noisy| powers(noisy, block));
+                for ((expected, noisy), own) in expected.iter_mut().zip(powers).zip(&own) {
+                    *expected += (noisy.0 - own.0) / NOISE_DRAWS as f64;
+                }
+            }
+            let blocks = powers(log, block).into_iter().zip(&own).zip(expected);
+            let still = blocks.filter(|((_, own), expected)| own.0 < CLEAR * expected);
+            quiet.extend(
+                still.map(|((log, own), expected)| [(log.0 - own.0) / expected, log.1 as f64]),
+            );
         }
-        let ratio = excess / expected;
-        // The power of noise in n lines of a spectrum scatters by √(2/n) of itself.
-        let chance = SURE_NOISE * (2.0 / count.max(1) as f64).sqrt();
+        let Some((ratio, lines)) = usual(quiet) else { continue };
+        // The median of powers of noise in n lines of a spectrum scatters by √(π/2) √(2/n) of itself.
+        let chance = SURE_NOISE * (std::f64::consts::PI / lines).sqrt();
         let other = !(1.0 / OTHER_NOISE.powi(2)..=OTHER_NOISE.powi(2)).contains(&ratio);
         if !ratio.is_finite() || ratio <= 0.0 || !other || (ratio - 1.0).abs() < chance {
             continue;
@@ -72,6 +79,34 @@ fn white(sensor: &Sensor, ratio: f64) -> Option<f64> {
     let rounding = sensor.resolution.powi(2) / 12.0;
     let square = ratio * (sensor.std.powi(2) + rounding) - rounding;
     (square > 0.0).then(|| square.sqrt())
+}
+
+/// Length in s of the blocks that noise is looked at in: machines rest, turn round or rattle for such times.
+const BLOCK: f64 = 0.1;
+
+/// Share of a block's noise up to which it may hold what the machine does: an error of all of that is no other noise.
+const CLEAR: f64 = 1.0 - 1.0 / (OTHER_NOISE * OTHER_NOISE);
+
+/// Fewest blocks.
+const BLOCKS: usize = 5;
+
+/// The usual ratio of powers of blocks and the lines of spectra that it rests on, out of ratios and lines block by block:
+/// their median, for what a hidden effect makes rattle rattles now and then; none of too few.
+fn usual(mut blocks: Vec<[f64; 2]>) -> Option<(f64, f64)> {
+    if blocks.len() < BLOCKS {
+        return None;
+    }
+    blocks.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let lines = blocks.iter().map(|[_, lines]| lines).sum::<f64>();
+    let [median, own] = blocks[blocks.len() / 2];
+    // Of a mean of n squares of normal numbers (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684-688).
+    let low = (1.0 - 2.0 / (9.0 * own.max(1.0))).powi(3);
+    Some((median / low, lines))
+}
+
+/// Powers of a signal in [`NOISE_BAND`] and the number of lines of its spectrum there, block by block of so many rows.
+fn powers(values: &[f64], block: usize) -> Vec<(f64, usize)> {
+    values.chunks_exact(block.max(1)).map(power).collect()
 }
 
 /// Power of a signal in [`NOISE_BAND`], and the number of lines of its spectrum there.

@@ -146,9 +146,11 @@ impl<'a> Look<'a> {
             return Some(Effort::Measured(sensor, smooth, slow));
         }
         match self.mechanism.actuators[drive].drive {
-            Drive::Servo { .. } | Drive::Effort => Some(Effort::Law(drive)),
-            // What holds a prescribed coordinate is anything, and a sampled controller's output unknown.
-            Drive::Prescribed | Drive::Sampled(_) => None,
+            Drive::Servo { .. } if self.rates[drive].is_some() => Some(Effort::Law(drive)),
+            Drive::Effort => Some(Effort::Law(drive)),
+            // What holds a prescribed coordinate is anything, a servo's effort is unknown without its error, and a
+            // sampled controller's output is, too.
+            Drive::Servo { .. } | Drive::Prescribed | Drive::Sampled(_) => None,
         }
     }
 

@@ -21,7 +21,7 @@ pub use families::machines;
 pub use rates::rates;
 
 use super::outcome::calibrate;
-use super::problem::Stopped;
+use super::problem::{Problem, Stopped};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::self_test::Value;
 use judge::{judge, stopped_short};
@@ -131,9 +131,10 @@ pub struct Answer {
     pub seconds: f64,
 }
 
-/// Hides, calibrates, judges; `version` of the program goes into the row.
-pub fn run(trial: &Trial, version: &str) -> Tried {
-    let (answer, unasked) = match asked(trial) {
+/// Hides, calibrates, judges; `version` of the program goes into the row. `show` sees rig and recordings before they are
+/// calibrated.
+pub fn run(trial: &Trial, version: &str, show: &dyn Fn(&Problem)) -> Tried {
+    let (answer, unasked) = match asked(trial, show) {
         Ok(Some(answer)) => (Some(answer), None),
         Ok(None) => (None, Some("shows in no size".to_owned())),
         Err(stopped) => (None, Some(stopped.to_string())),
@@ -145,10 +146,11 @@ pub fn run(trial: &Trial, version: &str) -> Tried {
 ///
 /// # Errors
 /// A rig that cannot be recorded.
-fn asked(trial: &Trial) -> Result<Option<Answer>, Stopped> {
+fn asked(trial: &Trial, show: &dyn Fn(&Problem)) -> Result<Option<Answer>, Stopped> {
     let bench = Bench::new(trial)?;
     let Some(hidden) = hide(trial, &bench)? else { return Ok(None) };
     let mut problem = bench.problem(&hidden)?;
+    show(&problem);
     let withheld: Vec<&str> = match trial.case {
         Case::Withheld => trial.hidden.iter().map(String::as_str).collect(),
         _ => Vec::new(),
