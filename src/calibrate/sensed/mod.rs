@@ -7,8 +7,7 @@
 //! [`search`] finds which effects are missing, by what `screen` finds promising, [`hypotheses`] simulates and `unseen`
 //! tries where residuals are blind; `calm` what shows in a
 //! rattle's size alone, `simpler` which of their values are needed; [`outcome`] is the
-//! whole way, [`report`] what is written of it. Where a model explains every residual and still misses what was
-//! recorded, `swing` finds how the machine was let go. [`self_test`] says how often it is right.
+//! whole way, [`report`] what is written of it. [`self_test`] says how often it is right.
 
 pub mod baseline;
 pub mod basis;
@@ -38,7 +37,6 @@ pub mod settle;
 mod simpler;
 pub mod simulate;
 pub mod start;
-mod swing;
 pub mod thresholds;
 pub mod trajectory;
 pub mod unnamed;

@@ -12,7 +12,7 @@ use super::problem::{Problem, Segment, Split, Stopped};
 use super::recording::Recording;
 use super::search::{Found, Search};
 use super::settle::Model;
-use super::thresholds::{MET, PREDICTING};
+use super::thresholds::{CLEARED, MET, PREDICTING};
 use super::unnamed::{Described, describe};
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::outcome::{Verdict, inverse_normal, pull};
@@ -79,12 +79,20 @@ pub fn calibrate(
     if unnamed && !asked.search(problem).is_noise(&found.best) {
         events = what_does_not_last(problem, &found, &logs, tell)?;
         if !events.is_empty() {
+            let without = largest(&asked.search(problem).left(&found.best));
             problem.rig.effects = events.iter().map(Event::setting).collect();
-            found = searched(problem, &asked, &mut rattle)?;
+            let again = searched(problem, &asked, &mut rattle)?;
+            // What leaves most of what there was is not what acted.
+            let left = asked.search(problem).left(&again.best);
+            if is_noise(&left) || largest(&left) < CLEARED * without {
+                found = again;
+            } else {
+                problem.rig.effects.clear();
+                events.clear();
+            }
         }
     }
     let Found { best, declared, rounds } = found;
-    let best = swinging(problem, &asked, best)?;
     let search = asked.search(problem);
     let (before, after) = (search.left(&declared), search.left(&best));
     let noise = is_noise(&after);
@@ -138,6 +146,11 @@ pub fn calibrate(
     })
 }
 
+/// Largest mean square of residuals in units of noise.
+fn largest(left: &[Left]) -> f64 {
+    left.iter().map(|left| left.mean_square).fold(0.0, f64::max)
+}
+
 /// What a search is asked.
 struct Asked<'a> {
     split: &'a Split,
@@ -188,32 +201,6 @@ fn what_does_not_last(
 /// Whether errors are met: a model that misses the run that it was fitted to lacks something.
 fn met(errors: &[ChannelError]) -> bool {
     errors.iter().all(|error| error.after <= MET * error.floor)
-}
-
-/// A model, settled with the swing that recordings begin with where its residuals are noise and it misses them all the
-/// same, if it meets them then: nobody knows how a machine was let go. What rattles has forgotten that.
-fn swinging(problem: &mut Problem, asked: &Asked, best: Model) -> Result<Model, Stopped> {
-    let effects = best.fit.effects.clone();
-    let meets = |problem: &Problem, effects: &[Setting]| -> Result<bool, Stopped> {
-        let simulated = problem.simulated(&problem.starts(effects)?, 1)?;
-        Ok(met(&errors(problem, &simulated, &simulated)))
-    };
-    let rattles = problem.replicas > 1;
-    if rattles || !asked.search(problem).is_noise(&best) || meets(problem, &effects)? {
-        return Ok(best);
-    }
-    (asked.tell)("looking for the swing in which recordings begin");
-    if problem.look_for_swing(&effects)? {
-        let search = asked.search(problem);
-        let settled = search.settle(&effects, 4)?;
-        if let Some(model) = settled.map(|model| search.refined(model)).transpose()?
-            && meets(problem, &model.fit.effects)?
-        {
-            return Ok(model);
-        }
-        problem.forget_swing();
-    }
-    Ok(best)
 }
 
 /// Errors of all runs of two models, simulated replica by replica.

@@ -5,10 +5,8 @@ use super::charts::{Drawn, of_run};
 use super::errors::{self, mean};
 use super::recording::Recording;
 use super::simulate::{apart, record};
-use super::start::{StartError, released, still};
-use super::swing::Swing;
-use super::thresholds::{MET, PREDICTING, SEEN};
-use crate::calibrate::errors::ChannelError;
+use super::start::{StartError, released};
+use super::thresholds::{PREDICTING, SEEN};
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE, Predicted, Prediction};
 use crate::calibrate::predict_page;
 use crate::calibrate::report::RattleReport;
@@ -76,14 +74,14 @@ pub fn into_folder(
     let Prepared { machine, recording } = prepared;
     tell("simulating two replicas: does it rattle?");
     let along = Along { model, recording, like: &complete(machine, recording) };
-    let (after, difference) = along.predicted(machine, true)?;
+    let (after, difference) = along.predicted(machine)?;
     let before = match model.effects.is_empty() {
         true => None,
         false => {
             tell("predicting without effects");
             let mut plain = model.clone();
             plain.effects.clear();
-            Some(Along { model: &plain, ..along }.predicted(machine, false)?.0)
+            Some(Along { model: &plain, ..along }.predicted(machine)?.0)
         }
     };
     let reference = before.as_deref().unwrap_or(&after);
@@ -142,13 +140,8 @@ struct Along<'a> {
 
 impl Along<'_> {
     /// What the model predicts, replica by replica if it rattles, and by how much two of them differ in units of
-    /// noise. Where it misses what was recorded it may have been let go with another swing, if one is to be
-    /// `sought`.
-    fn predicted(
-        &self,
-        machine: &Mechanism,
-        sought: bool,
-    ) -> Result<(Vec<Recording>, f64), CalibrateError> {
+    /// noise.
+    fn predicted(&self, machine: &Mechanism) -> Result<(Vec<Recording>, f64), CalibrateError> {
         let Self { model, recording, like } = *self;
         let control: StepControl = control(model);
         let released = released(model, &[], recording, control)?;
@@ -164,21 +157,6 @@ impl Along<'_> {
             return Ok((logs, difference));
         }
         logs.truncate(1);
-        let missed = |logs: &[Recording]| -> f64 {
-            let errors = errors::of_run(machine, recording, "prediction", logs, logs);
-            let ratio = |error: &ChannelError| error.after / error.floor;
-            errors.iter().map(ratio).fold(0.0, f64::max)
-        };
-        if sought && missed(&logs) > MET {
-            let still = still(&released, control)?;
-            let swing = Swing::of(&released, still.as_ref(), recording, control)?;
-            if let Some((swing, still)) = swing.zip(still) {
-                let swinging = replicas(&swing.given_to(&still), 0..1)?;
-                if missed(&swinging) < missed(&logs) {
-                    logs = swinging;
-                }
-            }
-        }
         Ok((logs, difference))
     }
 }

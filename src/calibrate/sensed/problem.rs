@@ -6,7 +6,6 @@ use super::motions::Motions;
 use super::recording::Recording;
 use super::residual::{Residuals, residuals};
 use super::start::{StartError, machine, released, still};
-use super::swing::Swing;
 use super::{simulate, thresholds};
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::spectrum::transform;
@@ -28,8 +27,6 @@ pub struct Run {
     pub recording: Recording,
     /// The same, prepared.
     pub view: View,
-    /// The swing that it begins with, where it is known not to be that of a release.
-    swing: Option<Swing>,
 }
 
 /// Where a run of a model begins.
@@ -118,7 +115,7 @@ impl Problem {
         let sensors = declared.sensors.len();
         let run = |recording: Recording| {
             let view = View::new(&recording, sensors);
-            Run { recording, view, swing: None }
+            Run { recording, view }
         };
         let runs = recordings.into_iter().map(run).collect();
         let simulations = AtomicUsize::new(0);
@@ -145,44 +142,17 @@ impl Problem {
         self.simulations.load(Ordering::Relaxed)
     }
 
-    /// Where the runs of a model with these effects begin: as it was let go, with another swing if that is known.
+    /// Where the runs of a model with these effects begin, as it was let go.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn starts(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
         let start = |run: &Run| -> Result<Start, Stopped> {
-            let released = released(&self.rig, effects, &run.recording, self.control)?;
-            let still = still(&released, self.control)?;
-            let swinging = run.swing.as_ref().zip(still.as_ref());
-            let machine = swinging.map_or(released, |(swing, still)| swing.given_to(still));
+            let machine = released(&self.rig, effects, &run.recording, self.control)?;
+            let still = still(&machine, self.control)?;
             Ok(Start { machine, still })
         };
         self.runs.par_iter().map(start).collect()
-    }
-
-    /// Finds the swing that each recording begins with, where a release of a model with these effects does not give that
-    /// one: nobody knows how a machine was let go. What rattles has forgotten it. Whether there is one; machines begin
-    /// with it from now on.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn look_for_swing(&mut self, effects: &[Setting]) -> Result<bool, Stopped> {
-        if self.replicas > 1 {
-            return Ok(false);
-        }
-        let starts = self.starts(effects)?;
-        let swing = |(run, start): (&Run, &Start)| {
-            Swing::of(&start.machine, start.still.as_ref(), &run.recording, self.control)
-        };
-        let swings = self.runs.par_iter().zip(&starts).map(swing).collect::<Result<Vec<_>, _>>()?;
-        let found = swings.iter().any(Option::is_some);
-        self.runs.iter_mut().zip(swings).for_each(|(run, swing)| run.swing = swing);
-        Ok(found)
-    }
-
-    /// Machines begin as they are let go from now on.
-    pub fn forget_swing(&mut self) {
-        self.runs.iter_mut().for_each(|run| run.swing = None);
     }
 
     /// Noiseless recordings of a model that begins there, so many replicas of each run.
@@ -241,12 +211,7 @@ impl Problem {
         until: usize,
     ) -> Result<Recording, Stopped> {
         let recording = &self.runs[index].recording;
-        let mut machine = released(&self.rig, effects, recording, self.control)?;
-        if let Some(swing) = &self.runs[index].swing
-            && let Some(still) = still(&machine, self.control)?
-        {
-            machine = swing.given_to(&still);
-        }
+        let machine = released(&self.rig, effects, recording, self.control)?;
         // Filters see a little beyond the last row.
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
         self.simulations.fetch_add(1, Ordering::Relaxed);

@@ -165,32 +165,6 @@ pub const SURE_NOISE: f64 = 4.0;
 /// by changes with the effect by as much.
 pub const AS_MUCH: f64 = 2.0;
 
-/// Times in s from the first row over which a swing in the joints' play is fitted, one after another: a swing's
-/// frequency hangs on its amplitude, which takes a few periods to be seen; in the last most of it has died.
-pub const SWING_SEEN: [f64; 3] = [0.1, 0.25, 0.6];
-
-/// Frequency in Hz above which a recorded swing is looked for: bodies swing in play of `c` like pendulums of that
-/// length, at 25 Hz in 0.4 mm and faster in less, and what a model moves wrongly for other reasons is slower.
-pub const SWING_CORNER: f64 = 25.0;
-
-/// Share of the largest change of what sensors see below which a kick of the same size does not matter: it stays
-/// among what the linear step is wrong by. The most ways of kicking that are told apart: of 42 that the seven
-/// bodies of a 3-RPR have, sensors saw five or six, above which the next did a tenth as much.
-pub const WAY: f64 = 0.02;
-/// See [`WAY`].
-pub const MOST_WAYS: usize = 12;
-
-/// Mean square in units of noise up to which a machine swings as recorded, and the share of its squares that
-/// a kicked start has to leave to be the better one.
-pub const SHOWN: f64 = 1.1;
-/// See [`SHOWN`].
-pub const SLACK: f64 = 0.95;
-
-/// Share of what a machine at rest leaves above noise up to which kicks are of the recorded swing. A model whose
-/// swing has another frequency has lost its phase after some periods, and kicks bring it nearly nothing; one
-/// whose frequency is right leaves a tenth and less.
-pub const TRACKED: f64 = 0.5;
-
 /// Corner in Hz of the low-pass of efforts in which events are looked for: a blow of 5 ms passes at half its height, and
 /// what encoders' steps make of accelerations, which grows with the square of the frequency, does not.
 pub const EVENT_CORNER: f64 = 40.0;
@@ -235,3 +209,7 @@ pub const EVENT_SHARE: f64 = 0.5;
 /// Rows in a recording for each function of the motion that is fitted to it, before events are looked for: 250 rows a
 /// second hold some 25 that are independent.
 pub const ROWS_A_FEATURE: usize = 40;
+
+/// Share of the largest mean square of residuals that events may leave, where they do not leave noise: most of it is
+/// theirs.
+pub const CLEARED: f64 = 0.5;
