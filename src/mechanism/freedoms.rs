@@ -52,7 +52,8 @@ impl Mechanism {
         /// Steps of a metre and of a radian: a tenth of a picometre, where rounding is a thousandth of that, and a
         /// micrometre for starts, which are only near.
         const GRIDS: [f64; 2] = [(1u64 << 43) as f64, (1u64 << 20) as f64];
-        let on = |grid: f64| move |x: f64| (x * grid).round() / grid;
+        // No minus before a zero.
+        let on = |grid: f64| move |x: f64| (x * grid).round() / grid + 0.0;
         let mut geometry = self.without_clearance();
         for (i, body) in self.bodies.iter().enumerate() {
             geometry.set_mass(i, body.mass, body.reference, body.inertia);

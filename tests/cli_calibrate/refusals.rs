@@ -12,16 +12,6 @@ const BROKEN: &[Break] = &[
     ("a small letter", |t| t.rename("F1", "f1"), &["unknown column `f1`", "did you mean `F1`?"]),
     ("a foreign column", |t| t.rename("F1", "torque"), &["unknown column `torque`", "q1_cmd"]),
     ("a column twice", |t| t.rename("F2", "F1"), &["bad.csv:1: ", "column `F1` twice"]),
-    (
-        "neither lengths nor pose",
-        |t| t.drop(&["q1", "q2", "q3", "x", "y", "phi"]),
-        &["do not say how the machine stands", "fewer joints than it has freedoms"],
-    ),
-    (
-        "neither a length nor an angle",
-        |t| t.drop(&["q2", "phi"]),
-        &["do not say how the machine stands"],
-    ),
     ("no time", |t| t.drop(&["t"]), &["bad.csv:1: no column `t`"]),
     (
         "a gap",

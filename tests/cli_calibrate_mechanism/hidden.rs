@@ -35,10 +35,15 @@ fn recorded(place: &Place, name: &str, effects: &str, waves: [[f64; 2]; 2], seed
 
 /// The report on two recordings of the four-bar with an effect of which its declaration says nothing.
 fn report_with(effect: &str) -> Value {
+    report_of([effect, effect])
+}
+
+/// The same, each recording with its own effect.
+fn report_of(effects: [&str; 2]) -> Value {
     let place = Place::new();
     place.write("rig.toml", FOUR_BAR);
-    recorded(&place, "a.csv", effect, [[1.2, 3.0], [0.4, 7.0]], 1);
-    recorded(&place, "b.csv", effect, [[0.9, 4.0], [-0.5, 6.0]], 2);
+    recorded(&place, "a.csv", effects[0], [[1.2, 3.0], [0.4, 7.0]], 1);
+    recorded(&place, "b.csv", effects[1], [[0.9, 4.0], [-0.5, 6.0]], 2);
     let command =
         "calibrate --rig rig.toml --data a.csv --validate b.csv --out found --json --quiet";
     serde_json::from_str(&place.good(command)).unwrap()
@@ -62,6 +67,31 @@ fn friction_in_a_joint_without_a_drive_is_found_with_its_torque() {
     );
     let torque = effects[0]["params"]["coulomb"]["value"].as_f64().unwrap();
     assert!((torque / 0.06 - 1.0).abs() < 0.1, "{torque}");
+}
+
+/// A blow on the crank in the run that is judged alone, which no effect that lasts explains.
+#[test]
+fn a_blow_in_one_run_is_found_with_its_time_joint_and_impulse() {
+    let blow = "
+        [[effect]]
+        kind = \"impulse\"
+        body = \"crank\"
+        at_s = 1.1
+        iphi_Nms = 0.01
+    ";
+    let report = report_of(["", blow]);
+    let effects = report["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 1, "{}", report["summary"]);
+    let params = &effects[0]["params"];
+    assert_eq!(
+        (&effects[0]["kind"], &effects[0]["depends_on"]),
+        (&"unnamed".into(), &"time".into())
+    );
+    assert_eq!((&effects[0]["joint"], &effects[0]["run"]), (&"O".into(), &"b.csv".into()));
+    let value = |name: &str| params[name]["value"].as_f64().unwrap();
+    assert!((value("at_s") - 1.1).abs() < 0.015, "{params}");
+    assert!((value("impulse_Nms") / 0.01 - 1.0).abs() < 0.2, "{params}");
+    assert!(report["summary"].as_str().unwrap().contains("does not last"), "{}", report["summary"]);
 }
 
 #[test]

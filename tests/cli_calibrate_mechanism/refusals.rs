@@ -47,6 +47,19 @@ fn recordings_that_cannot_be_right_are_refused() {
     }
 }
 
+/// Nothing drives the lower link, and nobody measured its angle.
+#[test]
+fn recordings_that_do_not_say_how_a_machine_stands_are_refused() {
+    let rig = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs-planar/planar-4/rig.toml");
+    let place = Place::new();
+    let rows: String = (0..1200).map(|i| format!("{:.3},0.5\n", f64::from(i) * 1e-3)).collect();
+    place.write("bad.csv", &format!("t,q_O\n{rows}"));
+    place.refused(
+        &format!("calibrate --rig {rig} --data bad.csv --quiet"),
+        &["do not say how the machine stands", "fewer joints than it has freedoms"],
+    );
+}
+
 #[test]
 fn the_run_that_was_fitted_proves_nothing() {
     let place = Place::new();

@@ -5,10 +5,15 @@ use crate::cli_common::Place;
 use serde_json::Value;
 use std::path::Path;
 
+/// A file of a rig.
+fn file(rig: &str, name: &str) -> String {
+    let rigs = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar");
+    rigs.join(rig).join(name).display().to_string()
+}
+
 /// Calibrates a rig, and returns its report.
 fn report(name: &str) -> Value {
-    let rigs = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar").join(name);
-    let file = |name: &str| rigs.join(name).display().to_string();
+    let file = |file: &str| self::file(name, file);
     let place = Place::new();
     let text = place.good(&format!(
         "calibrate --rig {} --data {} --validate {} --out found --json --quiet",
@@ -39,6 +44,69 @@ fn a_four_bar_whose_rocker_is_not_as_long_as_declared_is_explained() {
     assert_eq!(report["effects"].as_array().unwrap().len(), 1);
     assert_eq!(report["effects"][0]["kind"], "point-offset");
     assert!(worst(&report) < 1.5, "{}", report["errors"]);
+}
+
+/// A motor's torque and command, and an encoder on the other side: the crank's own angle was not recorded, and the
+/// rocker's does not say which way the crank went through its dead centres.
+#[test]
+fn without_the_encoder_of_its_crank_the_four_bar_is_explained_as_well() {
+    let place = Place::new();
+    for run in ["run-a.csv", "run-b.csv"] {
+        let text = std::fs::read_to_string(file("planar-2", run)).unwrap();
+        let column =
+            text.lines().next().unwrap().split(',').position(|head| head == "q_O").unwrap();
+        let kept = |line: &str| {
+            let cells = line.split(',').enumerate().filter(|(i, _)| *i != column);
+            cells.map(|(_, cell)| cell).collect::<Vec<_>>().join(",") + "\n"
+        };
+        place.write(run, &text.lines().map(kept).collect::<String>());
+    }
+    let text = place.good(&format!(
+        "calibrate --rig {} --data run-a.csv --validate run-b.csv --out found --json --quiet",
+        file("planar-2", "rig.toml")
+    ));
+    let report: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(report["verdict"], "explained", "{}", report["summary"]);
+    assert_eq!(report["effects"].as_array().unwrap().len(), 1);
+    assert_eq!(report["effects"][0]["point"], "rocker.B");
+    assert!(worst(&report) < 1.5, "{}", report["errors"]);
+}
+
+/// Errors of a prediction in floors, by column, before and after what the model has beyond its declaration.
+fn predicted(place: &Place, rig: &str, model: &str) -> Vec<(String, Option<f64>, f64)> {
+    let run = file(rig, "run-b.csv");
+    let text = place.good(&format!("predict {model} --data {run} --out {rig}-out --json --quiet"));
+    let errors: Value = serde_json::from_str(&text).unwrap();
+    assert!(!place.read(&format!("{rig}-out/index.html")).is_empty());
+    let head = std::fs::read_to_string(&run).unwrap().lines().next().unwrap().to_owned();
+    assert_eq!(place.read(&format!("{rig}-out/predicted.csv")).lines().next().unwrap(), head);
+    let of = |e: &Value| {
+        let floor = e["floor"].as_f64().unwrap();
+        let before = e["before"].as_f64().map(|before| before / floor);
+        (e["channel"].as_str().unwrap().to_owned(), before, e["after"].as_f64().unwrap() / floor)
+    };
+    errors["errors"].as_array().unwrap().iter().map(of).collect()
+}
+
+#[test]
+fn predictions_of_described_machines_meet_what_they_explain_and_no_more() {
+    let place = Place::new();
+    let pendulum = predicted(&place, "planar-4", &file("planar-4", "rig.toml"));
+    assert_eq!(pendulum.len(), 2);
+    assert!(
+        pendulum.iter().all(|(_, before, after)| before.is_none() && *after < 1.5),
+        "{pendulum:?}"
+    );
+    let text = std::fs::read_to_string(file("planar-2", "rig.toml")).unwrap();
+    let effect = "kind = \"point-offset\"\npoint = \"rocker.B\"\ndx_m = 3e-4\n";
+    place.write("model.toml", &format!("{text}\n[[effect]]\n{effect}"));
+    let four_bar = predicted(&place, "planar-2", "model.toml");
+    let (_, before, after) = four_bar.iter().find(|(column, ..)| column == "q_D").unwrap();
+    assert!(before.unwrap() > 100.0 && *after < 2.0, "{four_bar:?}");
+    place.refused(
+        &format!("predict model.toml --data {} --window 0.5", file("planar-2", "run-b.csv")),
+        &["--window", "not over windows"],
+    );
 }
 
 #[test]

@@ -397,12 +397,13 @@ mod tests {
     }
 
     #[test]
-    fn a_tracked_body_comes_before_encoders_and_too_few_sensors_are_no_basis() {
+    fn a_tracked_body_comes_before_encoders_and_these_before_commands() {
         for (without, expected) in [
             (&[][..], Some("x y phi")),
             (&["q1", "q2", "q3"], Some("x y phi")),
             (&["phi"], Some("q1 q2 q3")),
-            (&["q2", "y"], None),
+            // The command of P2 stands in for its encoder.
+            (&["q2", "y"], Some("q1 q3")),
         ] {
             let (mechanism, recording) = recorded(without);
             let needed = needed(&mechanism, &recording).map(|columns| columns.join(" "));

@@ -81,3 +81,50 @@ fn followed(moved: Moved, view: &View, rows: Range<usize>) -> Option<Vec<Posed>>
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::recording::Recording;
+    use super::super::residual::residuals;
+    use super::super::start::machine;
+    use super::*;
+    use crate::effects::{Setting, Target, named};
+    use crate::scenario::Scenario;
+    use std::path::Path;
+
+    /// A recorded slider-crank, and the same with something on its piston, which moves that body's centre of mass.
+    fn loaded() -> (Recording, [Mechanism; 2]) {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar/planar-1");
+        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
+        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
+        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
+        let target = Target::Body("piston".to_owned());
+        let values = [("mass_kg", 0.1), ("com_x_m", 0.01), ("com_y_m", -0.02)];
+        let payload = Setting::on(named("payload").unwrap(), target, &values);
+        let machines = [vec![], vec![payload]].map(|e| machine(&rig, &e, &recording).unwrap());
+        (recording, machines)
+    }
+
+    #[test]
+    fn a_load_leaves_the_motion_and_looks_at_it_through_a_kept_one_are_the_same() {
+        let (recording, [plain, loaded]) = loaded();
+        let view = View::new(&recording, plain.sensors.len());
+        let basis = Basis::of(&plain, &recording).unwrap();
+        let digests = [&plain, &loaded].map(|machine| basis.moved(&view, machine).digest());
+        assert_eq!(digests[0], digests[1]);
+        let look = |machine: &Mechanism, motions: &Motions| {
+            residuals(&view, machine, &basis, view.rows(), motions).unwrap().signals
+        };
+        let kept = Motions::default();
+        for _ in 0..2 {
+            look(&plain, &kept);
+        }
+        let [known, fresh] = [&kept, &Motions::default()].map(|motions| look(&loaded, motions));
+        let plain = look(&plain, &kept);
+        for ((known, fresh), plain) in known.iter().zip(&fresh).zip(&plain) {
+            assert_eq!(known.values, fresh.values);
+            assert_eq!(known.values.len(), plain.values.len());
+        }
+        assert!(known.iter().zip(&plain).any(|(a, b)| a.values != b.values));
+    }
+}

@@ -34,7 +34,10 @@ pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<Other
         if matches!(sensor.reads, Reads::Command(_)) || !noisy {
             continue;
         }
-        let mut quiet: Vec<[f64; 2]> = Vec::new();
+        // Of each quiet block the ratio of its power to what noise as declared has there, for the recording and for draws
+        // of such noise.
+        let mut quiet: Vec<Vec<f64>> = vec![Vec::new(); 1 + NOISE_DRAWS as usize];
+        let mut lines = 0;
         for (run, simulated) in problem.runs.iter().zip(simulated) {
             let (Some(clean), Some(log)) = (simulated.first(), run.recording.get(i)) else {
                 continue;
@@ -42,23 +45,25 @@ pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<Other
             let Some(values) = clean.get(i) else { continue };
             let block = (BLOCK / run.recording.interval).ceil() as usize;
             let own = powers(values, block);
-            let mut expected = vec![0.0; own.len()];
-            for seed in 0..NOISE_DRAWS {
+            let drawn = (0..NOISE_DRAWS).filter_map(|seed| {
                 let noisy = with_noise(clean, &problem.declared.sensors, 3000 + seed);
-                let powers = noisy.get(i).map_or_else(Vec::new, |noisy| powers(noisy, block));
-                for ((expected, noisy), own) in expected.iter_mut().zip(powers).zip(&own) {
-                    *expected += (noisy.0 - own.0) / NOISE_DRAWS as f64;
+                noisy.get(i).map(|noisy| powers(noisy, block))
+            });
+            let all: Vec<Vec<(f64, usize)>> =
+                std::iter::once(powers(log, block)).chain(drawn).collect();
+            for (b, (own, count)) in own.iter().enumerate() {
+                let expected = all[1..].iter().map(|draw| draw[b].0 - own).sum::<f64>()
+                    / (all.len() - 1) as f64;
+                if *own < CLEAR * expected {
+                    let pairs = quiet.iter_mut().zip(&all);
+                    pairs.for_each(|(ratios, all)| ratios.push((all[b].0 - own) / expected));
+                    lines += count;
                 }
             }
-            let blocks = powers(log, block).into_iter().zip(&own).zip(expected);
-            let still = blocks.filter(|((_, own), expected)| own.0 < CLEAR * expected);
-            quiet.extend(
-                still.map(|((log, own), expected)| [(log.0 - own.0) / expected, log.1 as f64]),
-            );
         }
-        let Some((ratio, lines)) = usual(quiet) else { continue };
+        let Some(ratio) = usual(&quiet) else { continue };
         // The median of powers of noise in n lines of a spectrum scatters by √(π/2) √(2/n) of itself.
-        let chance = SURE_NOISE * (std::f64::consts::PI / lines).sqrt();
+        let chance = SURE_NOISE * (std::f64::consts::PI / lines as f64).sqrt();
         let other = !(1.0 / OTHER_NOISE.powi(2)..=OTHER_NOISE.powi(2)).contains(&ratio);
         if !ratio.is_finite() || ratio <= 0.0 || !other || (ratio - 1.0).abs() < chance {
             continue;
@@ -90,18 +95,19 @@ const CLEAR: f64 = 1.0 - 1.0 / (OTHER_NOISE * OTHER_NOISE);
 /// Fewest blocks.
 const BLOCKS: usize = 5;
 
-/// The usual ratio of powers of blocks and the lines of spectra that it rests on, out of ratios and lines block by block:
-/// their median, for what a hidden effect makes rattle rattles now and then; none of too few.
-fn usual(mut blocks: Vec<[f64; 2]>) -> Option<(f64, f64)> {
-    if blocks.len() < BLOCKS {
-        return None;
-    }
-    blocks.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let lines = blocks.iter().map(|[_, lines]| lines).sum::<f64>();
-    let [median, own] = blocks[blocks.len() / 2];
-    // Of a mean of n squares of normal numbers (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684-688).
-    let low = (1.0 - 2.0 / (9.0 * own.max(1.0))).powi(3);
-    Some((median / low, lines))
+/// The median ratio of a recording's blocks, the first list, beside the mean of the medians of draws: what a hidden effect
+/// makes rattle rattles now and then, and what rounding makes of slow motion is not like noise in every block. None of too
+/// few blocks.
+fn usual(lists: &[Vec<f64>]) -> Option<f64> {
+    let median = |list: &Vec<f64>| {
+        let mut list = list.clone();
+        list.sort_by(f64::total_cmp);
+        list.get(list.len() / 2).copied()
+    };
+    let [recorded, drawn @ ..] = lists else { return None };
+    let drawn: Vec<f64> = drawn.iter().filter_map(median).collect();
+    let mean = drawn.iter().sum::<f64>() / drawn.len().max(1) as f64;
+    (recorded.len() >= BLOCKS).then(|| median(recorded)).flatten().map(|own| own / mean)
 }
 
 /// Powers of a signal in [`NOISE_BAND`] and the number of lines of its spectrum there, block by block of so many rows.
@@ -124,6 +130,34 @@ fn power(values: &[f64]) -> (f64, usize) {
 
 #[cfg(test)]
 mod tests {
+    /// What rattles in every fifth block is no noise of the sensor; noise that is twice as large everywhere is.
+    #[test]
+    fn what_comes_now_and_then_is_no_noise() {
+        use rand_chacha::ChaCha8Rng;
+        use rand_chacha::rand_core::SeedableRng;
+        use rand_distr::{Distribution, StandardNormal};
+        let mut random = ChaCha8Rng::seed_from_u64(2);
+        let mut blocks = |size: f64, every: usize| -> Vec<f64> {
+            let noise: Vec<f64> = (0..10_000)
+                .map(|k| {
+                    let burst = if k / 100 % every == 0 { 10.0 } else { 1.0 };
+                    let own: f64 = StandardNormal.sample(&mut random);
+                    size * burst * own
+                })
+                .collect();
+            let all = super::powers(&noise, 100);
+            all.iter().map(|(power, lines)| power / (0.375 * *lines as f64)).collect()
+        };
+        let drawn: Vec<Vec<f64>> = (0..8).map(|_| blocks(1.0, usize::MAX)).collect();
+        for size in [1.0f64, 2.0] {
+            let lists = [vec![blocks(size, 5)], drawn.clone()].concat();
+            let ratio = super::usual(&lists).unwrap();
+            // A fifth of the blocks lies above: the median of all is the 62nd percentile of the others.
+            assert!((0.85..1.45).contains(&(ratio / size.powi(2))), "{size}: {ratio}");
+        }
+        assert!(super::usual(&vec![vec![1.0; 4]; 9]).is_none());
+    }
+
     /// Of white noise as much lies in the band as the band is wide.
     #[test]
     fn power_of_white_noise_is_that_of_its_share_of_the_band() {
