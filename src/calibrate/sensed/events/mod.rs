@@ -1,7 +1,7 @@
 //! What does not last: a knock, a push, a load that comes or drops off.
 //!
 //! The efforts that a recorded motion takes, less those that the model knows of ([`series`]), are cleared of what
-//! recurs with the motion ([`lasting`]), and every stretch of time is held against the same statistic of the rest
+//! recurs with the motion (`lasting`), and every stretch of time is held against the same statistic of the rest
 //! of the recording ([`scan`](mod@scan)). What stands out becomes a history of efforts in joints ([`found`]).
 
 pub mod found;

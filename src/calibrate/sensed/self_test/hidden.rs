@@ -127,7 +127,7 @@ mod tests {
     /// A trial is its seed's; all cases and machines come up.
     #[test]
     fn seeds_draw_all_sorts_of_trials() {
-        let all: Vec<Trial> = (0..60).map(|seed| Trial::draw(seed)).collect();
+        let all: Vec<Trial> = (0..60).map(Trial::draw).collect();
         assert_eq!(all[7], Trial::draw(7));
         let count = |is: &dyn Fn(&Trial) -> bool| all.iter().filter(|trial| is(trial)).count();
         for machine in super::super::machines() {
