@@ -78,8 +78,8 @@ fn rigs_that_cannot_be_calibrated_are_refused() {
     for (rig, fragments) in [
         (machine.to_owned(), &["sensor: is missing", "[[sensor]]"][..]),
         (format!("{FOUR_BAR}{payload}"), &["holds 1 effect", "without [[effect]]"]),
-        // Nothing says how the machine stands.
-        (format!("{machine}{encoder}"), &["fewer joints than it has freedoms", "position"]),
+        // Nothing was measured: the command says how the machine stands.
+        (format!("{machine}{encoder}"), &["nothing that a model could get wrong", "effort"]),
     ] {
         let place = Place::new();
         place.write("rig.toml", &rig);

@@ -2,7 +2,8 @@
 //!
 //! A body whose place and angle a tracker shows, and that leaves the machine no other freedom, is known better
 //! than the joints' encoders know it: between them lies the play of joints, and a body that floats in it
-//! accelerates otherwise than any encoder does. Without one the coordinates of joints say it.
+//! accelerates otherwise than any encoder does. Without one the coordinates of joints say it, and the commands of drives whose
+//! joints nobody measures.
 
 use super::estimate::{View, effort_sensor};
 use super::recording::Recording;
@@ -160,6 +161,7 @@ impl Basis {
     pub fn moved(&self, view: &View, mechanism: &Mechanism) -> Moved {
         let mut ideal = self.ideal(mechanism);
         let mut columns = DefaultHasher::new();
+        view.interval.to_bits().hash(&mut columns);
         match (&self.shown, self.target(mechanism)) {
             (Shown::Pose(sensors), Some((point, angle, _))) => {
                 let motion = pose(view, mechanism, *sensors);

@@ -120,7 +120,14 @@ impl Problem {
         let runs = recordings.into_iter().map(run).collect();
         let simulations = AtomicUsize::new(0);
         let motions = Motions::default();
-        Ok(Self { rig, declared, runs, basis, control, replicas: 1, simulations, motions })
+        let problem =
+            Self { rig, declared, runs, basis, control, replicas: 1, simulations, motions };
+        if problem.names().is_some_and(|names| names.is_empty()) {
+            let message = "say nothing that a model could get wrong: how the machine moves, and nothing beside it";
+            let help = "record an effort, an acceleration or a redundant position as well";
+            return Err(problem.rig.problem("sensor", message.to_owned(), help).into());
+        }
+        Ok(problem)
     }
 
     /// The first run to fit on and the others to judge on; the halves of one where there is one alone.
