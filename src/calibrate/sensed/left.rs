@@ -3,7 +3,8 @@
 use super::residual::{Kind, Name};
 use super::search::Search;
 use super::settle::Model;
-use super::thresholds::{LARGEST, NOISE};
+use super::thresholds::{CHANCE, LARGEST, NOISE};
+use nalgebra::DVector;
 use serde::Serialize;
 
 /// How much of a residual stands above noise, on the run where most does.
@@ -39,23 +40,37 @@ impl Search<'_> {
         let Some(fit) = self.target(&model.baseline, held).look(&model.fit.effects) else {
             return Vec::new();
         };
-        let limit = NOISE[usize::from(!held)];
         let segments = if held { &self.split.hold } else { &self.split.on };
         let places = model.baseline.places(self.problem, segments);
+        let draws = model.baseline.draws(segments);
+        let chance =
+            |k: usize| up_to(&draws.iter().map(|d| mean_square(d, &places, k)).collect::<Vec<_>>());
         let of = |(k, name): (usize, &Name)| {
             let own = fit.white.iter().zip(&places).filter(|(_, (c, _))| *c == k);
-            let (mut sum, mut count, mut largest) = (0.0, 0.0, 0.0f64);
-            for (value, _) in own {
-                sum += value * value;
-                count += 1.0;
-                largest = largest.max(value.abs());
-            }
-            let mean_square = sum / f64::max(count, 1.0);
+            let largest = own.map(|(value, _)| value.abs()).fold(0.0, f64::max);
+            let mean_square = mean_square(&fit.white, &places, k);
+            let limit = NOISE[usize::from(!held)].max(chance(k));
             let noise = mean_square < limit && largest < LARGEST;
             Left { residual: name.kind, of: name.of.clone(), mean_square, largest, noise }
         };
         self.names.iter().enumerate().map(of).collect()
     }
+}
+
+/// Mean square of the numbers of residual `k` of a whitened look.
+fn mean_square(white: &DVector<f64>, places: &[(usize, f64)], k: usize) -> f64 {
+    let own = white.iter().zip(places).filter(|(_, (c, _))| *c == k);
+    let (sum, count) = own.fold((0.0, 0.0), |(sum, n), (value, _)| (sum + value * value, n + 1.0));
+    sum / f64::max(count, 1.0)
+}
+
+/// The mean square up to which chance leads, out of those of draws of noise: where journals lean under forces no larger
+/// than a sensor's noise, they are scattered far more than those of normal numbers.
+fn up_to(draws: &[f64]) -> f64 {
+    let count = draws.len().max(2) as f64;
+    let mean = draws.iter().sum::<f64>() / count;
+    let spread = draws.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    mean + CHANCE * spread.sqrt()
 }
 
 /// Whether residuals are noise. What cannot be looked at is not.

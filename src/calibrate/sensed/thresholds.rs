@@ -213,3 +213,7 @@ pub const ROWS_A_FEATURE: usize = 40;
 /// Share of the largest mean square of residuals that events may leave, where they do not leave noise: most of it is
 /// theirs.
 pub const CLEARED: f64 = 0.5;
+
+/// Standard deviations of the mean squares of draws of noise, beyond their mean, up to which a residual's own is noise:
+/// of sixteen draws, one of two hundred lies beyond by chance (Student's t).
+pub const CHANCE: f64 = 3.0;
