@@ -13,12 +13,18 @@ use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
 use crate::mechanism::Mechanism;
 use crate::scenario::{Problem as Wrong, Scenario};
+use lru::LruCache;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
+use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Machines that are kept as they were let go: those of two models on eight runs each.
+const LET_GO: NonZeroUsize = NonZeroUsize::new(16).unwrap();
 
 /// A recorded run, ready to be explained.
 #[derive(Debug)]
@@ -73,6 +79,8 @@ pub struct Problem {
     pub replicas: usize,
     simulations: AtomicUsize,
     motions: Motions,
+    /// Machines as they were let go: the start of a free one costs more than a simulation.
+    released: Mutex<LruCache<String, Mechanism>>,
 }
 
 /// Why a method cannot go on.
@@ -120,8 +128,9 @@ impl Problem {
         let runs = recordings.into_iter().map(run).collect();
         let simulations = AtomicUsize::new(0);
         let motions = Motions::default();
+        let released = Mutex::new(LruCache::new(LET_GO));
         let problem =
-            Self { rig, declared, runs, basis, control, replicas: 1, simulations, motions };
+            Self { rig, declared, runs, basis, control, replicas: 1, simulations, motions, released };
         if problem.names().is_some_and(|names| names.is_empty()) {
             let message = "say nothing that a model could get wrong: how the machine moves, and nothing beside it";
             let help = "record an effort, an acceleration or a redundant position as well";
@@ -154,12 +163,24 @@ impl Problem {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn starts(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
-        let start = |run: &Run| -> Result<Start, Stopped> {
-            let machine = released(&self.rig, effects, &run.recording, self.control)?;
+        let start = |run: usize| -> Result<Start, Stopped> {
+            let machine = self.released(effects, run)?;
             let still = still(&machine, self.control)?;
             Ok(Start { machine, still })
         };
-        self.runs.par_iter().map(start).collect()
+        (0..self.runs.len()).into_par_iter().map(start).collect()
+    }
+
+    /// The machine with these effects as it was let go in run `index`.
+    fn released(&self, effects: &[Setting], index: usize) -> Result<Mechanism, Stopped> {
+        let key = format!("{index} {:?} {effects:?}", self.rig.effects);
+        let kept = || self.released.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(machine) = kept().get(&key) {
+            return Ok(machine.clone());
+        }
+        let machine = released(&self.rig, effects, &self.runs[index].recording, self.control)?;
+        kept().put(key, machine.clone());
+        Ok(machine)
     }
 
     /// Noiseless recordings of a model that begins there, so many replicas of each run.
@@ -199,7 +220,7 @@ impl Problem {
                 let record =
                     |machine: &Mechanism| simulate::record(machine, self.control, like, replica);
                 Ok(match &about[replica as usize] {
-                    Some(effects) => record(&released(&self.rig, effects, like, self.control)?)?,
+                    Some(effects) => record(&self.released(effects, run)?)?,
                     None => record(&starts[run].machine)?,
                 })
             })
@@ -218,7 +239,7 @@ impl Problem {
         until: usize,
     ) -> Result<Recording, Stopped> {
         let recording = &self.runs[index].recording;
-        let machine = released(&self.rig, effects, recording, self.control)?;
+        let machine = self.released(effects, index)?;
         // Filters see a little beyond the last row.
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
         self.simulations.fetch_add(1, Ordering::Relaxed);
@@ -254,11 +275,8 @@ impl Problem {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn let_go(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
-        let start = |run: &Run| {
-            let machine = released(&self.rig, effects, &run.recording, self.control)?;
-            Ok(Start { machine, still: None })
-        };
-        self.runs.par_iter().map(start).collect()
+        let start = |run| Ok(Start { machine: self.released(effects, run)?, still: None });
+        (0..self.runs.len()).into_par_iter().map(start).collect()
     }
 
     /// The same by simulations of two replicas or more of each run.

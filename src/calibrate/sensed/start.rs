@@ -3,6 +3,7 @@
 use super::estimate::position_sensor;
 use super::recording::Recording;
 use super::simulate::{deviation, record};
+use crate::calibrate::least_squares::{Effort, Free, least_squares};
 use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};
 use crate::measure::spline::CubicSpline;
@@ -11,7 +12,7 @@ use crate::mechanism::{
 };
 use crate::model::recorded;
 use crate::scenario::{Problem, Scenario};
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DVector, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -206,11 +207,10 @@ pub fn released(
         let Closed { mechanism, held } = closed(rig, effects, recording, Some(values))?;
         Ok(held_there(mechanism, held.len(), control)?)
     };
-    let mut values: Vec<f64> = held.iter().map(|(_, value)| *value).collect();
-    let missed = |values: &[f64], seconds: f64| -> Result<(Mechanism, DVector<f64>), StartError> {
+    let missed = |values: &[f64], seconds: f64| -> Option<DVector<f64>> {
         let part = recording.first(seconds);
-        let machine = let_go(values)?;
-        let simulated = record(&machine, control, &part, 0)?;
+        let machine = let_go(values).ok()?;
+        let simulated = record(&machine, control, &part, 0).ok()?;
         let mut left = Vec::new();
         for (joint, _) in &held {
             let sensor = position_sensor(&machine, *joint);
@@ -219,38 +219,22 @@ pub fn released(
             let unit = deviation(&machine.sensors[i], measured);
             left.extend(measured.iter().zip(simulated).map(|(a, b)| (a - b) / unit));
         }
-        Ok((machine, DVector::from_vec(left)))
+        Some(DVector::from_vec(left))
     };
+    let mut values: Vec<f64> = held.iter().map(|(_, value)| *value).collect();
+    let free = vec![Free { step: SMALL, bounds: [-f64::MAX, f64::MAX] }; values.len()];
     let mut seconds = SEEN;
     loop {
-        let (mut machine, mut left) = missed(&values, seconds)?;
-        for _ in 0..STEPS {
-            let mut columns = Vec::new();
-            for k in 0..values.len() {
-                let mut beside = values.clone();
-                beside[k] += SMALL;
-                columns.push((missed(&beside, seconds)?.1 - &left) / SMALL);
-            }
-            let matrix = DMatrix::from_columns(&columns);
-            let normal = matrix.transpose() * &matrix;
-            let Some(factor) = normal.cholesky() else { break };
-            let step = factor.solve(&-(matrix.transpose() * &left));
-            let better: Vec<f64> = values.iter().zip(step.iter()).map(|(v, s)| v + s).collect();
-            let there = missed(&better, seconds)?;
-            let gain = left.norm_squared() - there.1.norm_squared();
-            if gain > 0.0 {
-                (values, (machine, left)) = (better, there);
-            }
-            if gain < FOUND {
-                break;
-            }
-        }
+        let look = |values: &[f64]| missed(values, seconds);
+        let Some(best) = least_squares(&look, &free, values.clone(), EFFORT, None) else { break };
+        values = best.values;
         // What a model does not show at first is no reason to have started elsewhere later on.
-        if seconds >= recording.duration() || mean_square(&left) > KEPT {
-            return Ok(machine);
+        if seconds >= recording.duration() || mean_square(&best.residual) > KEPT {
+            break;
         }
         seconds *= 2.0;
     }
+    let_go(&values)
 }
 
 fn mean_square(left: &DVector<f64>) -> f64 {
@@ -266,12 +250,9 @@ const SEEN: f64 = 0.5;
 /// right about the start.
 const KEPT: f64 = 4.0;
 
-/// Drop of Σ of squares in units of noise that is none: a slow error of a third of a sensor's steps shows only in
-/// many rows together, so that their mean square does not tell.
-const FOUND: f64 = 1.0;
-
-/// Steps of Gauss and Newton of that fit, at most: it starts near.
-const STEPS: usize = 2;
+/// Steps of that fit on each length, at most, and the drop of Σ of squares in units of noise that is none: a slow error
+/// of a third of a sensor's steps shows only in many rows together, so that their mean square does not tell.
+const EFFORT: Effort = Effort { steps: 6, enough: 1.0, secant: true };
 
 /// A small change of a coordinate in m or rad: far above rounding, far below a swing.
 const SMALL: f64 = 1e-4;
