@@ -102,7 +102,7 @@ fn scanned(
     let amplitudes: Vec<usize> = (0..names.len()).filter(|&i| i != over && i != phase).collect();
     let tried = match scan.range {
         Range::WaveNumbers(range) => waves(target, candidate, range),
-        Range::Peaks => peaks(target, model),
+        Range::Frequencies => peaks(target, model),
         Range::Orders([from, to, step]) => {
             (0..).map(|i| from + step * f64::from(i)).take_while(|order| *order <= to).collect()
         }

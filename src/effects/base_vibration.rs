@@ -48,7 +48,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["ax_m_s2", "ay_m_s2", "frequency_Hz", "phase_rad"]],
     neutral: defaults,
     starts: linear,
-    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Peaks }),
+    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Frequencies }),
     apply,
 };
 

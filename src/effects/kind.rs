@@ -163,8 +163,8 @@ pub struct Scan {
 /// Values that a [`Scan`] tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
-    /// Frequencies in Hz at which the residual stands out.
-    Peaks,
+    /// Frequencies in Hz.
+    Frequencies,
     /// Periods `1/k` for wave numbers k from the first to the second by steps of the third.
     WaveNumbers([f64; 3]),
     /// From the first to the second by steps of the third: waves in a turn.

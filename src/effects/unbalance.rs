@@ -43,7 +43,7 @@ pub(super) const KIND: Kind = Kind {
     variants: &[&["mass_radius_kg_m", "frequency_Hz", "phase_rad"]],
     neutral: defaults,
     starts: linear,
-    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Peaks }),
+    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Frequencies }),
     apply,
 };
 

@@ -156,6 +156,12 @@ impl Baseline {
         Ok(Some(DVector::from_vec(all)))
     }
 
+    /// Coefficients of residuals on one of its segments in units of noise.
+    pub fn whiten(&self, segment: &Segment, coefficients: &[Vec<f64>]) -> Option<DVector<f64>> {
+        let part = self.parts.iter().find(|part| part.segment == *segment)?;
+        Some(part.noise.whiten(coefficients))
+    }
+
     /// What noise alone may be like on segments: as [`white`](Self::white) would see it, draw by draw.
     pub fn draws(&self, segments: &[Segment]) -> Vec<DVector<f64>> {
         let parts = || self.parts.iter().filter(|part| segments.contains(&part.segment));

@@ -1,11 +1,10 @@
 //! Where to start looking for the values of a candidate.
 
 use super::fit::{Fit, Target};
-use super::residual::Kind as Residual;
+use super::periodic::frequencies;
 use crate::effects::{ALL, CONTAINS, Kind, Range, Scan, Setting};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
 /// Every effect that lasts on everything that it can act on, at its neutral values, under one of its names; none
@@ -23,7 +22,7 @@ pub fn candidates(mechanism: &Mechanism, without: &[&str]) -> Vec<Setting> {
 /// Starts of a candidate that are fitted.
 const KEPT: usize = 2;
 
-/// Frequencies that are looked at closely.
+/// Periods that are looked at, at most.
 const TRIED: usize = 12;
 
 /// A candidate beside the effects of a model, at its most promising values.
@@ -75,7 +74,10 @@ fn scanned(
     };
     let amplitudes: Vec<usize> = (0..names.len()).filter(|&i| i != over && i != phase).collect();
     let tried = match scan.range {
-        Range::Peaks => peaks(target, model),
+        Range::Frequencies => {
+            let names: Vec<&'static str> = amplitudes.iter().map(|&i| names[i]).collect();
+            frequencies(target, model, candidate, scan, &names)
+        }
         Range::Orders([from, to, step]) => {
             let count = ((to - from) / step) as usize;
             (0..=count).map(|i| from + i as f64 * step).collect()
@@ -119,29 +121,4 @@ fn scanned(
 
 fn step(kind: &Kind, name: &str) -> f64 {
     kind.parameter(name).map_or(1.0, |parameter| parameter.step)
-}
-
-/// Frequencies in Hz at which residuals of forces and accelerations stand out most.
-fn peaks(target: &Target, model: &Fit) -> Vec<f64> {
-    /// So much (Hz) lies between two of them.
-    const APART: f64 = 0.5;
-    let Some(names) = target.problem.names() else { return Vec::new() };
-    let mut power: BTreeMap<u64, f64> = BTreeMap::new();
-    let places = target.baseline.places(target.problem, target.on);
-    for (value, (residual, frequency)) in model.white.iter().zip(places) {
-        let forces = matches!(names[residual].kind, Residual::Dynamics | Residual::Acceleration);
-        if forces && frequency > APART {
-            *power.entry((frequency * 1e6) as u64).or_default() += value * value;
-        }
-    }
-    let mut power: Vec<(f64, f64)> =
-        power.into_iter().map(|(frequency, power)| (frequency as f64 * 1e-6, power)).collect();
-    power.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut kept: Vec<f64> = Vec::new();
-    for (place, _) in power {
-        if kept.len() < TRIED && kept.iter().all(|k| (k - place).abs() > APART) {
-            kept.push(place);
-        }
-    }
-    kept
 }

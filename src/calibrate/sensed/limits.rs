@@ -104,7 +104,7 @@ fn ways(candidate: &Setting, neutral: f64, step: f64) -> Vec<Vec<f64>> {
         && let (Some(over), Some(phase)) = (place(scan.over), place(scan.phase))
     {
         let tried: Vec<f64> = match scan.range {
-            Range::Peaks => vec![1.0, 5.0, 25.0],
+            Range::Frequencies => vec![1.0, 5.0, 25.0],
             Range::Orders([from, to, _]) => vec![from, (from * to).sqrt(), to],
             Range::WaveNumbers([from, to, _]) => {
                 [from, (from * to).sqrt(), to].map(|k| 1.0 / k).to_vec()

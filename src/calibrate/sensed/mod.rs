@@ -25,6 +25,7 @@ mod motions;
 pub mod noise;
 pub mod outcome;
 mod page;
+mod periodic;
 pub mod predict;
 pub mod problem;
 pub mod recording;

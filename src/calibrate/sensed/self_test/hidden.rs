@@ -93,7 +93,7 @@ fn placed(parameter: &Parameter, start: f64, dice: &mut Dice) -> f64 {
 /// Where something repeats: a frequency, a period or a number of waves in a turn.
 fn repeating(range: Range, dice: &mut Dice) -> f64 {
     match range {
-        Range::Peaks => dice.log_between(FREQUENCIES[0], FREQUENCIES[1]),
+        Range::Frequencies => dice.log_between(FREQUENCIES[0], FREQUENCIES[1]),
         Range::WaveNumbers([from, to, _]) => 1.0 / dice.log_between(2.0 * from, 0.5 * to),
         Range::Orders([from, to, _]) => dice.log_between(from, to.min(WAVES)).round(),
     }
