@@ -20,6 +20,9 @@ use crate::mechanism::{Bearing, Body, BodyState, Command, Drive, Mechanism, Revo
 use nalgebra::{Matrix3, UnitComplex, Vector2, Vector3};
 use std::ops::Range;
 
+/// Noise of slow actuator forces in N, below which it decides at which flank a drive with backlash lies.
+const FORCE_NOISE: f64 = 0.1;
+
 /// Corner of the low-pass in Hz that measured pose and forces pass before the inverse dynamics:
 /// tracker noise grows with the square of the frequency when differentiated twice.
 const CORNER: f64 = 120.0;
@@ -172,7 +175,8 @@ impl Lens {
                 let length = machine.length(leg, self.poses[i], look.leans[leg]);
                 let read = actuator.read(length, 0.0)[0];
                 let force = self.smooth_forces[i][leg];
-                let ahead = actuator.transmission.map_or(0.0, |link| link.pressed(force));
+                let ahead =
+                    actuator.transmission.map_or(0.0, |link| link.pressed(force, FORCE_NOISE));
                 signals[3 + leg].values.push(q - read - ahead);
                 signals[6 + leg].values.push(self.smooth_forces[i][leg] - look.forces[leg]);
             }

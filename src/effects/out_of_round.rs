@@ -41,8 +41,8 @@ pub(super) const KIND: Kind = Kind {
     ],
     variants: &[&["amplitude_m", "direction_rad"]],
     neutral: defaults,
-    // An oval of a tenth of a millimetre in eight directions of its half turn.
-    starts: |_| (0..8).map(|k| vec![1e-4, TAU * f64::from(k) / 16.0]).collect(),
+    // A slight oval in eight directions of its half turn: it has to be less than the clearance.
+    starts: |_| (0..8).map(|k| vec![5e-6, TAU * f64::from(k) / 16.0]).collect(),
     scan: None,
     apply,
 };

@@ -167,7 +167,7 @@ impl Posed {
             if let JointIndex::Revolute(i) = self.closure.joints[row] {
                 // By a target the rows of joints stand first, without those of drives among them.
                 let place = if self.by_drives { row } else { place };
-                gaps[place] = lean(&mechanism.revolutes[i], reactions[i])[next % 2];
+                gaps[place] = self.lean(&mechanism.revolutes[i], reactions[i])[next % 2];
                 next += 1;
             }
         }
@@ -178,6 +178,26 @@ impl Posed {
             state.rotation *= UnitComplex::new(shift[3 * i + 2]);
         }
         Some(self.centred(mechanism, &leaning))
+    }
+
+    /// From the ring's centre to the journal's in m, where the ring pushes the journal with this force (N).
+    fn lean(&self, joint: &Revolute, force: Vector2<f64>) -> Vector2<f64> {
+        let size = force.norm();
+        let Bearing::Clearance(clearance) = &joint.bearing else { return Vector2::zeros() };
+        if size == 0.0 {
+            return Vector2::zeros();
+        }
+        let (along, depth) = (force / -size, clearance.law.resting_penetration(size));
+        match &joint.out_of_round {
+            None => along * (clearance.radial() + depth),
+            Some(shape) => {
+                let turned = joint
+                    .ring
+                    .body
+                    .map_or_else(UnitComplex::identity, |ring| self.states[ring].rotation);
+                shape.resting(clearance.radial(), depth, turned, along)
+            }
+        }
     }
 
     /// `M a − w` about the points that the motion is given for, but for friction in joints with clearance.
@@ -307,17 +327,5 @@ fn friction(joint: &Revolute) -> Option<(CoulombFriction, f64)> {
     match &joint.bearing {
         Bearing::Clearance(clearance) => Some((clearance.friction?, clearance.journal_radius)),
         Bearing::Ideal | Bearing::Native { .. } => None,
-    }
-}
-
-/// From the ring's centre to the journal's in m, where the ring pushes the journal with this force (N).
-fn lean(joint: &Revolute, force: Vector2<f64>) -> Vector2<f64> {
-    let size = force.norm();
-    match &joint.bearing {
-        Bearing::Clearance(clearance) if size > 0.0 => {
-            let depth = clearance.law.resting_penetration(size);
-            force * (-(clearance.radial() + depth) / size)
-        }
-        _ => Vector2::zeros(),
     }
 }

@@ -51,9 +51,10 @@ impl Transmission {
     }
 
     /// How far in m the drive's end is ahead of a rod that is known to be pushed with `force` N: it lies
-    /// at one flank or the other. Where the force is a tenth of a newton or less, noise decides.
-    pub fn pressed(&self, force: f64) -> f64 {
-        0.5 * self.play * (force / 0.1).tanh() + self.compliance * force
+    /// at one flank or the other. Where the force is no larger than its `noise` (N), that decides. Of a revolute joint
+    /// rad and N·m.
+    pub fn pressed(&self, force: f64, noise: f64) -> f64 {
+        0.5 * self.play * (force / noise).tanh() + self.compliance * force
     }
 
     /// The part of `error` that lies between the flanks.

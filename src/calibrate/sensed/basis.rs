@@ -7,6 +7,7 @@
 
 use super::estimate::{View, effort_sensor};
 use super::recording::Recording;
+use super::simulate::deviation;
 use crate::measure::filter::derivative;
 use crate::mechanism::motion::{Motion, PathPoint};
 use crate::mechanism::{
@@ -257,12 +258,8 @@ fn coordinate(
     sensor: usize,
 ) -> [Vec<f64>; 3] {
     let mut position = shown(view, mechanism, sensor);
-    let drive = mechanism.actuators.iter().position(|drive| drive.joint == joint);
-    let link = drive.and_then(|drive| mechanism.actuators[drive].transmission);
-    let effort = drive.and_then(|drive| view.smooth(effort_sensor(mechanism, drive)?));
-    if let (Some(link), Some(effort)) = (link, effort) {
-        // The encoder sits at the drive's end of what gives way.
-        position.iter_mut().zip(effort).for_each(|(q, force)| *q -= link.pressed(*force));
+    if let Some(drive) = mechanism.actuators.iter().position(|drive| drive.joint == joint) {
+        behind(view, mechanism, drive, &mut position);
     }
     derived(position, view.interval)
 }
@@ -289,7 +286,18 @@ fn commanded(view: &View, mechanism: &Mechanism, drive: usize) -> [Vec<f64>; 3] 
             *position -= error;
         }
     }
+    behind(view, mechanism, drive, &mut position);
     derived(position, view.interval)
+}
+
+/// Takes from the coordinate of a drive's end what lies between it and its joint: the encoder sits at the drive's end of
+/// what gives way. Where nobody measured the effort, that is unknown.
+fn behind(view: &View, mechanism: &Mechanism, drive: usize, position: &mut [f64]) {
+    let Some(link) = mechanism.actuators[drive].transmission else { return };
+    let Some(sensor) = effort_sensor(mechanism, drive) else { return };
+    let Some(effort) = view.smooth(sensor) else { return };
+    let noise = deviation(&mechanism.sensors[sensor], effort);
+    position.iter_mut().zip(effort).for_each(|(q, force)| *q -= link.pressed(*force, noise));
 }
 
 /// What a sensor looked at, smoothed, at each row.
@@ -434,6 +442,32 @@ mod tests {
                 println!("closure of {}: {rms:.2e} m", name.of);
                 assert!(rms < 2e-5, "closure of {}: {rms:e} m", name.of);
             }
+        }
+    }
+
+    /// What gives way between a drive and its joint does so whether an encoder or the command says where the drive's end
+    /// is: without the encoder of a drive with a springy link, a wrong servo gain was named in its place.
+    #[test]
+    fn what_gives_way_behind_a_drive_is_taken_from_commands_too() {
+        for without in [&["phi"][..], &["phi", "q2"]] {
+            let (mut mechanism, recording) = recorded(without);
+            let basis = Basis::of(&mechanism, &recording).unwrap();
+            let view = View::new(&recording, mechanism.sensors.len());
+            let coordinate = |mechanism: &Mechanism| {
+                let moved = basis.moved(&view, mechanism);
+                let mut commands = vec![Command::default(); 3];
+                moved.ideal.commands.at(1.0, &mut commands);
+                commands[1].position
+            };
+            let stiff = coordinate(&mechanism);
+            let compliance = 1e-6;
+            mechanism.actuators[1].transmission =
+                Some(crate::mechanism::Transmission { compliance, ..Default::default() });
+            let sensor = effort_sensor(&mechanism, 1).unwrap();
+            let row = (1.0 / view.interval).round() as usize;
+            let force = view.smooth(sensor).unwrap()[row];
+            let given = stiff - coordinate(&mechanism);
+            assert!((given - compliance * force).abs() < 1e-9 + 1e-3 * given.abs(), "{given}");
         }
     }
 }

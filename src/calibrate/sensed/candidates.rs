@@ -19,6 +19,9 @@ pub fn candidates(mechanism: &Mechanism, without: &[&str]) -> Vec<Setting> {
     all.filter(|effect| effect.better_known_as(mechanism).is_none()).collect()
 }
 
+/// How often a size that the machine cannot have is halved: down to a hundredth.
+const HALVED: usize = 7;
+
 /// Starts of a candidate that are fitted.
 const KEPT: usize = 2;
 
@@ -46,8 +49,17 @@ pub fn starts(target: &Target, model: &Fit, candidate: &Setting) -> Vec<Setting>
         if multiple <= 0.0 || !multiple.is_finite() {
             return Some((0.0, candidate.with(&start)));
         }
-        start[0] *= multiple;
-        Some((multiple.powi(2) * column.norm_squared(), candidate.with(&start)))
+        let gain = multiple.powi(2) * column.norm_squared();
+        // What the machine cannot have so much of it may have a part of.
+        let mut size = start[0] * multiple;
+        for _ in 0..HALVED {
+            start[0] = size;
+            if change(&start).is_some() {
+                break;
+            }
+            size *= 0.5;
+        }
+        Some((gain, candidate.with(&start)))
     });
     best(scored.collect())
 }
