@@ -129,8 +129,17 @@ impl Problem {
         let simulations = AtomicUsize::new(0);
         let motions = Motions::default();
         let released = Mutex::new(LruCache::new(LET_GO));
-        let problem =
-            Self { rig, declared, runs, basis, control, replicas: 1, simulations, motions, released };
+        let problem = Self {
+            rig,
+            declared,
+            runs,
+            basis,
+            control,
+            replicas: 1,
+            simulations,
+            motions,
+            released,
+        };
         if problem.names().is_some_and(|names| names.is_empty()) {
             let message = "say nothing that a model could get wrong: how the machine moves, and nothing beside it";
             let help = "record an effort, an acceleration or a redundant position as well";
