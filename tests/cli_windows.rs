@@ -125,7 +125,7 @@ fn friction_and_zeros_of_runs_are_found_in_windows() {
 }
 
 fn measured(file: &str) -> Option<std::path::PathBuf> {
-    let folder = freeplay::study::hardware::folder(None);
+    let folder = freeplay::calibrate::hardware::folder(None);
     let file = std::path::absolute(folder).expect("a folder").join(file);
     if !file.is_file() {
         println!("skipped: data not present ({})", file.display());

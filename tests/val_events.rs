@@ -18,7 +18,7 @@ const ARM: [&str; 5] = ["fit_00", "fit_02", "fit_05", "validate_03", "validate_0
 
 /// Files of measured machines; none where one is not there.
 fn measured(files: &[String]) -> Option<Vec<PathBuf>> {
-    let folder = freeplay::study::hardware::folder(None);
+    let folder = freeplay::calibrate::hardware::folder(None);
     let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(file)).collect();
     let missing = paths.iter().find(|path| !path.is_file());
     if let Some(path) = missing {

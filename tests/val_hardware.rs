@@ -4,12 +4,11 @@
 mod cli_common;
 
 use cli_common::Place;
+use freeplay::calibrate::hardware::{Missing, emps, folder, pendulum, skipped};
 use freeplay::engine::{self, Schedule, StepControl};
-use freeplay::identify::arm::Swinger;
 use freeplay::identify::inverse::Term;
-use freeplay::mechanism::pendulum as arm;
+use freeplay::model::assemble;
 use freeplay::scenario::Scenario;
-use freeplay::study::hardware::{Missing, emps, folder, pendulum, skipped};
 use std::path::PathBuf;
 
 fn rig(text: &str) -> Scenario {
@@ -69,30 +68,32 @@ fn the_drive_stage_is_found_and_predicts_another_recording() {
 #[test]
 fn the_pendulum_is_found_and_predicts_what_follows() {
     let file = "pendulum/single_pendulum_1kHz.csv";
-    let Some(recording) = present(pendulum::Recording::read(&place(file), &rig(pendulum::RIG)))
-    else {
-        return;
+    let rig = rig(pendulum::RIG);
+    let Some(recordings) = present(pendulum::read(&place(file), &rig)) else { return };
+    let found = pendulum::study(&rig, &recordings, &|_| ()).expect("usable");
+    println!("{}\n{}", found.table().text(), found.numbers().text());
+    let [declared_friction, .., last] = &found.steps[..] else { panic!("steps") };
+    let value = |kind: &str, name: &str| {
+        let of = |(of, _): &(&'static str, _)| *of == name;
+        let effect = last.effects.iter().find(|e| e.effect.kind.name == kind).expect(kind);
+        effect.params.iter().find(|param| of(param)).expect(name).1.value
     };
-    let found = pendulum::study(&recording);
-    println!("{}\ndeclared {}\n{:?}", found.table().text(), found.declared, found.carried);
-    for step in &found.steps {
-        println!("{} {:?}", step.tried.name, step.windows);
-    }
-    let (viscous, chosen) = (&found.steps[0], &found.steps[found.chosen]);
-    assert!(chosen.tried.swinger.dry > 0.0 && chosen.tried.swinger.air > 0.0);
-    assert!(chosen.val <= 0.55 * viscous.val, "{} of {}", chosen.val, viscous.val);
-    assert!(viscous.val <= found.declared * 1.2);
+    assert!(value("joint-friction", "coulomb") > 0.0 && value("air-drag", "torque_Nms2") > 0.0);
+    let declared = found.declared.val;
+    assert!(last.val <= 0.55 * declared, "{} of {declared}", last.val);
+    assert!(declared_friction.val <= declared * 1.2);
 }
 
 /// A recording like the pendulum's, simulated: time and angle.
 fn swings() -> Vec<[f64; 2]> {
-    let swinger = Swinger { dry: 0.15, air: 4e-3, ..Swinger::declared(pendulum::DECLARED) };
-    let mechanism = swinger.released([1.6, 0.0]);
+    let friction = "effect=[{kind=\"bristle-friction\",joint=\"A1\",coulomb_Nm=5e-4}]";
+    let sets = [friction, "mechanism.angle=1.6"].map(str::to_owned);
+    let model = Scenario::from_text(pendulum::RIG, "rig.toml", &sets).expect("a scenario");
+    let mechanism = assemble(&model).expect("a pendulum").mechanism;
     let schedule = Schedule { duration: 6.0, interval: 1e-3 };
     let mut rows: Vec<[f64; 2]> = Vec::new();
     engine::run(&mechanism, StepControl::Fixed(1e-3), schedule, &mut |instant| {
-        let near = rows.last().map_or(1.6, |row| row[1]);
-        rows.push([instant.t, arm::angle(&instant.states[0], near)[0]]);
+        rows.push([instant.t, instant.angles[0]]);
     })
     .expect("swings");
     rows
@@ -114,7 +115,7 @@ fn wrong_columns_wrong_scales_and_spliced_recordings_are_refused() {
         place.write(file, &text);
         place.refused(command, words);
     };
-    refused(csv("t_s,theta", &good), &["theta1_rad", "columns.phi", "the file has t_s, theta"]);
+    refused(csv("t_s,theta", &good), &["theta1_rad", "the file has t_s, theta"]);
     let degrees: Vec<[f64; 2]> = good.iter().map(|[t, angle]| [*t, angle.to_degrees()]).collect();
     refused(csv("t_s,theta1_rad", &degrees), &["columns.phi", "scale = 0.01745"]);
     let spliced: Vec<[f64; 2]> = (0..5000)

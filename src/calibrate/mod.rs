@@ -11,6 +11,7 @@ pub mod commands;
 pub mod errors;
 pub mod evidence;
 pub mod fit;
+pub mod hardware;
 pub mod instrument;
 pub mod least_squares;
 pub mod left;

@@ -8,12 +8,12 @@ use crate::calibrate::errors::ChannelError;
 use crate::calibrate::outcome::MOST;
 use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare, refuse};
-use crate::calibrate::single::{self, Adjusted, Machine};
+use crate::calibrate::single::{self, Adjusted};
 use crate::calibrate::{plausibility, quantity, recording, sensed};
 use crate::effects::{ALL, named};
 use crate::measure::spelling::nearest;
 use crate::report::{known_to, number};
-use crate::scenario::Scenario;
+use crate::scenario::{Mechanism, Scenario};
 use clap::Args;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -99,7 +99,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     warn_of_unused(&rig);
     let paths: Vec<&Path> =
         arguments.data.iter().chain(&arguments.validate).map(PathBuf::as_path).collect();
-    if rig.mechanism.described().is_some() {
+    if rig.mechanism.has_sensors() {
         return any_mechanism(arguments, rig, &paths, &without);
     }
     if arguments.data.len() > 1 {
@@ -107,8 +107,8 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
             "--data: this machine takes one run to calibrate on; give the others as --validate";
         return Err(Failure::Input(vec![message.to_owned()]));
     }
-    if let Some(machine) = Machine::of(&rig) {
-        return single_joint(arguments, rig, machine, &paths, &without);
+    if let Mechanism::DriveStage(_) = rig.mechanism {
+        return drive_stage(arguments, rig, &paths, &without);
     }
     let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
     if !recordings.iter().all(plausibility::is_complete) {
@@ -165,16 +165,15 @@ fn any_mechanism(
     Ok(arguments.print.result(&calibrated.json, || text(&shown))?)
 }
 
-/// The same of a drive stage or a pendulum, whose recordings have the columns that `[columns]` names.
-fn single_joint(
+/// The same of a drive stage, whose recordings have the columns that `[columns]` names.
+fn drive_stage(
     arguments: &Arguments,
     rig: Scenario,
-    machine: Machine,
     paths: &[&Path],
     without: &[&'static str],
 ) -> Result<(), Failure> {
     let name = rig.name.clone();
-    let prepared = single::prepare(rig, machine, paths)?;
+    let prepared = single::prepare(rig, paths)?;
     let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
     let calibrated = Spinner::during(arguments.print.quiet, |tell| {
         single::into_folder(&prepared, without, folder, tell)

@@ -8,9 +8,9 @@ use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder};
 use crate::calibrate::result::CalibrateError;
 use crate::calibrate::sensed::predict as sensed;
 use crate::calibrate::sensed::windows::predict::{self as windows, Asked};
-use crate::calibrate::single::{self, Machine};
+use crate::calibrate::single;
 use crate::calibrate::{quantity, recording};
-use crate::scenario::Scenario;
+use crate::scenario::{Mechanism, Scenario};
 use crate::simulate::Provenance;
 use clap::Args;
 use std::fmt::Write as _;
@@ -22,9 +22,9 @@ use std::path::{Path, PathBuf};
 /// errors are reported for whatever else was measured. Where joints rattle by more than sensors see,
 /// the prediction is a mean over several simulations.
 ///
-/// A drive stage is driven by the recorded reference, its own controller closing the loop; a pendulum
-/// swings from an angle and a rate that are fitted to the first 0.25 s. Their recordings keep their own
-/// columns and units: the model's [columns] says which is which.
+/// A drive stage is driven by the recorded reference, its own controller closing the loop. A machine that
+/// nothing holds is predicted over windows, the start of each fitted to its first part. Recordings keep their
+/// own columns and units: [columns] of a template or [[sensor]]s say which is which.
 ///
 /// The results go into a new folder: index.html, predicted.csv (the log's rows and columns; what was not
 /// measured is added) and errors.json.
@@ -65,10 +65,10 @@ Examples:
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let model = Scenario::load(Some(&arguments.model), &arguments.sets.sets)?;
     warn_of_unused(&model);
-    if let Some(machine) = Machine::of(&model) {
-        return single_joint(arguments, &model, machine);
+    if let Mechanism::DriveStage(_) = model.mechanism {
+        return drive_stage(arguments, &model);
     }
-    if model.mechanism.described().is_some() {
+    if model.mechanism.has_sensors() {
         let asked = Asked { window: arguments.window, fit: arguments.fit, from: arguments.from };
         if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {
             return by_windows(arguments, &model, &prepared);
@@ -163,12 +163,12 @@ fn by_windows(
     })?)
 }
 
-/// The same of a drive stage or a pendulum, whose recordings have the columns that `[columns]` names.
-fn single_joint(arguments: &Arguments, model: &Scenario, machine: Machine) -> Result<(), Failure> {
-    let recorded = single::read(&arguments.data, model, machine, false)?;
+/// The same of a drive stage, whose recordings have the columns that `[columns]` names.
+fn drive_stage(arguments: &Arguments, model: &Scenario) -> Result<(), Failure> {
+    let recorded = single::read(&arguments.data, model, false)?;
     let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
     let predicted = Spinner::during(arguments.print.quiet, |tell| {
-        single::predict(model, machine, &recorded, folder, tell)
+        single::predict(model, &recorded, folder, tell)
     })?;
     let p = &predicted.prediction;
     Ok(arguments.print.result(&predicted.json, || {

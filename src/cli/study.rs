@@ -3,11 +3,12 @@
 use super::failure::Failure;
 use super::options::FolderOptions;
 use super::output;
-use crate::scenario::Scenario;
-use crate::study::hardware::{
+use super::progress::Spinner;
+use crate::calibrate::hardware::{
     Missing, STUDY_FILE, StudyError, Table, emps, emps_page, folder, pendulum, pendulum_page,
     skipped,
 };
+use crate::scenario::Scenario;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -29,7 +30,7 @@ pub(super) struct Arguments {
     /// Folder of the recordings [default: $FREEPLAY_MEASURED, or ../shared/measured]
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
-    /// Scenario of the rig, in place of the built-in one (assets/drive-stage.toml, assets/pendulum.toml)
+    /// Scenario of the rig, in place of the built-in one (assets/drive-stage.toml, assets/pendulum-declared.toml)
     #[arg(long, value_name = "SCENARIO")]
     rig: Option<PathBuf>,
     #[command(flatten)]
@@ -83,13 +84,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         }
         Which::Pendulum => {
             let file = data.join("single_pendulum_1kHz.csv");
-            let recording = match pendulum::Recording::read(&file, &rig) {
-                Ok(recording) => recording,
+            let recordings = match pendulum::read(&file, &rig) {
+                Ok(recordings) => recordings,
                 Err(missing) => return absent(missing),
             };
             let folder = prepare()?;
-            let found = pendulum::study(&recording);
-            let (lead, folder) = pendulum_page(&found, &recording, folder)?;
+            let found = Spinner::during(false, |tell| pendulum::study(&rig, &recordings, tell))?;
+            let (lead, folder) = pendulum_page(&found, folder)?;
             (lead, vec![found.table(), found.numbers()], folder)
         }
     };

@@ -1,6 +1,6 @@
 //! Effects that go by two names on some machines: a search tries one of the two, under the name that says more.
 
-use super::{Setting, Target};
+use super::{Setting, Target, named};
 use crate::mechanism::{JointIndex, Mechanism, Reads, Use};
 
 impl Setting {
@@ -38,6 +38,21 @@ impl Setting {
             }
             _ => None,
         }
+    }
+}
+
+impl Setting {
+    /// `pivot-friction` of named joints as `joint-friction`, which says the same of any joint; none of other effects.
+    pub fn as_joint_friction(&self) -> Option<Setting> {
+        if self.kind.name != "pivot-friction" || self.target.names().is_empty() {
+            return None;
+        }
+        let [coulomb, viscous, velocity] =
+            ["coulomb_Nm", "viscous_Nms", "velocity_rad_s"].map(|name| self.number(name));
+        let mut values = vec![("coulomb", coulomb), ("viscous", viscous)];
+        // The rate at which there is dry friction means nothing where there is none.
+        values.extend((coulomb > 0.0).then_some(("velocity", velocity)));
+        Some(Setting::on(named("joint-friction")?, self.target.clone(), &values))
     }
 }
 

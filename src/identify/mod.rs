@@ -1,12 +1,9 @@
-//! Parameters of one joint from a recording of it alone: a driven slide by its inverse model, an arm by
-//! its free swings.
+//! Parameters of a driven slide from a recording of it, by its inverse model.
 
-pub mod arm;
 pub mod inverse;
 pub mod paired;
 pub mod plausible;
 pub mod recorded;
 pub mod stage;
-pub mod swings;
 
 pub use recorded::{Missing, Recorded};

@@ -6,6 +6,7 @@ use super::recorded::{Missing, Recorded};
 use crate::effects::{Setting, named};
 use crate::engine::{self, Schedule, StepControl};
 use crate::measure::log::{Channel, Log};
+use crate::measure::splice;
 use crate::mechanism::{Cascade, Command, Commands, Drive, Held, Mechanism, drive_stage};
 use crate::scenario::{DriveMode, Scenario};
 use crate::simulate::drive;
@@ -89,7 +90,14 @@ pub fn plausible(rig: &Scenario, recorded: &Recorded) -> Result<(), Missing> {
     let (log, sources) = (&recorded.log, &recorded.sources);
     for (channel, source) in sources {
         if matches!(channel, Channel::Length(_)) {
-            plausible::one_run(log, *channel, source)?;
+            splice::one_run(splice::Samples {
+                place: &log.name,
+                column: &source.column,
+                unit: channel.unit(),
+                start: log.start,
+                interval: log.interval,
+                values: log.get(*channel).unwrap_or_default(),
+            })?;
         }
     }
     let Some(cascade) = cascade(rig) else { return Ok(()) };

@@ -5,5 +5,6 @@ pub mod filter;
 pub mod frames;
 pub mod log;
 pub mod spelling;
+pub mod splice;
 pub mod spline;
 pub mod student;

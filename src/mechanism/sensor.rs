@@ -46,6 +46,8 @@ impl TrackerFrame {
 pub struct Sensor {
     /// Its column in recordings.
     pub column: String,
+    /// What the numbers of that column are multiplied by to be in its unit.
+    pub factor: f64,
     /// What it reads.
     pub reads: Reads,
     /// Standard deviation of its white noise, in its unit; 0 where it is exact.

@@ -13,7 +13,6 @@ use crate::effects::Wrong;
 use crate::engine::{Schedule, StepControl};
 use crate::mechanism::drive_stage::state as stage_state;
 use crate::mechanism::motion::{Line, Motion};
-use crate::mechanism::pendulum::Arm;
 use crate::mechanism::{
     Bearing, BodyState, Commands, Imposed, Mechanism, TelescopicLegs, Tracker, angle_near,
 };
@@ -150,32 +149,23 @@ pub fn recorded(
     Ok(built.mechanism)
 }
 
-/// A machine of one joint with its effects, somewhere on its way: a drive stage at a length (m) with a
-/// rate (m/s) under `commands`, a pendulum at an angle (rad) with a rate (rad/s).
+/// A drive stage with its effects, somewhere on its way: at a length (m) with a rate (m/s) under `commands`.
 ///
 /// # Errors
-/// A scenario that is none of these, an effect that the machine cannot take.
+/// A scenario that is none, an effect that the machine cannot take.
 pub fn started(
     scenario: &Scenario,
     start: [f64; 2],
     commands: Arc<dyn Commands>,
 ) -> Result<Mechanism, Problem> {
-    let (state, angle) = match &scenario.mechanism {
-        scenario::Mechanism::DriveStage(_) => (stage_state(start), 0.0),
-        scenario::Mechanism::Pendulum(kind) => {
-            let arm = Arm { mass: kind.mass, inertia: kind.inertia, length: kind.length };
-            (arm.state(start), start[0])
-        }
-        _ => {
-            let help = "this takes a drive-stage or a pendulum";
-            return Err(scenario.problem("mechanism.kind", "is another machine", help));
-        }
+    let scenario::Mechanism::DriveStage(_) = scenario.mechanism else {
+        let help = "this takes a drive-stage";
+        return Err(scenario.problem("mechanism.kind", "is another machine", help));
     };
     let expanded = expand(scenario)?;
     let described = described(&expanded);
     let mut mechanism = build(&expanded, described).mechanism;
-    let body = &mut mechanism.bodies[0];
-    (body.start, body.angle) = (state, angle);
+    mechanism.bodies[0].start = stage_state(start);
     mechanism.commands = commands;
     add_effects(scenario, &mut mechanism)?;
     Ok(mechanism)

@@ -294,6 +294,7 @@ fn sensor(mechanism: &Mechanism, parts: &Parts, sensor: &scenario::Sensor) -> Op
     };
     Some(Sensor {
         column: sensor.column.clone(),
+        factor: sensor.scale,
         reads,
         std: sensor.std,
         resolution: sensor.resolution,

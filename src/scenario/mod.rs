@@ -167,6 +167,11 @@ impl Scenario {
         }
     }
 
+    /// Where `[columns]` says that the time of recordings stands; none where nothing is said.
+    pub fn time_column(&self) -> Option<crate::measure::log::Source> {
+        self.columns.as_ref()?.source("t")
+    }
+
     /// Whether the text gives a section as a list.
     pub(crate) fn is_list(&self, section: &str) -> bool {
         self.origins.has(&format!("{section}.0"))

@@ -17,6 +17,7 @@ pub(super) fn problems(scenario: &Scenario, described: &Described) -> Vec<Proble
     checks.stops();
     checks.outputs();
     checks.sensors();
+    checks.columns();
     checks.motion();
     checks.held();
     checks.problems
@@ -290,9 +291,23 @@ impl Checks<'_> {
                 let message = "belongs to an acceleration".to_owned();
                 self.complain(&format!("{path}.axis"), message, "take it out");
             }
+            if sensor.scale == 0.0 {
+                let message = "is 0: nothing would be left of the column".to_owned();
+                let help = "write what its numbers are multiplied by to be in SI units";
+                self.complain(&format!("{path}.scale"), message, help);
+            }
             self.not_negative(&format!("{path}.std"), sensor.std);
             self.not_negative(&format!("{path}.resolution"), sensor.resolution);
             self.not_negative(&format!("{path}.lowpass"), sensor.lowpass);
+        }
+    }
+
+    fn columns(&mut self) {
+        let Some(columns) = &self.scenario.columns else { return };
+        for quantity in columns.quantities() {
+            let message = "is not known of a machine that describes itself".to_owned();
+            let help = "keep t there, and write a [[sensor]] with the column and its scale";
+            self.complain(&format!("columns.{quantity}"), message, help);
         }
     }
 

@@ -6,7 +6,6 @@ mod check;
 pub mod compare;
 mod film;
 mod folder;
-pub mod hardware;
 pub mod paper;
 mod pictures;
 mod recent;

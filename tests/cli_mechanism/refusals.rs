@@ -487,7 +487,7 @@ fn sensors_and_motions_that_mean_nothing() {
 #[test]
 fn sections_without_a_use_are_told() {
     let place = Place::new();
-    for section in ["legs", "columns", "sensors"] {
+    for section in ["legs", "sensors"] {
         let text = format!("{FOUR_BAR}[{section}]\n");
         place.write("four-bar.toml", &text);
         let done = place.freeplay("check four-bar.toml");
@@ -496,4 +496,14 @@ fn sections_without_a_use_are_told() {
         assert!(done.code == 0 && done.err.starts_with(&warning), "{}", done.err);
         assert!(done.err.contains("take it out"), "{}", done.err);
     }
+}
+
+/// Of a described machine `[columns]` says where time stands, and `[[sensor]]`s the rest.
+#[test]
+fn columns_of_a_described_machine_are_its_sensors() {
+    let place = Place::new();
+    place.write("four-bar.toml", &format!("{FOUR_BAR}[columns]\nt = \"t_s\"\n"));
+    place.good("check four-bar.toml");
+    place.write("four-bar.toml", &format!("{FOUR_BAR}[columns]\nq1 = \"q\"\n"));
+    place.refused("check four-bar.toml", &["columns.q1: is not known", "write a [[sensor]]"]);
 }

@@ -135,7 +135,10 @@ fn the_decay_of_the_measured_pendulum() {
     let Some(folder) = measured("pendulum") else { return };
     let place = Place::new();
     let (model, log) = (asset("pendulum-calibrated.toml"), "pendulum/single_pendulum_1kHz.csv");
-    let line = format!("predict {model} --data {}/{log} --out p", folder.display());
+    let line = format!(
+        "predict {model} --data {}/{log} --window 54.9 --fit 0.25 --out p",
+        folder.display()
+    );
     figures::compare("predict-pendulum", json(&place, &line), 1e-6);
 }
 

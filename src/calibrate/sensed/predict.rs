@@ -48,7 +48,7 @@ pub fn prepare(model: &Scenario, path: &Path) -> Result<Prepared, CalibrateError
         wrong.push(model.problem("contact.law", "is \"native\"", help).to_string());
     }
     refuse(wrong)?;
-    let recording = Recording::read(path, &machine.sensors, false);
+    let recording = Recording::read_with_time(path, &machine.sensors, false, model.time_column());
     let recording = recording.map_err(|error| CalibrateError::Input(vec![error.to_string()]))?;
     super::start::machine(model, &[], &recording)?;
     Ok(Prepared { machine, recording })

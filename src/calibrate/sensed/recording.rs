@@ -1,10 +1,11 @@
 //! Recorded runs of any mechanism: a CSV file with a column for each sensor, one row a sample.
 
 use super::thresholds::{LATE, LATE_SHARE, LATE_STEPS, LOWEST_RATE, PLAIN_BAND, SHORTEST};
-use crate::measure::log::{LogError, constant_step};
+use crate::measure::log::{LogError, Source, constant_step};
 use crate::measure::spelling::nearest;
 use crate::measure::spline::CubicSpline;
 use crate::mechanism::{Reads, Sensor};
+use std::ops::Range;
 use std::path::Path;
 
 /// A recorded run.
@@ -21,8 +22,12 @@ pub struct Recording {
     /// Number of rows.
     pub samples: usize,
     columns: Vec<Option<Vec<f64>>>,
+    /// Where its time stands.
+    time: Source,
     /// Columns of the file that no sensor has.
     pub ignored: Vec<String>,
+    /// Their cells, column by column; nothing where rows were put on a grid.
+    carried: Vec<Vec<String>>,
     /// Share of the rows that came early or late and were put on a grid by splines.
     pub jitter: f64,
 }
@@ -32,12 +37,25 @@ const TIME: [&str; 2] = ["t", "t_s"];
 
 impl Recording {
     /// Reads the columns of `sensors`; measured ones may be missing, commands may not, unless `efforts` drive the
-    /// machine and theirs were measured.
+    /// machine and theirs were measured. Time stands in `t` or `t_s`.
     ///
     /// # Errors
-    /// A file that cannot be read, columns that no sensor has or that stand there twice, missing commands,
-    /// values that are no numbers, time that does not advance by a constant step.
+    /// As of [`read_with_time`](Self::read_with_time).
     pub fn read(path: &Path, sensors: &[Sensor], efforts: bool) -> Result<Self, LogError> {
+        Self::read_with_time(path, sensors, efforts, None)
+    }
+
+    /// The same where `time` says in which column time stands and what makes seconds of it.
+    ///
+    /// # Errors
+    /// A file that cannot be read, columns that stand there twice, none that a sensor has, missing commands,
+    /// values that are no numbers, time that does not advance by a constant step.
+    pub fn read_with_time(
+        path: &Path,
+        sensors: &[Sensor],
+        efforts: bool,
+        time: Option<Source>,
+    ) -> Result<Self, LogError> {
         let file = path.display().to_string();
         let wrong = |line: Option<u64>, message: String, help: String| LogError {
             place: line.map_or_else(|| file.clone(), |line| format!("{file}:{line}")),
@@ -52,8 +70,13 @@ impl Recording {
         let mut reader =
             csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(unread)?;
         let heads = reader.headers().map_err(unread)?.clone();
-        let Places { time, places, ignored } = choose(&heads, sensors, efforts)
-            .map_err(|(message, help)| wrong(Some(1), message, help))?;
+        let asked = time.as_ref().map(|time| time.column.as_str());
+        let Places { time: place_of_time, places, others } =
+            choose(&heads, sensors, efforts, asked)
+                .map_err(|(message, help)| wrong(Some(1), message, help))?;
+        let time = time.unwrap_or_else(|| Source::new(&heads[place_of_time], 1.0));
+        let ignored = others.iter().map(|place| heads[*place].to_owned()).collect();
+        let mut carried = vec![Vec::new(); others.len()];
         let mut times = Vec::new();
         let mut columns: Vec<Option<Vec<f64>>> =
             places.iter().map(|place| place.map(|_| Vec::new())).collect();
@@ -68,11 +91,14 @@ impl Recording {
                     wrong(line, message, "expected a finite number in every row".to_owned())
                 })
             };
-            times.push(number(time)?);
-            for (place, column) in places.iter().zip(&mut columns) {
+            times.push(time.scale * number(place_of_time)?);
+            for ((place, column), sensor) in places.iter().zip(&mut columns).zip(sensors) {
                 if let (Some(place), Some(column)) = (place, column) {
-                    column.push(number(*place)?);
+                    column.push(sensor.factor * number(*place)?);
                 }
+            }
+            for (place, cells) in others.iter().zip(&mut carried) {
+                cells.push(record.get(*place).unwrap_or_default().to_owned());
             }
         }
         let mut jitter = 0.0;
@@ -84,6 +110,7 @@ impl Recording {
                 }
                 let rows = columns.iter().flatten().map(Vec::len).next();
                 times.truncate(rows.unwrap_or(times.len()));
+                carried.clear();
                 jitter = share;
                 interval
             }
@@ -101,7 +128,9 @@ impl Recording {
             interval,
             samples: times.len(),
             columns,
+            time,
             ignored,
+            carried,
             jitter,
         })
     }
@@ -115,7 +144,9 @@ impl Recording {
             interval,
             samples,
             columns,
+            time: Source::new(TIME[0], 1.0),
             ignored: Vec::new(),
+            carried: Vec::new(),
             jitter: 0.0,
         }
     }
@@ -138,8 +169,19 @@ impl Recording {
     /// The rows of the first so many seconds.
     pub fn first(&self, seconds: f64) -> Self {
         let samples = ((seconds / self.interval) as usize + 1).min(self.samples);
-        let cut = |column: &Option<Vec<f64>>| column.as_ref().map(|c| c[..samples].to_vec());
-        Self { samples, columns: self.columns.iter().map(cut).collect(), ..self.clone() }
+        self.part(0..samples)
+    }
+
+    /// Some of its rows, by their places, as a recording of their own.
+    pub fn part(&self, rows: Range<usize>) -> Self {
+        let cut = |column: &Option<Vec<f64>>| column.as_ref().map(|c| c[rows.clone()].to_vec());
+        Self {
+            start: self.start + rows.start as f64 * self.interval,
+            samples: rows.len(),
+            columns: self.columns.iter().map(cut).collect(),
+            carried: self.carried.iter().map(|cells| cells[rows.clone()].to_vec()).collect(),
+            ..self.clone()
+        }
     }
 
     /// What speaks against calibrating with this recording.
@@ -174,21 +216,28 @@ impl Recording {
         (self.samples - 1) as f64 * self.interval
     }
 
-    /// The recording as CSV.
+    /// The recording as CSV, in the columns and units of its file; columns that no sensor has as they were.
     pub fn to_csv(&self, sensors: &[Sensor]) -> String {
         use std::fmt::Write as _;
-        let mut text = String::from("t");
+        let mut text = self.time.column.clone();
         let present: Vec<usize> = (0..sensors.len()).filter(|&i| self.get(i).is_some()).collect();
         // Writing to a string cannot fail.
         for &i in &present {
             let _ = write!(text, ",{}", sensors[i].column);
         }
+        for (head, _) in self.ignored.iter().zip(&self.carried) {
+            let _ = write!(text, ",{head}");
+        }
         text.push('\n');
         for row in 0..self.samples {
-            let _ = write!(text, "{:.6}", self.start + row as f64 * self.interval);
+            let t = (self.start + row as f64 * self.interval) / self.time.scale;
+            let _ = write!(text, "{t:.6}");
             for &i in &present {
-                let value = self.get(i).map_or(f64::NAN, |column| column[row]);
+                let value = self.get(i).map_or(f64::NAN, |column| column[row] / sensors[i].factor);
                 let _ = write!(text, ",{value:.9}");
+            }
+            for cells in &self.carried {
+                let _ = write!(text, ",{}", cells[row]);
             }
             text.push('\n');
         }
@@ -200,70 +249,85 @@ impl Recording {
 struct Places {
     time: usize,
     places: Vec<Option<usize>>,
-    ignored: Vec<String>,
+    others: Vec<usize>,
 }
 
-/// Finds the columns by the header; what is wrong with it and what would be right. A column that no sensor has is
-/// left alone, unless it looks like the misspelt name of a sensor's column that is missing.
+/// Finds the columns by the header; what is wrong with it and what would be right. Time stands in the column that was
+/// `asked` for. A column that no sensor has is left alone, unless it looks like the misspelt name of a sensor's column
+/// that is missing.
 fn choose(
     heads: &csv::StringRecord,
     sensors: &[Sensor],
     efforts: bool,
+    asked: Option<&str>,
 ) -> Result<Places, (String, String)> {
     let known: Vec<&str> = sensors.iter().map(|sensor| sensor.column.as_str()).collect();
-    let expected = format!("expected `t` and any of {}", known.join(", "));
+    let named: Vec<&str> = asked.map_or_else(|| TIME.to_vec(), |column| vec![column]);
+    let there = heads.iter().collect::<Vec<_>>().join(", ");
+    let expected =
+        format!("expected `{}` and any of {}; the file has {there}", named[0], known.join(", "));
     let (mut time, mut places) = (None, vec![None; sensors.len()]);
-    let mut ignored = Vec::new();
+    let mut others = Vec::new();
     for (place, head) in heads.iter().enumerate() {
         let twice = || (format!("column `{head}` twice"), "keep one of them".to_owned());
         if let Some(sensor) = known.iter().position(|column| *column == head) {
             if places[sensor].replace(place).is_some() {
                 return Err(twice());
             }
-        } else if TIME.contains(&head) {
+        } else if named.contains(&head) {
             if time.replace(place).is_some() {
                 return Err(twice());
             }
         } else {
-            ignored.push(head.to_owned());
+            others.push(place);
         }
     }
     let missing: Vec<&str> =
         known.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(k, _)| *k).collect();
-    let near = ignored.iter().find_map(|head| Some((head, nearest(head, &missing)?)));
-    if let Some((head, near)) = near {
+    let mut strange = others.iter().map(|place| &heads[*place]);
+    if let Some((head, near)) = strange.find_map(|head| Some((head, nearest(head, &missing)?))) {
         let help = format!("did you mean `{near}`? no [[sensor]] has it; {expected}");
         return Err((format!("unknown column `{head}`"), help));
     }
     let Some(time) = time else {
-        return Err(match ignored.first() {
-            Some(head) => {
+        return Err(match (asked, others.first()) {
+            (None, Some(place)) => {
                 let help = format!("no [[sensor]] has it; {expected}");
-                (format!("unknown column `{head}`"), help)
+                (format!("unknown column `{}`", &heads[*place]), help)
             }
-            None => ("no column `t`".to_owned(), expected),
+            _ => (format!("no column `{}`", named[0]), expected),
         });
     };
-    let commands = sensors.iter().zip(&places);
+    if places.iter().all(Option::is_none) {
+        let columns = known.iter().map(|column| format!("`{column}`")).collect::<Vec<_>>();
+        return Err((format!("no column {}", columns.join(", ")), expected));
+    }
+    let missing = commands_missing(sensors, &places, efforts);
+    if missing.is_empty() {
+        return Ok(Places { time, places, others });
+    }
+    let help = "without its commands nobody knows what the machine was asked to do".to_owned();
+    Err((format!("no column {}", missing.join(", ")), help))
+}
+
+/// Columns of commands that are not there and that nothing stands in for.
+fn commands_missing(sensors: &[Sensor], places: &[Option<usize>], efforts: bool) -> Vec<String> {
     // What was measured of a drive's effort stands in for its command.
     let replaced = |drive: usize| {
-        let mut sensors = sensors.iter().zip(&places);
+        let mut sensors = sensors.iter().zip(places);
         efforts
             && sensors.any(|(s, place)| {
                 place.is_some() && matches!(s.reads, Reads::Effort(of) if of == drive)
             })
     };
-    let missing = commands
+    sensors
+        .iter()
+        .zip(places)
         .filter(|(sensor, place)| {
             place.is_none() && matches!(sensor.reads, Reads::Command(drive) if !replaced(drive))
         })
         .map(|(sensor, _)| format!("`{}`", sensor.column))
-        .collect::<Vec<_>>();
-    if missing.is_empty() {
-        return Ok(Places { time, places, ignored });
-    }
-    let help = "without its commands nobody knows what the machine was asked to do".to_owned();
-    Err((format!("no column {}", missing.join(", ")), help))
+        .collect()
 }
 
 /// Rows that came at times of their own.

@@ -13,6 +13,7 @@ use super::recording::Recording;
 use super::search::name;
 use super::start::machine;
 use super::windows::bench::{Bench, suits};
+use super::windows::plausible;
 use super::windows::report::{Windows, into_folder as by_windows};
 use crate::calibrate::errors::{ChannelError, worst};
 use crate::calibrate::outcome::Verdict;
@@ -118,7 +119,7 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     let mut recordings = Vec::new();
     let mut errors: Vec<LogError> = Vec::new();
     for path in paths {
-        match Recording::read(path, &built.sensors, by_windows) {
+        match Recording::read_with_time(path, &built.sensors, by_windows, rig.time_column()) {
             Ok(recording) => recordings.push(recording),
             Err(error) => errors.push(error),
         }
@@ -154,7 +155,8 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     }
     // What the machine cannot be at a recording's first row is told before anything is written.
     if by_windows {
-        Bench::new(&rig, recordings.clone())?;
+        let bench = Bench::new(&rig, recordings.clone())?;
+        refuse(plausible::wrong(&rig, &bench))?;
     } else {
         for recording in &recordings {
             machine(&rig, &[], recording)?;

@@ -144,6 +144,14 @@ pub const ZERO: f64 = 0.3;
 /// Windows that predictions are judged by: length, and the first part that the start is fitted to, in s.
 pub const HORIZONS: [[f64; 2]; 3] = [[0.5, 0.1], [0.3, 0.1], [2.5, 0.25]];
 
+/// Share of a run's motion that the declared machine misses over half a second from which it does not move so at
+/// all: a measured arm with unknown friction and zeros misses a third, radians read as degrees all of it.
+pub const ASTRAY: f64 = 0.5;
+
+/// Share that it misses at most where a column's scale is the only thing wrong: a tenth of a swing's stiffness is
+/// half of that.
+pub const FOLLOWED: f64 = 0.15;
+
 /// Standard deviations by which an effect at its detection limit stands above what sees and names it: 49 of 50
 /// are seen.
 pub const SURE: f64 = 2.0;

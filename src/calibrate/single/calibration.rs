@@ -1,12 +1,12 @@
-//! A calibration of a machine of one joint, and its folder of results.
+//! A calibration of a drive stage, and its folder of results.
 
 use super::charts;
 use super::drawn;
 use super::noise::floors;
 use super::prediction::errors;
 use super::rows::predicted;
-use super::simulated::{Machine, along, read};
-use super::{arm, stage};
+use super::simulated::{along, read};
+use super::stage;
 use crate::calibrate::errors::{ChannelError, judged};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::recording::{stem, tell_apart};
@@ -113,7 +113,6 @@ pub(super) struct Found {
 #[derive(Debug)]
 pub struct Prepared {
     rig: Scenario,
-    machine: Machine,
     /// The first to calibrate on, the others to validate on.
     runs: Vec<Recorded>,
 }
@@ -122,31 +121,23 @@ pub struct Prepared {
 ///
 /// # Errors
 /// Everything that is wrong with them.
-pub fn prepare(
-    rig: Scenario,
-    machine: Machine,
-    paths: &[&Path],
-) -> Result<Prepared, CalibrateError> {
+pub fn prepare(rig: Scenario, paths: &[&Path]) -> Result<Prepared, CalibrateError> {
     let (mut runs, mut wrong) = (Vec::<Recorded>::new(), Vec::new());
     for path in paths {
-        match read(path, &rig, machine, true) {
+        match read(path, &rig, true) {
             Ok(recorded) => runs.push(recorded),
             Err(CalibrateError::Input(messages)) => wrong.extend(messages),
             Err(other) => return Err(other),
         }
     }
     if wrong.is_empty() {
-        let ready = match machine {
-            Machine::Stage => stage::ready(&rig),
-            Machine::Pendulum => arm::ready(&rig, &runs),
-        };
-        wrong.extend(ready);
+        wrong.extend(stage::ready(&rig));
     }
     if !wrong.is_empty() {
         return Err(CalibrateError::Input(wrong));
     }
     tell_apart(runs.iter_mut().map(|run| (&mut run.log, run.path.as_str())).collect());
-    Ok(Prepared { rig, machine, runs })
+    Ok(Prepared { rig, runs })
 }
 
 /// A finished calibration.
@@ -176,21 +167,18 @@ pub fn into_folder(
     tell: &dyn Fn(&str),
 ) -> Result<Calibrated, CalibrateError> {
     let started = Clock::now();
-    let Prepared { rig, machine, runs } = prepared;
-    let found = match machine {
-        Machine::Stage => stage::search(rig, runs, without, tell)?,
-        Machine::Pendulum => arm::search(rig, runs, without, tell)?,
-    };
+    let Prepared { rig, runs } = prepared;
+    let found = stage::search(rig, runs, without, tell)?;
     let (mut listed, mut pictures, mut files) = (Vec::new(), Vec::new(), Vec::new());
     for (i, run) in runs.iter().enumerate() {
         tell(&format!("simulating {}", run.log.name));
         let role = if i == 0 { "calibration" } else { "validation" };
-        let before = along(rig, *machine, &run.log)?;
-        let after = along(&found.scenario, *machine, &run.log)?;
-        let floors = floors(&found.scenario, *machine, &run.log, &after)?;
+        let before = along(rig, &run.log)?;
+        let after = along(&found.scenario, &run.log)?;
+        let floors = floors(&found.scenario, &run.log, &after);
         listed.extend(errors(run, role, [Some(&before), Some(&after)], &floors));
         let declared = Some(("declared", &before));
-        let drawn = charts::of_run(*machine, &run.log, role, declared, ("calibrated", &after));
+        let drawn = charts::of_run(&run.log, role, declared, ("calibrated", &after));
         pictures.extend(drawn.map_err(RunError::from)?);
         let name = format!("predicted-{}.csv", stem(&run.log));
         files.push((name.clone(), predicted(run, &after).map_err(refused(&name))?));
@@ -213,8 +201,7 @@ pub fn into_folder(
         files: texts.chain(written).chain(drawn).collect(),
     };
     let json = to_json(&report);
-    let (model, page) =
-        (found.scenario.to_toml(), drawn::calibration(&report, *machine, &pictures));
+    let (model, page) = (found.scenario.to_toml(), drawn::calibration(&report, &pictures));
     let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &model), (PAGE_FILE, &page)];
     texts.extend(files.iter().map(|(name, text)| (name.as_str(), text)));
     let folder = publish(folder, &texts, &pictures)?;

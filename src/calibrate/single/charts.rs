@@ -1,7 +1,6 @@
-//! The pictures of a machine of one joint along a recording: each channel as it was measured and as it is
+//! The pictures of a drive stage along a recording: each channel as it was measured and as it is
 //! predicted, and what the models miss below it.
 
-use super::simulated::Machine;
 use crate::calibrate::charts::{CORNER, POINTS, low_passed, missed, panel, thinned};
 use crate::calibrate::recording::stem;
 use crate::measure::log::{Channel, Log};
@@ -20,14 +19,6 @@ struct Drawn {
     /// What the heading leaves open.
     about: &'static str,
 }
-
-const ANGLE: Drawn = Drawn {
-    channel: Channel::Pose(2),
-    quantity: "angle",
-    title: "Angle of the arm",
-    unit: ("rad", 1.0),
-    about: " Angles are against the upward vertical: an arm at π hangs.",
-};
 
 const POSITION: Drawn = Drawn {
     channel: Channel::Length(0),
@@ -68,17 +59,12 @@ pub(super) type Simulated<'a> = (&'a str, &'a Log);
 /// # Errors
 /// If the drawing library refuses.
 pub(super) fn of_run(
-    machine: Machine,
     log: &Log,
     role: &str,
     before: Option<Simulated>,
     after: Simulated,
 ) -> Result<Vec<Picture>, ReportError> {
-    let drawn: &[Drawn] = match machine {
-        Machine::Stage => &[FORCE, POSITION],
-        Machine::Pendulum => &[ANGLE],
-    };
-    drawn.iter().map(|what| picture(what, log, role, before, after)).collect()
+    [FORCE, POSITION].iter().map(|what| picture(what, log, role, before, after)).collect()
 }
 
 fn picture(

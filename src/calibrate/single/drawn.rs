@@ -1,8 +1,7 @@
-//! The pages of machines of one joint.
+//! The pages of a drive stage.
 
 use super::calibration::Report;
 use super::prediction::Prediction;
-use super::simulated::Machine;
 use crate::calibrate::page::{errors_table, verdict};
 use crate::report::{Part, Picture, Table, document, known_to, number};
 
@@ -10,18 +9,11 @@ const NOTE: &str = "Root mean square of measured less predicted, both through a 
                     fourth order at 25 Hz, first and last 60 ms left out. Floor: what the recording's own \
                     white noise leaves to any model.";
 
-/// How a machine is sent along its recording.
-fn along(machine: Machine) -> &'static str {
-    match machine {
-        Machine::Stage => "driven by the recorded reference, its own controller closing the loop",
-        Machine::Pendulum => {
-            "swinging by itself from an angle and a rate that are fitted to the first 0.25 s"
-        }
-    }
-}
+/// How the stage is sent along its recording.
+const ALONG: &str = "driven by the recorded reference, its own controller closing the loop";
 
 /// The page of a prediction.
-pub(super) fn prediction(p: &Prediction, machine: Machine, pictures: &[Picture]) -> String {
+pub(super) fn prediction(p: &Prediction, pictures: &[Picture]) -> String {
     let effects = if p.effects.is_empty() {
         "as declared, without effects".to_owned()
     } else {
@@ -33,11 +25,8 @@ pub(super) fn prediction(p: &Prediction, machine: Machine, pictures: &[Picture])
         format!(" Columns left as they are: {}.", p.carried_columns.join(", "))
     };
     let lead = format!(
-        "{}, a {} {effects}, {}, against {}.{carried}",
-        p.provenance.scenario_name,
-        machine.words(),
-        along(machine),
-        p.run
+        "{}, a drive stage {effects}, {ALONG}, against {}.{carried}",
+        p.provenance.scenario_name, p.run
     );
     let note = format!("{NOTE} After: the model; before: the model without its effects.");
     let more = [
@@ -56,7 +45,7 @@ pub(super) fn prediction(p: &Prediction, machine: Machine, pictures: &[Picture])
 }
 
 /// The page of a calibration.
-pub(super) fn calibration(r: &Report, machine: Machine, pictures: &[Picture]) -> String {
+pub(super) fn calibration(r: &Report, pictures: &[Picture]) -> String {
     let mut rows = Vec::new();
     for effect in &r.effects {
         for (name, fitted) in &effect.params {
@@ -123,8 +112,7 @@ pub(super) fn calibration(r: &Report, machine: Machine, pictures: &[Picture]) ->
         ("Time of computing", format!("{} s", number(r.wall_s))),
     ];
     let provenance = r.provenance.lines("rig", None, more);
-    let note =
-        format!("{NOTE} Before: the rig as declared; after: calibrated; {}.", along(machine));
+    let note = format!("{NOTE} Before: the rig as declared; after: calibrated; {ALONG}.");
     let mut parts = vec![Part::Table(values)];
     if !equations.is_empty() {
         parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });

@@ -1,7 +1,6 @@
-//! Machines of one joint, the drive stage and the pendulum, against recordings of them: a recording in
-//! its own columns, what a model predicts of it, and a calibration.
+//! The drive stage against recordings of it: a recording in its own columns, what a model predicts of it, and a
+//! calibration by its inverse model.
 
-mod arm;
 mod calibration;
 mod charts;
 mod drawn;
@@ -13,4 +12,4 @@ mod stage;
 
 pub use calibration::{Adjusted, Calibrated, Prepared, into_folder, prepare};
 pub use prediction::{Predicted, predict};
-pub use simulated::{Machine, read};
+pub use simulated::read;

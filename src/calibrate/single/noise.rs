@@ -1,8 +1,6 @@
-//! What a recording's own noise leaves to any model of a machine of one joint.
+//! What a recording's own noise leaves to any model of a drive stage.
 
-use super::simulated::{Machine, along};
 use crate::calibrate::errors::rms;
-use crate::calibrate::result::CalibrateError;
 use crate::identify::stage::{cascade, controller_force};
 use crate::measure::log::{Channel, Log};
 use crate::scenario::Scenario;
@@ -34,43 +32,27 @@ pub fn white(values: &[f64]) -> f64 {
 
 /// Root mean square error that each measured channel would show against the very machine that made it: a
 /// simulated recording with the recording's own white noise on its position, predicted by the same model.
-///
-/// # Errors
-/// A model that cannot be simulated.
-pub fn floors(
-    model: &Scenario,
-    machine: Machine,
-    recorded: &Log,
-    clean: &Log,
-) -> Result<Vec<(Channel, f64)>, CalibrateError> {
-    let position = match machine {
-        Machine::Stage => Channel::Length(0),
-        Machine::Pendulum => Channel::Pose(2),
-    };
-    let Some(values) = recorded.get(position) else { return Ok(Vec::new()) };
-    let Ok(normal) = Normal::new(0.0, white(values)) else { return Ok(Vec::new()) };
+pub fn floors(model: &Scenario, recorded: &Log, clean: &Log) -> Vec<(Channel, f64)> {
+    let position = Channel::Length(0);
+    let Some(values) = recorded.get(position) else { return Vec::new() };
+    let Ok(normal) = Normal::new(0.0, white(values)) else { return Vec::new() };
     let exact = clean.get(position).unwrap_or_default();
     let drawn = (0..DRAWS).into_par_iter().map(|draw| {
         let mut random = ChaCha8Rng::seed_from_u64(7000 + draw);
         let noisy: Vec<f64> = exact.iter().map(|x| x + normal.sample(&mut random)).collect();
         let mut channels = vec![(position, noisy)];
-        if let (Machine::Stage, Some(cascade)) = (machine, cascade(model)) {
+        if let Some(cascade) = cascade(model) {
             let force = controller_force(&cascade, recorded, &channels[0].1);
             channels.push((Channel::Force(0), force));
         }
         let noisy = Log::new(&recorded.name, recorded.start, recorded.interval, channels);
-        // A pendulum's start is fitted to what was seen of it; a stage is told its way.
-        let again = match machine {
-            Machine::Stage => clean.clone(),
-            Machine::Pendulum => along(model, machine, &noisy)?,
-        };
-        let error = |channel| Some((channel, rms(&noisy, &again, channel)?));
-        Ok(noisy.channels().filter_map(error).collect())
+        let error = |channel| Some((channel, rms(&noisy, clean, channel)?));
+        noisy.channels().filter_map(error).collect()
     });
-    let drawn = drawn.collect::<Result<Vec<Vec<(Channel, f64)>>, CalibrateError>>()?;
+    let drawn = drawn.collect::<Vec<Vec<(Channel, f64)>>>();
     let mean = |channel: Channel| {
         let of = drawn.iter().flatten().filter(|(c, _)| *c == channel);
         (of.map(|(_, error)| error * error).sum::<f64>() / DRAWS as f64).sqrt()
     };
-    Ok(drawn[0].iter().map(|(channel, _)| (*channel, mean(*channel))).collect())
+    drawn[0].iter().map(|(channel, _)| (*channel, mean(*channel))).collect()
 }

@@ -1,16 +1,15 @@
-//! A machine of one joint along a recording: what a model predicts, and by how much it misses.
+//! A drive stage along a recording: what a model predicts, and by how much it misses.
 
 use super::charts;
 use super::drawn;
 use super::noise::floors;
 use super::rows::{measured, predicted};
-use super::simulated::{Machine, along};
+use super::simulated::along;
 use crate::calibrate::errors::{ChannelError, rms};
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
 use crate::calibrate::result::{CalibrateError, publish, to_json};
 use crate::calibrate::way::name;
 use crate::identify::Recorded;
-use crate::identify::arm::PLAN;
 use crate::measure::log::Log;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -32,9 +31,6 @@ pub struct Prediction {
     /// Errors by channel: `after` of the model, `before` of the model without its effects (null where it
     /// has none).
     pub errors: Vec<ChannelError>,
-    /// Length in s of the first part of the recording that the start of a pendulum was fitted to; null
-    /// of a stage, which starts where its length does.
-    pub start_fitted_to_s: Option<f64>,
     /// Columns of the recording that nothing asks for: in `predicted.csv` as they were.
     pub carried_columns: Vec<String>,
     /// Time of computing in s.
@@ -83,7 +79,6 @@ pub(super) fn errors(
 /// A model that cannot be simulated, files that cannot be written.
 pub fn predict(
     model: &Scenario,
-    machine: Machine,
     recorded: &Recorded,
     folder: Folder,
     tell: &dyn Fn(&str),
@@ -91,20 +86,20 @@ pub fn predict(
     let started = Clock::now();
     let log = &recorded.log;
     tell("predicting the run");
-    let after = along(model, machine, log)?;
+    let after = along(model, log)?;
     let before = if model.effects.is_empty() {
         None
     } else {
         let mut declared = model.clone();
         declared.effects.clear();
-        Some(along(&declared, machine, log)?)
+        Some(along(&declared, log)?)
     };
     tell("what noise leaves to any model");
-    let floors = floors(model, machine, log, &after)?;
+    let floors = floors(model, log, &after);
     let errors = errors(recorded, "prediction", [before.as_ref(), Some(&after)], &floors);
     tell("drawing and writing");
     let without = before.as_ref().map(|before| ("without effects", before));
-    let pictures = charts::of_run(machine, log, "prediction", without, ("predicted", &after))
+    let pictures = charts::of_run(log, "prediction", without, ("predicted", &after))
         .map_err(RunError::from)?;
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let prediction = Prediction {
@@ -112,14 +107,13 @@ pub fn predict(
         run: log.name.clone(),
         effects: model.effects.iter().map(name).collect(),
         errors,
-        start_fitted_to_s: (machine == Machine::Pendulum).then_some(PLAN.start),
         carried_columns: recorded.others.clone(),
         wall_s: started.elapsed().as_secs_f64(),
         files: texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect(),
     };
     let json = to_json(&prediction);
     let rows = predicted(recorded, &after).map_err(refused(PREDICTED_FILE))?;
-    let page = drawn::prediction(&prediction, machine, &pictures);
+    let page = drawn::prediction(&prediction, &pictures);
     let texts = [(ERRORS_FILE, &json), (PREDICTED_FILE, &rows), (PAGE_FILE, &page)];
     let folder = publish(folder, &texts, &pictures)?;
     Ok(Predicted { prediction, json, folder })

@@ -1,6 +1,7 @@
-//! `[sensors]` of a template, which stands for a `[[sensor]]` of each column of its recordings.
+//! `[sensors]` and `[columns]` of a template, which stand for a `[[sensor]]` of each column of its recordings.
 
-use crate::scenario::{Body, Quantity, Scenario, Sensor, Sensors};
+use crate::measure::log::Source;
+use crate::scenario::{Body, Problem, Quantity, Scenario, Sensor, Sensors};
 
 /// Where the tracker looks at the output body: the origin of its axes.
 const TRACKED: &str = "C";
@@ -11,15 +12,8 @@ const TRACKED: &str = "C";
 pub(super) fn of(scenario: &Scenario, output: &mut Body, joints: &[&str]) -> Vec<Sensor> {
     let Some(instruments) = &scenario.sensors else { return Vec::new() };
     let Sensors { pose_std, angle_std, length_resolution, force_std, force_lowpass } = *instruments;
-    let sensor = |column: String, quantity, of: &str| Sensor {
-        column,
-        quantity,
-        of: of.to_owned(),
-        axis: None,
-        std: 0.0,
-        resolution: 0.0,
-        lowpass: 0.0,
-    };
+    let sensor =
+        |column: String, quantity, of: &str| exact(Source::new(&column, 1.0), quantity, of);
     let columns = |quantity, name: fn(usize) -> String| {
         let joints = joints.iter().enumerate();
         joints.map(move |(i, joint)| sensor(name(i + 1), quantity, joint)).collect::<Vec<Sensor>>()
@@ -38,6 +32,36 @@ pub(super) fn of(scenario: &Scenario, output: &mut Body, joints: &[&str]) -> Vec
         sensors.push(Sensor { std, ..sensor(column.to_owned(), quantity, &tracked) });
     }
     sensors
+}
+
+/// The sensors of a machine whose recordings hold these quantities: name, what it is, and of what. `[columns]` says
+/// which column is which; what it does not name has a column of its own name.
+///
+/// # Errors
+/// A name in `[columns]` that is none of them.
+pub(super) fn named(
+    scenario: &Scenario,
+    known: &[(&str, Quantity, &str)],
+) -> Result<Vec<Sensor>, Problem> {
+    let columns = scenario.columns.as_ref();
+    let strange = |name: &&str| known.iter().all(|(known, ..)| known != name);
+    if let Some(name) = columns.and_then(|columns| columns.quantities().find(strange)) {
+        let names: Vec<&str> = known.iter().map(|(name, ..)| *name).collect();
+        let message = "is not a quantity of this machine's recordings";
+        let help = format!("known here: t, {}", names.join(", "));
+        return Err(scenario.problem(&format!("columns.{name}"), message, help));
+    }
+    let sensor = |(name, quantity, of): &(&str, Quantity, &str)| {
+        let source = columns.and_then(|columns| columns.source(name));
+        exact(source.unwrap_or_else(|| Source::new(name, 1.0)), *quantity, of)
+    };
+    Ok(known.iter().map(sensor).collect())
+}
+
+/// A sensor of which no noise is declared.
+fn exact(Source { column, scale }: Source, quantity: Quantity, of: &str) -> Sensor {
+    let of = of.to_owned();
+    Sensor { column, quantity, of, axis: None, scale, std: 0.0, resolution: 0.0, lowpass: 0.0 }
 }
 
 #[cfg(test)]
@@ -62,5 +86,26 @@ mod tests {
         // Nobody measures a machine without the section.
         let bare = Scenario::from_text("[mechanism]\nkind = \"3rpr\"\n", "bare.toml", &[]).unwrap();
         assert!(parts_of(&bare).unwrap().sensors.is_empty());
+    }
+
+    #[test]
+    fn columns_of_a_template_are_sensors_with_a_scale() {
+        let text = "[mechanism]\nkind = \"pendulum\"\n[columns]\nt = { column = \"ms\", scale = 1e-3 }\n\
+                    phi = { column = \"deg\", scale = 0.0175 }\n";
+        let read = |text: &str| Scenario::from_text(text, "rig.toml", &[]).unwrap();
+        let of = |rig: &Scenario| {
+            let sensors = parts_of(rig).unwrap().sensors;
+            let sensors = sensors.iter().map(|sensor| (sensor.column.clone(), sensor.factor));
+            (sensors.collect::<Vec<_>>(), rig.columns.as_ref().unwrap().source("t").unwrap())
+        };
+        let rig = read(text);
+        assert_eq!(of(&rig).0, [("deg".to_owned(), 0.0175)]);
+        // The file that it stands for says the same.
+        assert_eq!(of(&read(&expand(&rig).unwrap().to_toml())), of(&rig));
+        let strange = expand(&read(&text.replace("phi", "q1"))).unwrap_err().to_string();
+        assert!(
+            strange.contains("columns.q1") && strange.contains("known here: t, phi"),
+            "{strange}"
+        );
     }
 }

@@ -25,7 +25,7 @@ pub fn expand(scenario: &Scenario) -> Result<Scenario, Problem> {
         Mechanism::Described(_) => Ok(scenario.clone()),
         Mechanism::ThreeRpr(machine) => three_rpr::expand(scenario, machine),
         Mechanism::DriveStage(machine) => drive_stage::expand(scenario, machine),
-        Mechanism::Pendulum(machine) => Ok(pendulum::expand(scenario, machine)),
+        Mechanism::Pendulum(machine) => pendulum::expand(scenario, machine),
         Mechanism::SliderCrank(machine) => slider_crank::expand(scenario, machine),
         Mechanism::FourBar(machine) => four_bar::expand(scenario, machine),
         Mechanism::FiveBar(machine) => five_bar::expand(scenario, machine),

@@ -1,8 +1,8 @@
 //! What templates are made of.
 
 use crate::scenario::{
-    Body, Described, Drive, DriveMode, Ground, Joint, JointDrive, Motion, On, Output, Prismatic,
-    Revolute, SampledDrive, Scenario, Servo,
+    Body, Columns, Described, Drive, DriveMode, Ground, Joint, JointDrive, Motion, On, Output,
+    Prismatic, Revolute, SampledDrive, Scenario, Servo,
 };
 use std::collections::BTreeMap;
 
@@ -102,6 +102,7 @@ pub(super) fn described(
     target: Option<crate::scenario::Target>,
 ) -> Scenario {
     let mut expanded = scenario.with_described(described, motion, target);
+    expanded.columns = scenario.columns.as_ref().and_then(Columns::time_alone);
     expanded.joints.clearance = None;
     expanded.joints.friction = crate::scenario::PerJoint::all(0.0);
     expanded

@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 
 /// Quantities by their names in logs (`t`, `q1_cmd`, `q1`, `F1`, `added1`, `x`, `y`, `phi`), each with the
 /// column that holds it: a name where the column is in SI units, `{ column = "…", scale = … }` where its
-/// numbers are to be multiplied. Columns that nothing asks for are left alone.
+/// numbers are to be multiplied. Columns that nothing asks for are left alone. A described machine has
+/// `[[sensor]]`s for all of them but `t`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Columns(BTreeMap<String, Column>);
@@ -18,6 +19,18 @@ enum Column {
     Scaled(Source),
 }
 
+impl Column {
+    fn source(&self) -> Source {
+        match self {
+            Column::Name(column) => Source::new(column, 1.0),
+            Column::Scaled(source) => source.clone(),
+        }
+    }
+}
+
+/// The name of time.
+const TIME: &str = "t";
+
 /// The column of time, and those of channels.
 pub type Sources = (Source, Vec<(Channel, Source)>);
 
@@ -27,14 +40,11 @@ impl Columns {
     /// # Errors
     /// That name.
     pub fn sources(&self, known: &[Channel]) -> Result<Sources, &str> {
-        let mut time = Source::new("t", 1.0);
+        let mut time = Source::new(TIME, 1.0);
         let mut found = Vec::new();
         for (name, column) in &self.0 {
-            let source = match column {
-                Column::Name(column) => Source::new(column, 1.0),
-                Column::Scaled(source) => source.clone(),
-            };
-            if name == "t" {
+            let source = column.source();
+            if name == TIME {
                 time = source;
                 continue;
             }
@@ -43,5 +53,21 @@ impl Columns {
             found.push((*channel, source));
         }
         Ok((time, found))
+    }
+
+    /// Where a quantity stands, by its name; none where nothing is said of it.
+    pub fn source(&self, quantity: &str) -> Option<Source> {
+        self.0.get(quantity).map(Column::source)
+    }
+
+    /// Names of the quantities other than time.
+    pub fn quantities(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str).filter(|name| *name != TIME)
+    }
+
+    /// The same with time alone: all that is left to say of a machine that has `[[sensor]]`s; none where nothing is.
+    pub fn time_alone(&self) -> Option<Self> {
+        let column = self.0.get(TIME)?.clone();
+        Some(Self(BTreeMap::from([(TIME.to_owned(), column)])))
     }
 }

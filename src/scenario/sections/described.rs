@@ -398,6 +398,9 @@ pub struct Sensor {
     /// Direction in world axes of an acceleration, rad. Default 0: along x.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axis: Option<f64>,
+    /// What the column's numbers are multiplied by to be in the quantity's SI unit. Default 1.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub scale: f64,
     /// Standard deviation of the white noise, in the quantity's unit. Default 0: exact.
     #[serde(default)]
     pub std: f64,
@@ -407,6 +410,14 @@ pub struct Sensor {
     /// Corner of the zero-phase second-order low-pass, Hz. Default 0: not filtered.
     #[serde(default)]
     pub lowpass: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn is_one(scale: &f64) -> bool {
+    *scale == 1.0
 }
 
 /// A quantity that a sensor reads.

@@ -104,6 +104,12 @@ impl Mechanism {
         }
     }
 
+    /// Whether its recordings are read by `[[sensor]]`s: its file's own, or those that the template makes of
+    /// `[columns]`.
+    pub fn has_sensors(&self) -> bool {
+        matches!(self, Mechanism::Described(_) | Mechanism::Pendulum(_))
+    }
+
     /// The sections beside those of every machine that this one has a use for.
     pub(in crate::scenario) fn uses(&self, section: &str) -> bool {
         match section {
@@ -112,7 +118,10 @@ impl Mechanism {
                 !matches!(self, Mechanism::Pendulum(_) | Mechanism::DoublePendulum(_))
             }
             "sensors" => matches!(self, Mechanism::ThreeRpr(_)),
-            "columns" => matches!(self, Mechanism::DriveStage(_) | Mechanism::Pendulum(_)),
+            "columns" => matches!(
+                self,
+                Mechanism::DriveStage(_) | Mechanism::Pendulum(_) | Mechanism::Described(_)
+            ),
             _ => true,
         }
     }

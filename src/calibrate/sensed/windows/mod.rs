@@ -4,13 +4,15 @@
 //! runs into windows and fits the start in each; [`roll`] moves a machine along one; [`shooting`] fits values of
 //! effects, zeros of runs and starts together; [`sought`] says which values; [`fits`] goes from
 //! short windows to long ones, and [`eliminate`] leaves out what is not certain; [`score`] by how much predictions
-//! miss; [`outcome`] is the whole way, [`predict`] that of a prediction.
+//! miss; [`plausible`] refuses recordings that cannot be right; [`outcome`] is the whole way, [`predict`] that of
+//! a prediction.
 
 pub mod bench;
 pub mod eliminate;
 pub mod fits;
 pub mod inputs;
 pub mod outcome;
+pub mod plausible;
 pub mod pose;
 pub mod predict;
 pub mod report;

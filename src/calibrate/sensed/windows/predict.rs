@@ -2,6 +2,7 @@
 
 use super::bench::{Bench, suits};
 use super::outcome::{horizons, with};
+use super::plausible;
 use super::report::{
     HorizonErrors, RunZero, channel_errors, input_columns, pictures, predicted, remarks, run_zeros,
 };
@@ -92,10 +93,11 @@ pub fn prepare(
     if !suits(&parts) {
         return Ok(None);
     }
-    let recording = Recording::read(path, &parts.sensors, true);
+    let recording = Recording::read_with_time(path, &parts.sensors, true, model.time_column());
     let recording = recording.map_err(|error| CalibrateError::Input(vec![error.to_string()]))?;
     let duration = recording.duration();
     let bench = Bench::new(model, vec![recording])?;
+    refuse(plausible::wrong(model, &bench))?;
     let mut horizons = horizons(&bench);
     if let Some(from_s) = asked.from {
         horizons.iter_mut().for_each(|horizon| horizon.from_s = from_s);

@@ -209,8 +209,9 @@ pub fn sought(
     recordings: &[Recording],
     without: &[&str],
 ) -> Sought {
+    let known = declared.iter().map(|e| e.as_joint_friction().unwrap_or_else(|| e.clone()));
     let mut sought = Sought {
-        effects: declared.to_vec(),
+        effects: known.collect(),
         declared: declared.len(),
         places: Vec::new(),
         values: Vec::new(),

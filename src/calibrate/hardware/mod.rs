@@ -1,4 +1,4 @@
-//! Models against published recordings of real hardware: a driven slide and a pendulum, the two kinds of
+//! Models of published recordings of real hardware: a driven slide and a pendulum, the two kinds of
 //! joint that a 3-RPR is made of. The recordings are not part of this project; they are read from a
 //! folder of the user's.
 

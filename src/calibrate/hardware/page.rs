@@ -1,11 +1,12 @@
 //! The pages of the hardware studies.
 
 use super::{Table, emps, pendulum};
+use crate::calibrate::charts::{POINTS, thinned};
+use crate::calibrate::result::to_json;
 use crate::identify::Missing;
 use crate::identify::stage::Recording;
 use crate::report::{self, Curve, Panel, Part, Picture, Style, panels_svg};
-use crate::study::folder::Folder;
-use crate::study::run::{PAGE_FILE, RunError, refused, to_json};
+use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use serde_json::json;
 use std::fs;
 use std::path::PathBuf;
@@ -168,17 +169,16 @@ pub fn emps_page(
 /// Files that cannot be written.
 pub fn pendulum_page(
     found: &pendulum::Outcome,
-    recording: &pendulum::Recording,
     folder: Folder,
 ) -> Result<(String, PathBuf), RunError> {
     let lead = found.lead();
-    let panels: Vec<Panel> = (recording.val.iter().enumerate())
-        .map(|(i, window)| {
-            let curve = |k: usize| pendulum::deviation(&found.steps[k].tried.swinger, window);
-            let title = format!("Window {} of val", i + 1);
-            let curves = vec![("viscous", curve(0)), ("chosen", curve(found.chosen))];
-            panel(&title, "error (mrad)", curves)
-        })
+    let mrad = |step: &pendulum::Step| -> Vec<(f64, f64)> {
+        let points: Vec<_> = step.missed.iter().map(|(t, off)| (*t, 1e3 * off)).collect();
+        thinned(&points, POINTS)
+    };
+    let steps = [&found.declared].into_iter().chain(&found.steps);
+    let panels: Vec<Panel> = steps
+        .map(|step| panel(step.name, "error (mrad)", vec![("predicted - recorded", mrad(step))]))
         .collect();
     let page = Page {
         title: "A measured pendulum",
@@ -188,25 +188,22 @@ pub fn pendulum_page(
                 "errors",
                 "Errors of the angle, model by model",
                 found.table(),
-                "Root mean square over windows of 2.5 s side by side, in each of which angle and speed at \
-                 the start are fitted to the first 0.25 s. All models are fitted to id; of those that are not \
-                 certainly worse than the best (95 %, every other window of id by a model of the rest), the \
-                 one with fewest numbers is chosen. That rule was settled with val known: choosing \
-                 by the last third of id instead takes viscous friction alone, so that the choice of \
-                 model, unlike its numbers, is not independent of val.",
+                "Root mean square over windows of 2.5 s side by side, the start of each fitted through the model \
+                 to the first 0.25 s, the rest compared. All models are fitted to id. Inertia and the encoder's \
+                 zero are sought in all of them; what is not certain is left out.",
             ),
             table("carried", "For other swings of this pendulum", found.numbers(), ""),
         ],
         picture: picture(
             "deviation.svg",
             "Predicted less recorded angle",
-            "Each window of val, under the viscous and under the chosen model.",
+            "Windows of val, model by model.",
             &panels,
         )?,
         limits: &[
             "Nobody has measured a clearance in this joint: nothing here says that the model of joints \
              with clearance is right. It says that a revolute joint and its friction, simulated by the \
-             same engine, are those of a real one to the given error."
+             same equations, are those of a real one to the given error."
                 .to_owned(),
             "Dry friction found in large swings is less than what the smallest swings show: below half \
              a radian the amplitude falls a little faster than any of these models says."
