@@ -227,9 +227,12 @@ pub fn released(
     loop {
         let look = |values: &[f64]| missed(values, seconds);
         let Some(best) = least_squares(&look, &free, values.clone(), EFFORT, None) else { break };
-        values = best.values;
-        // What a model does not show at first is no reason to have started elsewhere later on.
-        if seconds >= recording.duration() || mean_square(&best.residual) > KEPT {
+        // What a model does not show is no reason to have started elsewhere.
+        let shown = mean_square(&best.residual) <= KEPT;
+        if shown || seconds == SEEN {
+            values = best.values;
+        }
+        if !shown || seconds >= recording.duration() {
             break;
         }
         seconds *= 2.0;
