@@ -5,7 +5,7 @@
 //! lie beside it. Two looks at one frequency tell a and b, and these what any other one would show.
 
 use super::fit::{Fit, Target};
-use super::problem::Segment;
+use super::problem::{Problem, Segment};
 use super::residual::Residuals;
 use super::start::machine;
 use super::thresholds::DYNAMICS_BAND;
@@ -42,7 +42,8 @@ pub(super) fn frequencies(
     amplitudes: &[&'static str],
 ) -> Vec<f64> {
     let of = |amplitude: &&str| -> Option<Vec<Parts>> {
-        target.on.iter().map(|on| parts(target, model, candidate, scan, amplitude, on)).collect()
+        let part = |on| parts(target.problem, &model.effects, candidate, scan, amplitude, on);
+        target.on.iter().map(part).collect()
     };
     let Some(parts) = amplitudes.iter().map(of).collect::<Option<Vec<_>>>() else {
         return Vec::new();
@@ -70,22 +71,22 @@ pub(super) fn frequencies(
 
 /// What one amplitude does on a segment; none where there is no such machine.
 fn parts(
-    target: &Target,
-    model: &Fit,
+    problem: &Problem,
+    model: &[Setting],
     candidate: &Setting,
     scan: Scan,
     amplitude: &str,
     segment: &Segment,
 ) -> Option<Parts> {
     let look = |values: &[(&str, f64)]| -> Option<Residuals> {
-        let run = &target.problem.runs[segment.run];
+        let run = &problem.runs[segment.run];
         let own = candidate.values().map(|(name, neutral)| {
             values.iter().find(|(known, _)| *known == name).map_or(neutral, |(_, value)| *value)
         });
         let own = candidate.with(&own.collect::<Vec<_>>());
-        let effects = [model.effects.as_slice(), &[own]].concat();
-        let machine = machine(&target.problem.rig, &effects, &run.recording).ok()?;
-        target.problem.residuals(&run.view, &machine, segment)
+        let effects = [model, &[own]].concat();
+        let machine = machine(&problem.rig, &effects, &run.recording).ok()?;
+        problem.residuals(&run.view, &machine, segment)
     };
     let unit = candidate.kind.parameter(amplitude).map_or(1.0, |parameter| parameter.step);
     let of = |size: f64, phase: f64| {
@@ -94,7 +95,7 @@ fn parts(
     let nothing = of(0.0, 0.0)?;
     let [first, later] = [0.0, FRAC_PI_2].map(|phase| of(unit, phase));
     let (first, later) = (first?, later?);
-    let run = &target.problem.runs[segment.run];
+    let run = &problem.runs[segment.run];
     let time = |row: usize| row as f64 * run.view.interval;
     let times: Vec<f64> = segment.rows.clone().step_by(run.view.stride).map(time).collect();
     let turned = |by: &dyn Fn(f64, f64, f64, f64) -> f64| {
@@ -147,4 +148,59 @@ fn wave(times: &[f64], (cosine, sine): (&Signal, &Signal), frequency: f64, later
         if later { b * cos - a * sin } else { a * cos + b * sin }
     });
     Signal { values: values.collect(), band: cosine.band }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::recording::Recording;
+    use super::*;
+    use crate::effects::{Target as On, named};
+    use crate::engine::StepControl;
+    use crate::model::parts_of;
+    use crate::scenario::Scenario;
+    use std::path::Path;
+
+    /// Two looks at one frequency tell what the effect itself does at another one: forces that go round, and a base that
+    /// shakes along a line.
+    #[test]
+    fn looks_at_one_frequency_tell_of_any_other() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar/planar-2");
+        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
+        let sensors = parts_of(&rig).unwrap().sensors;
+        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
+        let problem = Problem::new(rig, vec![recording], StepControl::Tolerance(1e-5)).unwrap();
+        let segment = Segment { run: 0, rows: problem.runs[0].view.rows() };
+        let (frequency, phase) = (7.3, 0.8);
+        for (kind, on, amplitude, grows) in [
+            ("unbalance", On::Body("coupler".to_owned()), "mass_radius_kg_m", 2),
+            ("base-vibration", On::Machine, "ax_m_s2", 0),
+        ] {
+            let kind = named(kind).unwrap();
+            let candidate = |size: f64| {
+                let values = [(amplitude, size), ("frequency_Hz", frequency), ("phase_rad", phase)];
+                Setting::on(kind, on.clone(), &values)
+            };
+            let scan = kind.scan.unwrap();
+            let parts = parts(&problem, &[], &candidate(0.0), scan, amplitude, &segment).unwrap();
+            let unit = kind.parameter(amplitude).unwrap().step;
+            let run = &problem.runs[0];
+            let [without, with] = [0.0, unit].map(|size| {
+                let machine = machine(&problem.rig, &[candidate(size)], &run.recording).unwrap();
+                problem.residuals(&run.view, &machine, &segment).unwrap().signals
+            });
+            let more = (frequency / LOOKED_AT).powi(grows);
+            let channels = parts.cosine.iter().zip(&parts.sine).zip(without.iter().zip(&with));
+            let (mut off, mut size) = (0.0f64, 0.0f64);
+            for (pair, (without, with)) in channels {
+                let [now, later] =
+                    [false, true].map(|later| wave(&parts.times, pair, frequency, later).values);
+                for i in 0..now.len() {
+                    let told = more * (now[i] * phase.cos() + later[i] * phase.sin());
+                    let shown = with.values[i] - without.values[i];
+                    (off, size) = (off + (told - shown).powi(2), size + shown.powi(2));
+                }
+            }
+            assert!(size > 0.0 && off < 1e-3 * size, "{}: {off:e} of {size:e}", kind.name);
+        }
+    }
 }

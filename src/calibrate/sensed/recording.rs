@@ -218,30 +218,23 @@ impl Recording {
 
     /// The recording as CSV, in the columns and units of its file; columns that no sensor has as they were.
     pub fn to_csv(&self, sensors: &[Sensor]) -> String {
-        use std::fmt::Write as _;
-        let mut text = self.time.column.clone();
         let present: Vec<usize> = (0..sensors.len()).filter(|&i| self.get(i).is_some()).collect();
-        // Writing to a string cannot fail.
-        for &i in &present {
-            let _ = write!(text, ",{}", sensors[i].column);
-        }
-        for (head, _) in self.ignored.iter().zip(&self.carried) {
-            let _ = write!(text, ",{head}");
-        }
-        text.push('\n');
+        let heads = present.iter().map(|&i| sensors[i].column.as_str());
+        let others = self.ignored.iter().zip(&self.carried).map(|(head, _)| head.as_str());
+        let mut text = csv::Writer::from_writer(Vec::new());
+        // Writing to memory cannot fail.
+        let _ =
+            text.write_record([self.time.column.as_str()].into_iter().chain(heads).chain(others));
         for row in 0..self.samples {
             let t = (self.start + row as f64 * self.interval) / self.time.scale;
-            let _ = write!(text, "{t:.6}");
-            for &i in &present {
+            let read = present.iter().map(|&i| {
                 let value = self.get(i).map_or(f64::NAN, |column| column[row] / sensors[i].factor);
-                let _ = write!(text, ",{value:.9}");
-            }
-            for cells in &self.carried {
-                let _ = write!(text, ",{}", cells[row]);
-            }
-            text.push('\n');
+                format!("{value:.9}")
+            });
+            let cells = self.carried.iter().map(|cells| cells[row].clone());
+            let _ = text.write_record([format!("{t:.6}")].into_iter().chain(read).chain(cells));
         }
-        text
+        String::from_utf8(text.into_inner().unwrap_or_default()).unwrap_or_default()
     }
 }
 
@@ -363,4 +356,31 @@ fn on_grid(times: &[f64], values: &[f64], interval: f64) -> Vec<f64> {
     let first = times[0];
     let rows = times.last().map_or(0, |last| ((last - first) / interval + 1e-6) as usize + 1);
     (0..rows).map(|row| spline.at(first + row as f64 * interval)[0]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::parts_of;
+    use crate::scenario::Scenario;
+
+    /// Cells of columns that no sensor has come back as they were; one with a comma in it moved all after it by a column.
+    #[test]
+    fn what_no_sensor_has_is_carried_whole() {
+        let text = include_str!("../../../assets/rigs-planar/planar-2/rig.toml");
+        let sensors = parts_of(&Scenario::from_text(text, "rig", &[]).unwrap()).unwrap().sensors;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.csv");
+        let mut rows = "t,q_O_cmd,\"a, \"\"note\"\"\",q_D\n".to_owned();
+        for i in 0..4 {
+            rows += &format!("0.00{i}000,0.500000000,\"left, {i}\",1.250000000\n");
+        }
+        std::fs::write(&path, &rows).unwrap();
+        let recording = Recording::read(&path, &sensors, false).unwrap();
+        std::fs::write(&path, recording.to_csv(&sensors)).unwrap();
+        let again = Recording::read(&path, &sensors, false).unwrap();
+        assert_eq!(again.ignored, recording.ignored);
+        assert_eq!(again.carried, recording.carried);
+        assert_eq!(again.carried[0][3], "left, 3");
+    }
 }
