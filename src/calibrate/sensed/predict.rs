@@ -144,7 +144,7 @@ impl Along<'_> {
     fn predicted(&self, machine: &Mechanism) -> Result<(Vec<Recording>, f64), CalibrateError> {
         let Self { model, recording, like } = *self;
         let control: StepControl = control(model);
-        let released = released(model, &[], recording, control)?;
+        let released = released(model, &[], recording, control)?.machine;
         let replicas = |from: &Mechanism, replicas: std::ops::Range<usize>| {
             let each = replicas.into_par_iter();
             each.map(|replica| record(from, control, like, replica as u64))

@@ -5,7 +5,7 @@ use super::estimate::View;
 use super::motions::Motions;
 use super::recording::Recording;
 use super::residual::{Residuals, residuals};
-use super::start::{StartError, machine, released, still};
+use super::start::{Released, StartError, let_go_at, machine, released, still};
 use super::{simulate, thresholds};
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::spectrum::transform;
@@ -80,7 +80,7 @@ pub struct Problem {
     simulations: AtomicUsize,
     motions: Motions,
     /// Machines as they were let go: the start of a free one costs more than a simulation.
-    released: Mutex<LruCache<String, Mechanism>>,
+    released: Mutex<LruCache<String, Released>>,
 }
 
 /// Why a method cannot go on.
@@ -173,7 +173,7 @@ impl Problem {
     /// An effect that the machine cannot take, a run that broke down.
     pub fn starts(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
         let start = |run: usize| -> Result<Start, Stopped> {
-            let machine = self.released(effects, run)?;
+            let machine = self.released(effects, run)?.machine;
             let still = still(&machine, self.control)?;
             Ok(Start { machine, still })
         };
@@ -181,7 +181,7 @@ impl Problem {
     }
 
     /// The machine with these effects as it was let go in run `index`.
-    fn released(&self, effects: &[Setting], index: usize) -> Result<Mechanism, Stopped> {
+    fn released(&self, effects: &[Setting], index: usize) -> Result<Released, Stopped> {
         let key = format!("{index} {:?} {effects:?}", self.rig.effects);
         let kept = || self.released.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(machine) = kept().get(&key) {
@@ -190,6 +190,22 @@ impl Problem {
         let machine = released(&self.rig, effects, &self.runs[index].recording, self.control)?;
         kept().put(key, machine.clone());
         Ok(machine)
+    }
+
+    /// The machine with the `drawn` effects where one with these effects was let go in run `index`: where that was is as
+    /// uncertain whatever their values, and costs more than a simulation to find.
+    fn let_go_like(
+        &self,
+        effects: &[Setting],
+        drawn: &[Setting],
+        index: usize,
+    ) -> Result<Mechanism, Stopped> {
+        let coordinates = self.released(effects, index)?.coordinates;
+        if coordinates.is_empty() {
+            return Ok(self.released(drawn, index)?.machine);
+        }
+        let recording = &self.runs[index].recording;
+        Ok(let_go_at(&self.rig, drawn, recording, &coordinates, self.control)?)
     }
 
     /// Noiseless recordings of a model that begins there, so many replicas of each run.
@@ -229,7 +245,7 @@ impl Problem {
                 let record =
                     |machine: &Mechanism| simulate::record(machine, self.control, like, replica);
                 Ok(match &about[replica as usize] {
-                    Some(effects) => record(&self.released(effects, run)?)?,
+                    Some(drawn) => record(&self.let_go_like(effects, drawn, run)?)?,
                     None => record(&starts[run].machine)?,
                 })
             })
@@ -248,7 +264,7 @@ impl Problem {
         until: usize,
     ) -> Result<Recording, Stopped> {
         let recording = &self.runs[index].recording;
-        let machine = self.released(effects, index)?;
+        let machine = self.released(effects, index)?.machine;
         // Filters see a little beyond the last row.
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
         self.simulations.fetch_add(1, Ordering::Relaxed);
@@ -284,7 +300,7 @@ impl Problem {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn let_go(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
-        let start = |run| Ok(Start { machine: self.released(effects, run)?, still: None });
+        let start = |run| Ok(Start { machine: self.released(effects, run)?.machine, still: None });
         (0..self.runs.len()).into_par_iter().map(start).collect()
     }
 

@@ -183,6 +183,15 @@ pub enum StartError {
     Halted(#[from] Halt),
 }
 
+/// A machine that was let go.
+#[derive(Clone, Debug)]
+pub struct Released {
+    /// The machine.
+    pub machine: Mechanism,
+    /// Coordinates in m or rad, at the first row, of the joints that its drives leave free and that held it there.
+    pub coordinates: Vec<f64>,
+}
+
 /// The machine of a rig with these effects as it was let go: a driven one at rest at its first commands, some
 /// time before the first row; one that drives leave free after it was held there, at the first row.
 ///
@@ -193,7 +202,7 @@ pub fn released(
     effects: &[Setting],
     recording: &Recording,
     control: StepControl,
-) -> Result<Mechanism, StartError> {
+) -> Result<Released, StartError> {
     let Closed { mut mechanism, held } = closed(rig, effects, recording, None)?;
     if held.is_empty() {
         for body in &mut mechanism.bodies {
@@ -201,12 +210,9 @@ pub fn released(
         }
         release(&mut mechanism, 0);
         mechanism.epoch = -LEAD;
-        return Ok(mechanism);
+        return Ok(Released { machine: mechanism, coordinates: Vec::new() });
     }
-    let let_go = |values: &[f64]| -> Result<Mechanism, StartError> {
-        let Closed { mechanism, held } = closed(rig, effects, recording, Some(values))?;
-        Ok(held_there(mechanism, held.len(), control)?)
-    };
+    let let_go = |values: &[f64]| let_go_at(rig, effects, recording, values, control);
     let missed = |values: &[f64], seconds: f64| -> Option<DVector<f64>> {
         let part = recording.first(seconds);
         let machine = let_go(values).ok()?;
@@ -237,7 +243,23 @@ pub fn released(
         }
         seconds *= 2.0;
     }
-    let_go(&values)
+    Ok(Released { machine: let_go(&values)?, coordinates: values })
+}
+
+/// The machine of a rig with these effects, let go at its first row with these coordinates (m or rad) of the joints that
+/// its drives leave free.
+///
+/// # Errors
+/// As of [`released`].
+pub fn let_go_at(
+    rig: &Scenario,
+    effects: &[Setting],
+    recording: &Recording,
+    coordinates: &[f64],
+    control: StepControl,
+) -> Result<Mechanism, StartError> {
+    let Closed { mechanism, held } = closed(rig, effects, recording, Some(coordinates))?;
+    Ok(held_there(mechanism, held.len(), control)?)
 }
 
 fn mean_square(left: &DVector<f64>) -> f64 {

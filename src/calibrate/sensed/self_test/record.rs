@@ -60,7 +60,8 @@ impl Bench {
         } else {
             like.clone()
         };
-        let machine = released(&self.rig, effects, &first, self.control).map_err(Stopped::from)?;
+        let released = released(&self.rig, effects, &first, self.control).map_err(Stopped::from)?;
+        let machine = released.machine;
         (0..replicas)
             .into_par_iter()
             .map(|replica| Ok(record(&machine, self.control, like, RECORDED + replica)?))
