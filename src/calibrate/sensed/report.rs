@@ -2,6 +2,7 @@
 
 use super::events::found::sentence;
 use super::events::picture::pictures as events_drawn;
+use super::held;
 use super::hypotheses::Tried;
 use super::left::Left;
 use super::limits::Limit;
@@ -83,8 +84,31 @@ pub struct Prepared {
     recordings: Vec<Recording>,
     /// How many of them, the first ones, values are fitted to.
     fits: usize,
-    /// Whether the machine is calibrated by windows.
-    by_windows: bool,
+    /// How.
+    way: Way,
+}
+
+/// How a machine is calibrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// Nothing holds it: by windows.
+    Windows,
+    /// Sampled controllers hold it: by what they ask of their drives.
+    Held,
+    /// By residuals in units of noise and simulations.
+    Residuals,
+}
+
+impl Way {
+    fn of(machine: &Mechanism) -> Self {
+        if suits(machine) {
+            Self::Windows
+        } else if held::bench::suits(machine) {
+            Self::Held
+        } else {
+            Self::Residuals
+        }
+    }
 }
 
 /// Reads recordings of a rig whose sensors its file describes, the first `fits` to calibrate on, the others to
@@ -102,9 +126,10 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     }
     refuse(wrong)?;
     let built: Mechanism = crate::model::parts_of(&rig)?;
-    let by_windows = suits(&built);
+    let way = Way::of(&built);
+    let by_windows = way == Way::Windows;
     let mut wrong: Vec<String> = Vec::new();
-    if !by_windows && !rig.effects.is_empty() {
+    if way == Way::Residuals && !rig.effects.is_empty() {
         let message = format!("holds {} effect(s)", rig.effects.len());
         let help =
             "calibrate starts from what a rig's maker declares: give it the rig without [[effect]]";
@@ -124,6 +149,8 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
             Err(error) => errors.push(error),
         }
     }
+    let implausible = |recording| held::plausible::wrong(&rig, &built, recording);
+    refuse(recordings.iter().flat_map(implausible).collect())?;
     errors.extend(recordings.iter().filter_map(Recording::wrong));
     for (i, one) in recordings.iter().enumerate() {
         for other in recordings[..i].iter().filter(|other| one.is_twin_of(other)) {
@@ -144,8 +171,10 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
         }
     }
     // One look serves all runs: it is through the sensors that all of them have.
+    let everywhere = |i: usize| recordings.iter().all(|r| r.get(i).is_some());
+    // What was told to one run alone is known of the others: nothing.
     let common: Vec<bool> =
-        (0..built.sensors.len()).map(|i| recordings.iter().all(|r| r.get(i).is_some())).collect();
+        (0..built.sensors.len()).map(|i| built.sensors[i].tells() || everywhere(i)).collect();
     for recording in &mut recordings {
         let columns = common
             .iter()
@@ -162,7 +191,7 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
             machine(&rig, &[], recording)?;
         }
     }
-    Ok(Prepared { rig, recordings, fits, by_windows })
+    Ok(Prepared { rig, recordings, fits, way })
 }
 
 /// A finished calibration.
@@ -195,13 +224,15 @@ pub fn into_folder(
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Calibrated, CalibrateError> {
-    if prepared.by_windows {
-        let Prepared { rig, recordings, fits, .. } = prepared;
-        return by_windows(&rig, recordings, fits, without, folder, tell);
+    let Prepared { rig, recordings, fits, way } = prepared;
+    match way {
+        Way::Windows => return by_windows(&rig, recordings, fits, without, folder, tell),
+        Way::Held => return held::report::into_folder(&rig, recordings, without, folder, tell),
+        Way::Residuals => {}
     }
     let started = Clock::now();
-    let control = control(&prepared.rig);
-    let mut problem = Problem::new(prepared.rig, prepared.recordings, control)?;
+    let control = control(&rig);
+    let mut problem = Problem::new(rig, recordings, control)?;
     let outcome = calibrate(&mut problem, without, tell)?;
     tell("drawing and writing");
     let mut pictures = page::pictures(&problem, &outcome).map_err(RunError::from)?;

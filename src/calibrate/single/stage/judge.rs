@@ -3,9 +3,9 @@
 
 use super::candidates::{Candidate, kind_of};
 use crate::calibrate::result::CalibrateError;
+use crate::calibrate::sensed::held::paired::Ratio;
 use crate::identify::Missing;
 use crate::identify::inverse::{Model, Term};
-use crate::identify::paired::Ratio;
 use crate::identify::stage::{Recording, halves, simulated_force, stage};
 use crate::mechanism::Mechanism;
 use std::ops::Range;

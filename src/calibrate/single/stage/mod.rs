@@ -7,7 +7,7 @@ mod reported;
 
 use super::calibration::{Found, Ranked};
 use crate::calibrate::result::CalibrateError;
-use crate::identify::paired::Ratio;
+use crate::calibrate::sensed::held::paired::Ratio;
 use crate::identify::stage::{Recording, Samples, cascade, first_length, stage};
 use crate::identify::{Missing, Recorded};
 use crate::scenario::Scenario;
