@@ -60,6 +60,9 @@ pub fn prepare(model: &Scenario, path: &Path) -> Result<Prepared, CalibrateError
     refuse(wrong)?;
     let recording = Recording::read_with_time(path, &machine.sensors, false, model.time_column());
     let recording = recording.map_err(|error| CalibrateError::Input(vec![error.to_string()]))?;
+    let columns = model.columns.as_ref();
+    let lacking = columns.and_then(|named| recording.lacks(&machine.sensors, named));
+    refuse(lacking.into_iter().collect())?;
     refuse(held::plausible::wrong(model, &machine, &recording))?;
     let mut machine = machine;
     if held::bench::suits(&machine) {

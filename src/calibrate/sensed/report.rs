@@ -145,12 +145,18 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     let mut errors: Vec<LogError> = Vec::new();
     for path in paths {
         match Recording::read_with_time(path, &built.sensors, by_windows, rig.time_column()) {
-            Ok(recording) => recordings.push(recording),
+            Ok(recording) => {
+                let columns = rig.columns.as_ref();
+                errors.extend(columns.and_then(|named| recording.lacks(&built.sensors, named)));
+                recordings.push(recording);
+            }
             Err(error) => errors.push(error),
         }
     }
     let implausible = |recording| held::plausible::wrong(&rig, &built, recording);
-    refuse(recordings.iter().flat_map(implausible).collect())?;
+    if errors.is_empty() {
+        refuse(recordings.iter().flat_map(implausible).collect())?;
+    }
     errors.extend(recordings.iter().filter_map(Recording::wrong));
     for (i, one) in recordings.iter().enumerate() {
         for other in recordings[..i].iter().filter(|other| one.is_twin_of(other)) {

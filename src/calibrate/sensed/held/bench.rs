@@ -37,7 +37,7 @@ pub struct Bench {
     pub rig: Scenario,
     /// The others, as declared.
     pub declared: Vec<Setting>,
-    /// The machine with the noise of its sensors.
+    /// The machine without what is sought.
     pub machine: Mechanism,
     /// What was recorded.
     pub runs: Vec<Run>,
@@ -81,8 +81,7 @@ impl Bench {
         let mut plain = rig.clone();
         let (declared, fixed): (Vec<_>, Vec<_>) = plain.effects.into_iter().partition(is_sought);
         plain.effects = fixed;
-        let mut built = machine(&plain, &[], &recordings[0])?;
-        noise::measured(&mut built.sensors, &recordings[0]);
+        let built = machine(&plain, &[], &recordings[0])?;
         let help = "add a [[sensor]] of quantity \"position\" for each freedom, and one of quantity \"output\" for \
                     each drive";
         let unknown = || {
@@ -154,7 +153,7 @@ impl Bench {
         let mut machine = machine(&self.rig, effects, &run.recording).ok()?;
         for drive in machine.actuators.iter_mut().filter(|_| self.at_once) {
             if let Drive::Sampled(cascade) = &mut drive.drive {
-                cascade.interval = 0.0;
+                (cascade.interval, cascade.lag) = (0.0, 0.0);
             }
         }
         let rows = 0..run.recording.samples;
@@ -252,6 +251,13 @@ impl Bench {
         let released =
             crate::calibrate::sensed::start::released(&self.rig, effects, recording, self.control)?;
         Ok(simulate::record(&released, self.control, recording, 0)?)
+    }
+
+    /// The machine with the noise that its sensors show in a run.
+    pub fn sensing(&self, run: usize) -> Mechanism {
+        let mut machine = self.machine.clone();
+        noise::measured(&mut machine.sensors, &self.runs[run].recording);
+        machine
     }
 
     /// Simulations so far.

@@ -5,7 +5,7 @@
 //! sides does not, so the filter belongs to the figure: one for all.
 
 use super::bench::Bench;
-use super::terms::Term;
+use super::terms::{Term, given};
 use crate::calibrate::report::Fitted;
 use crate::calibrate::sensed::thresholds::APART;
 use crate::effects::{Kind, Setting};
@@ -161,7 +161,7 @@ fn phase(kind: &Kind) -> Option<&'static str> {
 /// Whether a term is a value of an effect that others of it have made already.
 fn belongs(term: &Term, known: &Setting) -> bool {
     let same = |(name, value): (&'static str, f64)| {
-        Some(name) == phase(term.kind()) || known.value(name).is_none_or(|own| own == value)
+        Some(name) == phase(term.kind()) || given(known, name).is_none_or(|own| own == value)
     };
     known.kind.name == term.kind().name && known.target == *term.target() && term.fixed().all(same)
 }

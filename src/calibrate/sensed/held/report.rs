@@ -79,7 +79,7 @@ pub fn into_folder(
         let name = format!("predicted-{}.csv", stem_of(&run.recording.name));
         files.push((name, after.to_csv(&bench.machine.sensors)));
         let (before, after) = ([before], [after]);
-        listed.extend(errors::of_run(&bench.machine, &run.recording, role, &before, &after));
+        listed.extend(errors::of_run(&bench.sensing(index), &run.recording, role, &before, &after));
     }
     tell("drawing and writing");
     let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();

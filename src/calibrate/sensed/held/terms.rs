@@ -19,6 +19,9 @@ const LINEAR: &[(&str, &[&str])] = &[
     ("drive-lag", &["lag_s"]),
 ];
 
+/// A rate in m/s or rad/s that nobody measures.
+const SIGN: f64 = 1e-12;
+
 const FRICTION: [&str; 7] = [
     "viscous_Ns_m",
     "coulomb_N",
@@ -45,6 +48,11 @@ pub fn is_sought(effect: &Setting) -> bool {
     let bends = effect.kind.name == "screw-ripple"
         && effect.value("amplitude_m").is_some_and(|size| size != 0.0);
     !linear(effect.kind).is_empty() && !bends
+}
+
+/// A value that an effect was given.
+pub(super) fn given(effect: &Setting, name: &str) -> Option<f64> {
+    effect.values().find(|(own, _)| *own == name).map(|(_, value)| value)
 }
 
 /// One value of an effect, the others of which stay.
@@ -90,10 +98,17 @@ impl Term {
         self.effect.values().filter(|(name, _)| *name != self.sought)
     }
 
-    /// The effect with a small value, and that value.
+    /// The effect with a small value, and that value. Dry friction has the sign of the measured rate: how steep it is at
+    /// rest costs a simulation short steps, and says nothing along a motion.
     pub fn small(&self) -> (Setting, f64) {
         let step = self.kind().parameter(self.sought).map_or(1.0, |parameter| parameter.step);
-        (self.with(step), step)
+        let value = |(name, own): (&'static str, f64)| match name {
+            name if name == self.sought => step,
+            name if name.starts_with("velocity") => SIGN,
+            _ => own,
+        };
+        let values: Vec<f64> = self.effect.values().map(value).collect();
+        (self.effect.with(&values), step)
     }
 
     /// The effect with a value.
@@ -112,8 +127,8 @@ impl Term {
 
 /// Terms that a declared effect stands for, each with its declared value: what is not nothing.
 pub fn of_declared(bench: &Bench, effect: &Setting) -> Vec<(Term, f64)> {
-    let given = |name: &&&'static str| effect.value(name).is_some_and(|value| value != 0.0);
-    let own = || linear(effect.kind).iter().filter(given);
+    let there = |name: &&&'static str| given(effect, name).is_some_and(|value| value != 0.0);
+    let own = || linear(effect.kind).iter().filter(there);
     let fixed: Vec<(&'static str, f64)> =
         effect.values().filter(|(name, _)| !linear(effect.kind).contains(name)).collect();
     if let Some(scan) = effect.kind.scan {
@@ -195,7 +210,7 @@ impl Bench {
         let fixed = kind.and_then(|kind| {
             let parameter = kind.parameters.iter().find(|p| p.name.starts_with("velocity"))?;
             let own = |e: &&Setting| e.kind.name == kind.name && e.target == target;
-            let declared = self.declared.iter().find(own).and_then(|e| e.value(parameter.name));
+            let declared = self.declared.iter().find(own).and_then(|e| given(e, parameter.name));
             let rate = declared.or_else(|| Some(parameter.clamped(self.steep(&target)?)));
             Some((parameter.name, rate?))
         });
