@@ -359,7 +359,12 @@ fn measured_machines_are_calibrated_and_predicted() {
     let report = json(&place, "stage/report.json");
     assert_eq!(report["verdict"], "unexplained");
     let [before, after, _] = error(&report, "emps_pulses.csv", "u_V");
-    assert!(after < 0.1 * before, "{before} {after}");
+    assert!(after < 0.083 * before, "{before} {after}");
+    let found: Vec<&Value> = report["effects"].as_array().expect("effects").iter().collect();
+    let kinds: Vec<&str> = found.iter().filter_map(|effect| effect["kind"].as_str()).collect();
+    for kind in ["actuator-friction", "film-friction", "drive-lag"] {
+        assert!(kinds.contains(&kind), "{kind} in {kinds:?}");
+    }
     // The whole decay, from its first quarter second.
     let line = format!("predict arm.toml --data {} --window 54.9 --fit 0.25", swings.display());
     println!("{}", place.good(&format!("{line} --out arm")));

@@ -68,6 +68,34 @@ impl Judge<'_> {
         Ok(left)
     }
 
+    /// The model with its values moved by what looks get wrong: a simulation of it is looked at like the recording, and by
+    /// as much as the values that it shows are off, those of the recording are taken to be. As it was where that makes no
+    /// sense or misses more of the first run.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub fn corrected(&self, model: Model) -> Result<Model, Broken> {
+        let bench = self.bench;
+        let simulated = bench.simulated(0, &model.settings())?;
+        let missed = squares(&bench.missed(0, &simulated));
+        let seen = Bench::new(&bench.rig, vec![simulated], bench.control, false).ok();
+        let seen = seen.and_then(|seen| {
+            seen.look_at(0, &model.names());
+            Model::fit(&seen, 0, seen.rows(0), &model.names(), &[])
+        });
+        let Some(seen) = seen else { return Ok(model) };
+        let moved = |((term, value), (_, seen)): (&(Term, f64), &(Term, f64))| {
+            (term.clone(), 2.0 * value - seen)
+        };
+        let corrected = Model { terms: model.terms.iter().zip(&seen.terms).map(moved).collect() };
+        if !corrected.is_physical() {
+            return Ok(model);
+        }
+        let simulated = bench.simulated(0, &corrected.settings())?;
+        let better = squares(&bench.missed(0, &simulated)) < missed;
+        Ok(if better { corrected } else { model })
+    }
+
     /// Takes out, latest first, effects that `terms` have beside those of a `base` and without which the simulated
     /// machine is neither certainly worse stretch by stretch nor worse as a whole: the inverse model knows the sign of
     /// the speed, the simulation what the machine does around it. Returns the terms that went.
@@ -111,7 +139,7 @@ impl Judge<'_> {
                 all.push(term.clone());
             }
         }
-        self.bench.look_at(&all);
+        self.bench.look_at(0, &all);
         let scanned =
             |kind: &str| ["film-friction", "stribeck-friction", "screw-ripple"].contains(&kind);
         let mut best: Vec<(f64, Candidate)> = Vec::new();

@@ -116,7 +116,8 @@ pub fn search(bench: &Bench, without: &[&str], tell: &dyn Fn(&str)) -> Result<Ou
         bench.declared.iter().flat_map(|effect| of_declared(bench, effect)).collect();
     let is_declared = |term: &Term| declared.iter().any(|(own, _)| own == term);
     let kept = |term: &Term| is_declared(term) || added.iter().any(|(own, _)| own == term);
-    let (model, deviations) = certain(bench, &judge, terms, &kept).ok_or_else(unfit)?;
+    tell("looking at what was found like at the recording");
+    let (model, deviations) = certain(&judge, terms, &kept)?.ok_or_else(unfit)?;
     // Values that are not certainly better than the declared ones stay as declared.
     tell("simulating what was found and what is declared");
     let as_declared = judge.simulated(&bench.declared)?;
@@ -219,22 +220,23 @@ fn best(
 }
 
 /// The model with these terms and the deviations of its values, without those that are neither `kept` nor certain: what
-/// every machine has may be as it is declared.
+/// every machine has may be as it is declared. None where the recording does not tell.
 fn certain(
-    bench: &Bench,
     judge: &Judge,
     mut terms: Vec<Term>,
     kept: &dyn Fn(&Term) -> bool,
-) -> Option<(Model, Vec<f64>)> {
+) -> Result<Option<(Model, Vec<f64>)>, Broken> {
+    let bench = judge.bench;
     loop {
-        let model = judge.fitted(&terms)?;
+        let Some(model) = judge.fitted(&terms) else { return Ok(None) };
         let deviations = model.deviations(bench, 0, &bench.stretches(0, STRETCH));
+        let model = judge.corrected(model)?;
         let sizes = model.terms.iter().zip(&deviations).map(|((_, value), std)| value.abs() / std);
         let least = sizes
             .enumerate()
             .filter(|(i, size)| !kept(&terms[*i]) && *size < BETTER * 1.96)
             .min_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((least, _)) = least else { return Some((model, deviations)) };
+        let Some((least, _)) = least else { return Ok(Some((model, deviations))) };
         terms.remove(least);
     }
 }
