@@ -156,10 +156,7 @@ mod tests {
             let middle = CASCADE.force(&held, (k as f64 + 0.5) * 1e-3);
             let expected = 0.5 * (told[k] + told[k + 1]);
             largest = largest.max(middle.abs());
-            assert!(
-                k < 20 || (middle - expected).abs() < 0.5,
-                "{k}: {middle} {expected}"
-            );
+            assert!(k < 20 || (middle - expected).abs() < 0.5, "{k}: {middle} {expected}");
         }
         assert!(largest > 200.0);
     }

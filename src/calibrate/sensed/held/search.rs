@@ -126,19 +126,29 @@ pub fn search(bench: &Bench, without: &[&str], tell: &dyn Fn(&str)) -> Result<Ou
         let effects = Vec::new();
         return Ok(Outcome { effects, lacking: Vec::new(), tried });
     }
+    let (effects, lacking) = reported(&model, &deviations, &added, &is_declared);
+    Ok(Outcome { effects, lacking, tried })
+}
+
+/// A model's effects with what they rest on, and the names of those that the rig does not declare, or not so.
+fn reported(
+    model: &Model,
+    deviations: &[f64],
+    added: &[(Term, String)],
+    is_declared: &dyn Fn(&Term) -> bool,
+) -> (Vec<Found>, Vec<String>) {
     let mut found = Vec::new();
-    let mut lacking: Vec<String> = Vec::new();
-    for (effect, params) in model.effects(&deviations) {
+    let mut lacking = Vec::new();
+    for (effect, params) in model.effects(deviations) {
         let of =
-            |term: &&Term| term.kind().name == effect.kind.name && *term.target() == effect.target;
+            |term: &Term| term.kind().name == effect.kind.name && *term.target() == effect.target;
         let mut reasons: Vec<&str> = Vec::new();
-        for (_, reason) in added.iter().filter(|(term, _)| of(&term)) {
+        for (_, reason) in added.iter().filter(|(term, _)| of(term)) {
             if !reasons.contains(&reason.as_str()) {
                 reasons.push(reason);
             }
         }
-        let own = model.terms.iter().filter(|(term, _)| of(&term));
-        let known = own.clone().any(|(term, _)| is_declared(term));
+        let known = model.terms.iter().any(|(term, _)| of(term) && is_declared(term));
         let evidence = match (reasons.is_empty(), known) {
             (false, _) => reasons.join("; "),
             (true, true) => "is declared".to_owned(),
@@ -147,16 +157,16 @@ pub fn search(bench: &Bench, without: &[&str], tell: &dyn Fn(&str)) -> Result<Ou
         if !reasons.is_empty() || !known {
             lacking.push(effect.to_string());
         }
+        // What was scanned has no interval of its own.
         let scanned = effect.values().filter(|(name, value)| {
             let fitted = params.iter().any(|(own, _)| own == name);
             !fitted && !name.starts_with("velocity") && *value != 0.0
         });
-        // What was scanned has no interval of its own.
         let scanned = scanned.map(|(name, value)| (name, Fitted::new(value, f64::NAN)));
         let params = params.iter().copied().chain(scanned).collect();
         found.push(Found { effect: effect.clone(), params, evidence });
     }
-    Ok(Outcome { effects: found, lacking, tried })
+    (found, lacking)
 }
 
 /// A candidate that is taken, what it leaves, and how much better that is.

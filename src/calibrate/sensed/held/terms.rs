@@ -268,57 +268,18 @@ impl Bench {
     /// Everything that can be added to a model with these terms, but for kinds `without`. Forms that differ in a number
     /// only follow each other.
     pub fn candidates(&self, terms: &[Term], without: &[&str]) -> Vec<Candidate> {
-        let mut found: Vec<Candidate> = Vec::new();
-        let mut add = |what: String, own: Vec<Term>, others: &[Term]| {
-            let Some(first) = own.first() else { return };
-            let (kind, target) = (first.kind(), first.target().clone());
-            if !without.contains(&kind.name) {
-                found.push(Candidate { kind, target, what, terms: [others, &own].concat() });
-            }
-        };
+        let mut forms: Vec<Form> = Vec::new();
         for (name, joint) in self.joints() {
             let Some(rate) = self.rate(joint) else { continue };
-            let at = |term: &Term| term.target().names().contains(&name);
-            let has = |sought: &[&str]| terms.iter().any(|t| at(t) && sought.contains(&t.sought));
-            let is = |kind: &str| terms.iter().any(|t| at(t) && t.kind().name == kind);
-            if let JointIndex::Revolute(_) = joint {
-                if !has(&["coulomb"]) {
-                    add("dry friction".to_owned(), self.friction(&name, &["coulomb"]), terms);
-                }
-                continue;
-            }
-            let (ways, dry) = (has(&WAYS), has(&["coulomb_N", "coulomb_pos_N", "coulomb_neg_N"]));
-            if !ways && !dry {
-                add("dry friction".to_owned(), self.friction(&name, &["coulomb_N"]), terms);
-            }
-            if !ways && !has(&["offset_N"]) {
-                let offset = self.friction(&name, &["offset_N"]);
-                add("an offset of the force".to_owned(), offset, terms);
-            }
-            if !ways && dry {
-                let symmetric = |t: &&Term| {
-                    !(at(t) && FRICTION.contains(&t.sought) && t.kind().name == "actuator-friction")
-                };
-                let others: Vec<Term> = terms.iter().filter(symmetric).cloned().collect();
-                let what = "friction that differs with direction".to_owned();
-                add(what, self.friction(&name, &WAYS), &others);
-            }
-            // Departures from dry friction near rest; by themselves they would stand for all of it.
-            for (kind, does) in [("film-friction", "builds up"), ("stribeck-friction", "falls")] {
-                for share in BUILDS_UP.into_iter().filter(|_| dry && !is(kind)) {
-                    let speed = share * rate;
-                    let what = format!("friction that {does} over {:.3} mm/s", 1e3 * speed);
-                    add(what, self.over(kind, &name, speed), terms);
-                }
-            }
-            let scan = named("screw-ripple").and_then(|kind| kind.scan).map(|scan| scan.range);
-            if let (false, Some(Tried::WaveNumbers([first, last, step]))) =
-                (is("screw-ripple"), scan)
-            {
-                let count = ((last - first) / step).floor() as usize;
-                for pitch in (0..=count).map(|k| 1.0 / (first + step * k as f64)) {
-                    let what = format!("ripple of a screw of {:.3} mm", 1e3 * pitch);
-                    add(what, self.ripple(&name, pitch), terms);
+            match joint {
+                JointIndex::Prismatic(_) => forms.extend(self.of_slide(&name, rate, terms)),
+                JointIndex::Revolute(_) => {
+                    let dry =
+                        |t: &Term| t.target().names().contains(&name) && t.sought == "coulomb";
+                    if !terms.iter().any(dry) {
+                        let dry = self.friction(&name, &["coulomb"]);
+                        forms.push(("dry friction".to_owned(), dry, terms.to_vec()));
+                    }
                 }
             }
         }
@@ -327,9 +288,59 @@ impl Bench {
             let is = |t: &Term| *t.target() == target && t.kind().name == "air-drag";
             if let (false, Some(kind)) = (terms.iter().any(is), named("air-drag")) {
                 let drag = Term::new(kind, target, "force_Ns2_m2", &[]);
-                add("drag with the square of the speed".to_owned(), vec![drag], terms);
+                let what = "drag with the square of the speed".to_owned();
+                forms.push((what, vec![drag], terms.to_vec()));
             }
         }
-        found
+        let candidate = |(what, own, others): Form| {
+            let first = own.first()?;
+            let (kind, target) = (first.kind(), first.target().clone());
+            let terms = [others, own].concat();
+            (!without.contains(&kind.name)).then_some(Candidate { kind, target, what, terms })
+        };
+        forms.into_iter().filter_map(candidate).collect()
+    }
+
+    /// The same of a prismatic joint that moves at some rate (m/s, root mean square).
+    fn of_slide(&self, name: &str, rate: f64, terms: &[Term]) -> Vec<Form> {
+        let at = |term: &Term| term.target().names().iter().any(|joint| joint == name);
+        let has = |sought: &[&str]| terms.iter().any(|t| at(t) && sought.contains(&t.sought));
+        let is = |kind: &str| terms.iter().any(|t| at(t) && t.kind().name == kind);
+        let mut forms: Vec<Form> = Vec::new();
+        let mut add =
+            |what: &str, own: Vec<Term>| forms.push((what.to_owned(), own, terms.to_vec()));
+        let (ways, dry) = (has(&WAYS), has(&["coulomb_N", "coulomb_pos_N", "coulomb_neg_N"]));
+        if !ways && !dry {
+            add("dry friction", self.friction(name, &["coulomb_N"]));
+        }
+        if !ways && !has(&["offset_N"]) {
+            add("an offset of the force", self.friction(name, &["offset_N"]));
+        }
+        // Departures from dry friction near rest; by themselves they would stand for all of it.
+        for (kind, does) in [("film-friction", "builds up"), ("stribeck-friction", "falls")] {
+            for share in BUILDS_UP.into_iter().filter(|_| dry && !is(kind)) {
+                let speed = share * rate;
+                let what = format!("friction that {does} over {:.3} mm/s", 1e3 * speed);
+                add(&what, self.over(kind, name, speed));
+            }
+        }
+        let scan = named("screw-ripple").and_then(|kind| kind.scan).map(|scan| scan.range);
+        if let (false, Some(Tried::WaveNumbers([first, last, step]))) = (is("screw-ripple"), scan) {
+            let count = ((last - first) / step).floor() as usize;
+            for pitch in (0..=count).map(|k| 1.0 / (first + step * k as f64)) {
+                let what = format!("ripple of a screw of {:.3} mm", 1e3 * pitch);
+                add(&what, self.ripple(name, pitch));
+            }
+        }
+        if !ways && dry {
+            let slides = |t: &Term| at(t) && t.kind().name == "actuator-friction";
+            let others = terms.iter().filter(|t| !slides(t)).cloned().collect();
+            let what = "friction that differs with direction".to_owned();
+            forms.push((what, self.friction(name, &WAYS), others));
+        }
+        forms
     }
 }
+
+/// A form of an effect in words, its terms, and the terms that stay beside it.
+type Form = (String, Vec<Term>, Vec<Term>);
