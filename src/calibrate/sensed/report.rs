@@ -27,7 +27,7 @@ use crate::calibrate::result::{
 };
 use crate::engine::StepControl;
 use crate::measure::log::LogError;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, Reads};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError};
@@ -178,9 +178,9 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     }
     // One look serves all runs: it is through the sensors that all of them have.
     let everywhere = |i: usize| recordings.iter().all(|r| r.get(i).is_some());
-    // What was told to one run alone is known of the others: nothing.
-    let common: Vec<bool> =
-        (0..built.sensors.len()).map(|i| built.sensors[i].tells() || everywhere(i)).collect();
+    // What was added to outputs in one run alone is known of the others: nothing was.
+    let added = |i: usize| matches!(built.sensors[i].reads, Reads::Added(_));
+    let common: Vec<bool> = (0..built.sensors.len()).map(|i| added(i) || everywhere(i)).collect();
     for recording in &mut recordings {
         let columns = common
             .iter()
