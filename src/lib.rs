@@ -17,7 +17,6 @@
 //! | [`scenario`] | the TOML file, validated |
 //! | [`model`] | scenario → bodies, joints, drives → a machine put together |
 //! | [`simulate`] | scenario → mechanism → samples and summary |
-//! | [`identify`] | parameters of one joint from a recording of it alone |
 //! | [`report`] | pictures and the page, from plain data |
 //! | [`study`] | what users come for: a run and its files, sweeps |
 //! | [`calibrate`] | what a declared model lacks, by recorded runs of the machine |
@@ -30,7 +29,6 @@ pub mod cli;
 pub mod contact;
 pub mod effects;
 pub mod engine;
-pub mod identify;
 pub mod measure;
 pub mod mechanism;
 pub mod model;

@@ -4,16 +4,14 @@
 mod cli_common;
 
 use cli_common::Place;
+use freeplay::calibrate::sensed::{recording::Recording, simulate::record, start::released};
 use freeplay::engine::{Schedule, StepControl, run};
-use freeplay::identify::stage;
-use freeplay::measure::log::{Channel, Log};
+use freeplay::mechanism::Drive;
 use freeplay::model::assemble;
 use freeplay::scenario::Scenario;
-use freeplay::simulate::started;
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::fmt::Write as _;
-use std::sync::Arc;
 
 const STAGE: &str = include_str!("../assets/drive-stage-declared.toml");
 const ARM: &str = include_str!("../assets/pendulum-declared.toml");
@@ -44,14 +42,17 @@ fn stage_rows(sets: &[&str], seconds: f64, shift: f64) -> Vec<[f64; 5]> {
     let command: Vec<f64> = (0..samples).map(|i| reference(t(i))).collect();
     let pulse = |i: usize| if (i / 500) % 4 == 3 { 1.0 } else { 0.0 };
     let added: Vec<f64> = (0..samples).map(pulse).collect();
-    let channels = vec![(Channel::Command(0), command.clone()), (Channel::Added(0), added.clone())];
-    let log = Log::new("made", 0.0, 1e-3, channels);
-    let mechanism =
-        started(&model, [command[0], 0.0], Arc::new(stage::Samples::of(&log))).expect("ok");
-    let rows = stage::simulate(&mechanism, StepControl::Fixed(2e-4), &log).expect("runs");
-    let seen: Vec<f64> = rows.iter().enumerate().map(|(i, r)| r[0] + 1e-8 * noise(i)).collect();
-    let cascade = stage::cascade(&model).expect("sampled");
-    let force = stage::controller_force(&cascade, &log, &seen);
+    // In the order of the template's sensors; it begins at its first command.
+    let length = vec![command[0]; samples];
+    let columns = vec![Some(command.clone()), Some(length), None, Some(added.clone())];
+    let told = Recording::of("made", 1e-3, samples, columns);
+    let control = StepControl::Fixed(2e-4);
+    let mechanism = released(&model, &[], &told, control).expect("a stage").machine;
+    let rows = record(&mechanism, control, &told, 0).expect("runs");
+    let lengths = rows.get(1).expect("lengths").iter().enumerate();
+    let seen: Vec<f64> = lengths.map(|(i, q)| q + 1e-8 * noise(i)).collect();
+    let Drive::Sampled(cascade) = mechanism.actuators[0].drive else { panic!("sampled") };
+    let force = cascade.outputs(&command, &seen, Some(&added));
     (0..samples).map(|i| [t(i), command[i], seen[i], force[i] / GAIN, added[i]]).collect()
 }
 
@@ -112,33 +113,39 @@ fn a_stage_is_predicted_in_the_recordings_own_columns_and_units() {
     );
     place.write("model.toml", &scenario(&own, &[HIDDEN]).to_toml());
     let rows = stage_rows(&[HIDDEN], 6.0, 0.0);
-    let mut text = String::from("t_s,note,u_mV,weg_mm,q_ref_m,pulse_V\n");
+    let mut text = String::from("t_s,q_ref_m,weg_mm,u_mV,pulse_V,note\n");
     for [t, reference, q, u, pulse] in &rows {
-        let _ = writeln!(text, "{t:.3},x,{:.5},{:.7},{reference:.9},{pulse}", 1e3 * u, 1e3 * q);
+        let _ = writeln!(text, "{t:.3},{reference:.9},{:.7},{:.5},{pulse},x", 1e3 * q, 1e3 * u);
     }
     place.write("run.csv", &text);
     let said = place.good("predict model.toml --data run.csv --out out");
-    assert!(said.contains("left as they are: note"), "{said}");
+    assert!(said.contains("no [[sensor]] has: note"), "{said}");
     let predicted = place.read("out/predicted.csv");
     let (before, after): (Vec<_>, Vec<_>) = (text.lines().collect(), predicted.lines().collect());
     assert_eq!((before[0], before.len()), (after[0], after.len()));
     for (a, b) in before.iter().zip(&after).skip(1) {
         let [a, b] = [a, b].map(|line| line.split(',').collect::<Vec<_>>());
-        assert_eq!([a[0], a[1], a[4], a[5]], [b[0], b[1], b[4], b[5]]);
         let off =
             |k: usize| a[k].parse::<f64>().expect("number") - b[k].parse::<f64>().expect("number");
+        assert_eq!((a[1], a[5], off(0), off(4)), (b[1], b[5], 0.0, 0.0));
         // Of 10 V and 100 mm.
-        assert!(off(2).abs() < 20.0 && off(3).abs() < 1e-3, "{a:?} {b:?}");
+        assert!(off(3).abs() < 20.0 && off(2).abs() < 1e-3, "{a:?} {b:?}");
     }
     let result = json(&place, "out/errors.json");
-    let [without, with, floor] = error(&result, "run.csv", "F1");
+    let [without, with, floor] = error(&result, "run.csv", "u_mV");
     assert!(with < 0.02 * without && with < 3.0 * floor, "{without} {with} {floor}");
     let page = place.read("out/index.html");
-    assert!(page.contains("drive stage") && !page.contains("platform"));
-    for file in ["force-run.svg", "position-run.svg"] {
+    assert!(page.contains("drive-stage-declared") && !page.contains("platform"));
+    for (file, parts) in [
+        ("signals-1.svg", ["measured", "predicted"]),
+        ("missed-1.svg", ["without effects", "predicted"]),
+    ] {
         let picture = place.read(&format!("out/{file}"));
-        for part in ["\nmeasured\n", "\npredicted\n", "\nMeasured − model\n"] {
-            assert!(picture.contains(part) && page.contains(file), "{file}: {part}");
+        for part in parts {
+            assert!(
+                picture.contains(&format!("\n{part}\n")) && page.contains(file),
+                "{file}: {part}"
+            );
         }
     }
 }
@@ -211,14 +218,14 @@ fn what_a_stage_lacks_is_found_and_judged_on_another_run() {
         let found = effects[0]["params"][name]["value"].as_f64().expect("value");
         assert!((found - value).abs() < off, "{name}: {found}");
     }
-    let [before, after, _] = error(&report, "b.csv", "F1");
+    let [before, after, _] = error(&report, "b.csv", "u_V");
     assert!(after < 0.02 * before, "{before} {after}");
     assert!(["explained", "unexplained"].map(Value::from).contains(&report["verdict"]));
     for file in ["index.html", "calibrated.toml", "predicted-a.csv", "predicted-b.csv"] {
         assert!(!place.read(&format!("out/{file}")).is_empty());
     }
     place.good("predict out/calibrated.toml --data b.csv --out again --quiet");
-    let [_, again, _] = error(&json(&place, "again/errors.json"), "b.csv", "F1");
+    let [_, again, _] = error(&json(&place, "again/errors.json"), "b.csv", "u_V");
     assert!((again / after - 1.0).abs() < 1e-6);
     place.good("run out/calibrated.toml --duration 0.5 --out run --quiet");
 }
@@ -269,8 +276,8 @@ fn recordings_that_cannot_be_right_are_refused() {
     let rows = stage_rows(&[HIDDEN], 4.0, 0.0);
     let good = stage_csv(&rows);
     let other = |head: &str, with: &str| good.replacen(head, with, 1);
-    refused("stage.toml", &other("q_ref_m", "q_soll"), &["columns.q1_cmd", "q_soll"]);
-    refused("stage.toml", &other("u_V", "u"), &["run.csv:1", "columns.F1", "the file has"]);
+    refused("stage.toml", &other("q_ref_m", "q_soll"), &["run.csv:1", "no column `q_ref_m`"]);
+    refused("stage.toml", &other("u_V", "u"), &["run.csv:1", "u_V", "the file has"]);
     let scaled = |factors: [f64; 5]| -> String {
         let row = |row: &[f64; 5]| std::array::from_fn(|k| row[k] * factors[k]);
         stage_csv(&rows.iter().map(row).collect::<Vec<_>>())
@@ -279,7 +286,7 @@ fn recordings_that_cannot_be_right_are_refused() {
     refused("stage.toml", &mm, &["run.csv", "q_ref_m", "q_m", "scale = 0.001"]);
     refused("stage.toml", &scaled([1.0, 1.0, 1e3, 1.0, 1.0]), &["columns.q1 ", "scale = 0.001"]);
     refused("stage.toml", &scaled([1.0, 1.0, 1.0, 1e3, 1.0]), &["columns.F1", "scale = 0.0351"]);
-    refused("stage.toml", &scaled([1e3, 1.0, 1.0, 1.0, 1.0]), &["every 1.0000 s", "columns.t"]);
+    refused("stage.toml", &scaled([1e3, 1.0, 1.0, 1.0, 1.0]), &["every 1.0000", "columns.t"]);
 
     // Two runs put together: at another place, and at the same place with another speed.
     let jump: Vec<[f64; 5]> = (0..3000).map(|i| rows[if i < 1500 { i } else { i + 700 }]).collect();
@@ -351,8 +358,13 @@ fn measured_machines_are_calibrated_and_predicted() {
     println!("{}", place.good(&line));
     let report = json(&place, "stage/report.json");
     assert_eq!(report["verdict"], "unexplained");
-    let [before, after, _] = error(&report, "emps_pulses.csv", "F1");
-    assert!(after < 0.1 * before, "{before} {after}");
+    let [before, after, _] = error(&report, "emps_pulses.csv", "u_V");
+    assert!(after < 0.083 * before, "{before} {after}");
+    let found: Vec<&Value> = report["effects"].as_array().expect("effects").iter().collect();
+    let kinds: Vec<&str> = found.iter().filter_map(|effect| effect["kind"].as_str()).collect();
+    for kind in ["actuator-friction", "film-friction", "drive-lag"] {
+        assert!(kinds.contains(&kind), "{kind} in {kinds:?}");
+    }
     // The whole decay, from its first quarter second.
     let line = format!("predict arm.toml --data {} --window 54.9 --fit 0.25", swings.display());
     println!("{}", place.good(&format!("{line} --out arm")));

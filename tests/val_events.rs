@@ -255,7 +255,7 @@ fn blows_and_loads_in_simulated_recordings_are_found() {
         let hidden = Setting::on(kind, Target::Body(body.to_owned()), &values);
         let sensors = machine(&rig, &[], &runs[0]).expect("a machine").sensors;
         let simulate = |run: &Recording, effects: &[Setting], seed| {
-            let machine = released(&rig, effects, run, CONTROL).expect("a start");
+            let machine = released(&rig, effects, run, CONTROL).expect("a start").machine;
             with_noise(&record(&machine, CONTROL, run, 7).expect("a run"), &sensors, seed)
         };
         let a = simulate(&runs[0], std::slice::from_ref(&hidden), 11);

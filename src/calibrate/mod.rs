@@ -33,7 +33,6 @@ pub mod search;
 pub mod self_test;
 pub mod sensed;
 pub mod settle;
-pub mod single;
 pub mod spectrum;
 pub mod start;
 pub mod unnamed;

@@ -8,12 +8,11 @@ use crate::calibrate::errors::ChannelError;
 use crate::calibrate::outcome::MOST;
 use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare, refuse};
-use crate::calibrate::single::{self, Adjusted};
 use crate::calibrate::{plausibility, quantity, recording, sensed};
 use crate::effects::{ALL, named};
 use crate::measure::spelling::nearest;
 use crate::report::{known_to, number};
-use crate::scenario::{Mechanism, Scenario};
+use crate::scenario::Scenario;
 use clap::Args;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -107,9 +106,6 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
             "--data: this machine takes one run to calibrate on; give the others as --validate";
         return Err(Failure::Input(vec![message.to_owned()]));
     }
-    if let Mechanism::DriveStage(_) = rig.mechanism {
-        return drive_stage(arguments, rig, &paths, &without);
-    }
     let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
     if !recordings.iter().all(plausibility::is_complete) {
         refuse(plausibility::incomplete(&rig, &recordings))?;
@@ -126,7 +122,6 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         scenario_name: &report.provenance.scenario_name,
         summary: &report.summary,
         effects: &report.effects,
-        parameters: &[],
         errors: &report.errors,
         simulated: format!("{} simulations in ", report.simulations),
         seconds: report.wall_s,
@@ -153,7 +148,6 @@ fn any_mechanism(
         scenario_name: &report.provenance.scenario_name,
         summary: &report.summary,
         effects: &report.effects,
-        parameters: &[],
         errors: &report.errors,
         simulated: match report.windows {
             Some(_) => String::new(),
@@ -165,39 +159,11 @@ fn any_mechanism(
     Ok(arguments.print.result(&calibrated.json, || text(&shown))?)
 }
 
-/// The same of a drive stage, whose recordings have the columns that `[columns]` names.
-fn drive_stage(
-    arguments: &Arguments,
-    rig: Scenario,
-    paths: &[&Path],
-    without: &[&'static str],
-) -> Result<(), Failure> {
-    let name = rig.name.clone();
-    let prepared = single::prepare(rig, paths)?;
-    let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
-    let calibrated = Spinner::during(arguments.print.quiet, |tell| {
-        single::into_folder(&prepared, without, folder, tell)
-    })?;
-    let report = &calibrated.report;
-    let shown = Shown {
-        scenario_name: &report.provenance.scenario_name,
-        summary: &report.summary,
-        effects: &report.effects,
-        parameters: &report.parameters,
-        errors: &report.errors,
-        simulated: String::new(),
-        seconds: report.wall_s,
-        folder: &calibrated.folder,
-    };
-    Ok(arguments.print.result(&calibrated.json, || text(&shown))?)
-}
-
 /// What is printed of a calibration.
 struct Shown<'a> {
     scenario_name: &'a str,
     summary: &'a str,
     effects: &'a [EffectReport],
-    parameters: &'a [Adjusted],
     errors: &'a [ChannelError],
     simulated: String,
     seconds: f64,
@@ -248,15 +214,6 @@ fn text(report: &Shown) -> String {
         if !effect.evidence.is_empty() {
             let _ = writeln!(text, "    {}", effect.evidence);
         }
-    }
-    for p in report.parameters {
-        let [low, high] = p.ci95.map(|end| known_to(end, p.std));
-        let (declared, value) = (number(p.declared), known_to(p.value, p.std));
-        let _ = writeln!(
-            text,
-            "\n  {} in {}: {value} (95 %: {low} to {high}), declared {declared}",
-            p.path, p.unit
-        );
     }
     let _ = writeln!(
         text,

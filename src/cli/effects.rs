@@ -124,6 +124,7 @@ fn example(kind: &Kind) -> String {
             Joints::Anchor | Joints::Any => "    joint = \"A1\"\n",
             Joints::Revolute | Joints::Bearing => "    joint = \"C1\"\n",
             Joints::DrivenRevolute => "    joint = \"O\"\n",
+            Joints::Sampled => "    joint = \"P1\"               # of a drive stage\n",
         },
         Targets::JointOrAll(joints) => match joints {
             Joints::Prismatic | Joints::DrivenPrismatic | Joints::Driven => {
@@ -176,6 +177,10 @@ fn rule(targets: Targets) -> &'static str {
             }
             Joints::Driven => {
                 "a joint with a drive, such as \"P1\", or a list of some with a common cause"
+            }
+            Joints::Sampled => {
+                "a joint whose drive has a sampled controller, such as \"P1\" of a drive stage, or a list of \
+                 some with a common cause"
             }
             Joints::Revolute | Joints::Bearing => {
                 "a revolute joint, such as \"A1\" or \"C1\", or a list of some with a common cause"
@@ -230,7 +235,7 @@ fn described(kind: &Kind) -> Value {
     let joints = match kind.targets.joints() {
         None => "none",
         Some(Joints::Prismatic | Joints::DrivenPrismatic) => "prismatic",
-        Some(Joints::Driven) => "driven",
+        Some(Joints::Driven | Joints::Sampled) => "driven",
         Some(Joints::Revolute | Joints::Bearing) => "revolute",
         Some(Joints::DrivenRevolute) => "driven-revolute",
         Some(Joints::Anchor) => "anchor",

@@ -8,9 +8,8 @@ use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder};
 use crate::calibrate::result::CalibrateError;
 use crate::calibrate::sensed::predict as sensed;
 use crate::calibrate::sensed::windows::predict::{self as windows, Asked};
-use crate::calibrate::single;
 use crate::calibrate::{quantity, recording};
-use crate::scenario::{Mechanism, Scenario};
+use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use clap::Args;
 use std::fmt::Write as _;
@@ -65,9 +64,6 @@ Examples:
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let model = Scenario::load(Some(&arguments.model), &arguments.sets.sets)?;
     warn_of_unused(&model);
-    if let Mechanism::DriveStage(_) = model.mechanism {
-        return drive_stage(arguments, &model);
-    }
     if model.mechanism.has_sensors() {
         let asked = Asked { window: arguments.window, fit: arguments.fit, from: arguments.from };
         if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {
@@ -82,7 +78,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let predicted = Spinner::during(arguments.print.quiet, |tell| {
         into_folder(&model, &recording, folder, tell)
     })?;
-    shown(arguments, &predicted)
+    shown(arguments, &predicted, &[])
 }
 
 /// The same of a mechanism that its file describes and that drives hold, or joints with play.
@@ -102,13 +98,15 @@ fn along_commands(arguments: &Arguments, model: &Scenario) -> Result<(), Failure
     let predicted = Spinner::during(arguments.print.quiet, |tell| {
         sensed::into_folder(model, &prepared, folder, tell)
     })?;
-    shown(arguments, &predicted)
+    shown(arguments, &predicted, &prepared.remarks())
 }
 
-fn shown(arguments: &Arguments, predicted: &Predicted) -> Result<(), Failure> {
+/// The result of a prediction, and what is to be known of the recording.
+fn shown(arguments: &Arguments, predicted: &Predicted, remarks: &[String]) -> Result<(), Failure> {
     let p = &predicted.prediction;
     Ok(arguments.print.result(&predicted.json, || {
-        text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder)
+        let text = text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder);
+        remarks.iter().fold(text, |text, remark| text + remark + "\n")
     })?)
 }
 
@@ -160,25 +158,6 @@ fn by_windows(
             predicted.folder.display(),
             page.display()
         )
-    })?)
-}
-
-/// The same of a drive stage, whose recordings have the columns that `[columns]` names.
-fn drive_stage(arguments: &Arguments, model: &Scenario) -> Result<(), Failure> {
-    let recorded = single::read(&arguments.data, model, false)?;
-    let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
-    let predicted = Spinner::during(arguments.print.quiet, |tell| {
-        single::predict(model, &recorded, folder, tell)
-    })?;
-    let p = &predicted.prediction;
-    Ok(arguments.print.result(&predicted.json, || {
-        let text = text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder);
-        match p.carried_columns.join(", ").as_str() {
-            "" => text,
-            carried => {
-                text + &format!("Columns that nothing asks for, left as they are: {carried}\n")
-            }
-        }
     })?)
 }
 

@@ -30,7 +30,8 @@ pub(super) struct Arguments {
     /// Folder of the recordings [default: $FREEPLAY_MEASURED, or ../shared/measured]
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
-    /// Scenario of the rig, in place of the built-in one (assets/drive-stage.toml, assets/pendulum-declared.toml)
+    /// Scenario of the rig, in place of the built-in one (assets/drive-stage-declared.toml,
+    /// assets/pendulum-declared.toml)
     #[arg(long, value_name = "SCENARIO")]
     rig: Option<PathBuf>,
     #[command(flatten)]
@@ -72,14 +73,14 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     };
     let (lead, tables, folder) = match arguments.which {
         Which::Emps => {
-            let read = |file: &str| emps::Recording::read(&data.join(file), &rig);
-            let (train, pulses) = match (read("emps_train.csv"), read("emps_pulses.csv")) {
-                (Ok(train), Ok(pulses)) => (train, pulses),
+            let read = |file: &str| emps::read(&data.join(file), &rig);
+            let recordings = match (read("emps_train.csv"), read("emps_pulses.csv")) {
+                (Ok(train), Ok(pulses)) => [train, pulses],
                 (Err(missing), _) | (_, Err(missing)) => return absent(missing),
             };
             let folder = prepare()?;
-            let found = emps::study(&train, &pulses)?;
-            let (lead, folder) = emps_page(&found, &train, folder)?;
+            let found = Spinner::during(false, |tell| emps::study(&rig, &recordings, tell))?;
+            let (lead, folder) = emps_page(&found, folder)?;
             (lead, vec![found.table(), found.parameters(), found.second_half()], folder)
         }
         Which::Pendulum => {

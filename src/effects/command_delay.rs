@@ -31,6 +31,10 @@ impl Commands for Delayed {
     fn at(&self, t: f64, commands: &mut [Command]) {
         self.inner.at(t - self.delay, commands);
     }
+
+    fn added(&self, index: usize, t: f64) -> f64 {
+        self.inner.added(index, t)
+    }
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {

@@ -22,6 +22,11 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// A value, or the nearest one that makes sense.
+    pub fn clamped(&self, value: f64) -> f64 {
+        value.clamp(self.bounds[0], self.bounds[1])
+    }
+
     /// The size of something that is not there at 0, its default, and of which more than `most` makes no
     /// sense.
     pub(super) const fn size(
@@ -65,6 +70,8 @@ pub enum Joints {
     DrivenPrismatic,
     /// All with a drive.
     Driven,
+    /// Those whose drive has a sampled controller.
+    Sampled,
     /// Revolute ones.
     Revolute,
     /// Revolute ones with a drive.
@@ -126,6 +133,10 @@ impl Joints {
             (Joints::Any, _)
             | (Joints::Prismatic, JointIndex::Prismatic(_))
             | (Joints::Revolute | Joints::Bearing, JointIndex::Revolute(_)) => true,
+            (Joints::Sampled, _) => mechanism
+                .actuators
+                .iter()
+                .any(|drive| drive.joint == joint && matches!(drive.drive, Drive::Sampled(_))),
             (Joints::Driven, _)
             | (Joints::DrivenPrismatic, JointIndex::Prismatic(_))
             | (Joints::DrivenRevolute, JointIndex::Revolute(_)) => driven(),
@@ -139,7 +150,7 @@ impl Senses {
     /// Whether a sensor is one of them.
     pub fn include(self, sensor: &Sensor) -> bool {
         match self {
-            Senses::Any => !matches!(sensor.reads, Reads::Command(_)),
+            Senses::Any => !sensor.tells(),
             Senses::Coordinate => matches!(sensor.reads, Reads::Position(_)),
             Senses::Zeroed => matches!(sensor.reads, Reads::Position(_) | Reads::Angle(..)),
             Senses::Angle => matches!(sensor.reads, Reads::Position(JointIndex::Revolute(_))),

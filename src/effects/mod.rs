@@ -15,6 +15,7 @@ mod contact_damping;
 mod drag;
 mod drive_backlash;
 mod drive_compliance;
+mod drive_lag;
 mod encoder;
 mod encoder_eccentricity;
 mod encoder_scale;
@@ -107,6 +108,7 @@ pub const ALL: &[&Kind] = &[
     &load_change::KIND,
     &mass_properties::KIND,
     &rotor_inertia::KIND,
+    &drive_lag::KIND,
 ];
 
 /// Effects of machines that a search is for which imitate a commoner one: an encoder's wrong zero looks

@@ -59,6 +59,10 @@ impl Commands for Filtered {
             }
         }
     }
+
+    fn added(&self, index: usize, t: f64) -> f64 {
+        self.inner.added(index, t)
+    }
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {

@@ -127,9 +127,9 @@ impl Log {
             let (mut time, mut chosen) = (None, Vec::new());
             for (i, name) in header.iter().enumerate() {
                 let channel = names.iter().position(|known| known == name).map(|k| known[k]);
-                let taken = chosen.iter().any(|(_, c, _)| Some(*c) == channel);
+                let taken = chosen.iter().any(|(_, c)| Some(*c) == channel);
                 match channel {
-                    None if name == "t" && time.is_none() => time = Some((i, 1.0)),
+                    None if name == "t" && time.is_none() => time = Some(i),
                     None => {
                         let known: Vec<&str> =
                             names.iter().map(String::as_str).chain(["t"]).collect();
@@ -142,63 +142,11 @@ impl Log {
                         let help = "keep one of them".to_owned();
                         return Err((format!("column `{name}` twice"), help));
                     }
-                    Some(channel) => chosen.push((i, channel, 1.0)),
+                    Some(channel) => chosen.push((i, channel)),
                 }
             }
             let time = time.ok_or_else(|| ("no column `t`".to_owned(), expected.clone()))?;
             Ok((time, chosen))
-        })
-    }
-
-    /// Reads the columns of a CSV file that `time` and `sources` name; whatever else is in it is left
-    /// alone.
-    ///
-    /// # Errors
-    /// As [`Log::read`]; columns that are named and not there.
-    pub fn read_columns(
-        path: &Path,
-        time: &Source,
-        sources: &[(Channel, Source)],
-    ) -> Result<Log, LogError> {
-        load(path, "expected a header with the names of the columns", |header| {
-            let find = |quantity: &str, source: &Source| {
-                let name = &source.column;
-                let mut places = header.iter().enumerate().filter(|(_, head)| head == name);
-                match (places.next(), places.next()) {
-                    (Some((i, _)), None) => Ok(i),
-                    (Some(_), Some(_)) => {
-                        let help = "keep one of them".to_owned();
-                        Err((format!("column `{name}` twice"), help))
-                    }
-                    (None, _) => {
-                        let heads: Vec<&str> = header.iter().collect();
-                        let message =
-                            format!("no column `{name}`, which columns.{quantity} asks for");
-                        Err((message, format!("the file has {}", heads.join(", "))))
-                    }
-                }
-            };
-            let mut chosen = Vec::new();
-            for (channel, source) in sources {
-                chosen.push((find(&channel.to_string(), source)?, *channel, source.scale));
-            }
-            Ok(((find("t", time)?, time.scale), chosen))
-        })
-    }
-
-    /// Heads of the columns of a CSV file.
-    ///
-    /// # Errors
-    /// A file that cannot be read.
-    pub fn heads(path: &Path) -> Result<Vec<String>, LogError> {
-        let read = || -> Result<Vec<String>, csv::Error> {
-            let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path)?;
-            Ok(reader.headers()?.iter().map(str::to_owned).collect())
-        };
-        read().map_err(|error| LogError {
-            place: path.display().to_string(),
-            message: format!("cannot be read: {error}"),
-            help: "is this the right file?".to_owned(),
         })
     }
 
@@ -259,8 +207,8 @@ impl Log {
     }
 }
 
-/// A column by its place and what it is multiplied by: that of time, and those of channels.
-type Chosen = ((usize, f64), Vec<(usize, Channel, f64)>);
+/// Places of columns: that of time, and those of channels.
+type Chosen = (usize, Vec<(usize, Channel)>);
 
 /// Reads the columns that `choose` picks by the header; its errors say what is wrong with that and what
 /// would be right.
@@ -283,11 +231,11 @@ fn load(
         .headers()
         .map_err(|error| wrong(Some(1), format!("cannot be read: {error}"), expected))?
         .clone();
-    let ((time, time_scale), chosen) =
+    let (time, chosen) =
         choose(&header).map_err(|(message, help)| wrong(Some(1), message, &help))?;
     let mut times = Vec::new();
     let mut channels: Vec<(Channel, Vec<f64>)> =
-        chosen.iter().map(|(_, channel, _)| (*channel, Vec::new())).collect();
+        chosen.iter().map(|(_, channel)| (*channel, Vec::new())).collect();
     let mut record = csv::StringRecord::new();
     loop {
         let more = reader.read_record(&mut record).map_err(|error| {
@@ -307,9 +255,9 @@ fn load(
                 wrong(line, message, "expected a finite number in every row")
             })
         };
-        times.push(number(time)? * time_scale);
-        for ((place, _, scale), (_, values)) in chosen.iter().zip(&mut channels) {
-            values.push(number(*place)? * scale);
+        times.push(number(time)?);
+        for ((place, _), (_, values)) in chosen.iter().zip(&mut channels) {
+            values.push(number(*place)?);
         }
     }
     let interval = constant_step(&times).map_err(|(row, message)| {

@@ -71,6 +71,47 @@ impl Cascade {
         }
         held.to + (held.from - held.to) * (-(t - held.since) / self.lag).exp()
     }
+
+    /// What the controller asks of its drive at samples one after another, `G u` in N, from the commands, the read
+    /// lengths (both in m) and what is added to its output (V; nothing where nobody says).
+    pub fn outputs(&self, commands: &[f64], read: &[f64], added: Option<&[f64]>) -> Vec<f64> {
+        let mut held = Held::default();
+        (commands.iter().zip(read).enumerate())
+            .map(|(k, (position, length))| {
+                let command = Command { position: *position, ..Command::default() };
+                let added = added.and_then(|added| added.get(k)).copied().unwrap_or(0.0);
+                let t = k as f64 * self.interval;
+                self.force_gain * self.sample(&mut held, t, &command, *length, added)
+            })
+            .collect()
+    }
+
+    /// Force of the drive in N at samples that come every `interval` s, when it is asked for `outputs` (N) there: what
+    /// is held comes half a sample late, `y(t) = G u(t − T/2)`, and the drive follows it, `τ Ḟ + F = y`, exactly
+    /// so where y goes along straight lines. Right for what moves slowly against T.
+    pub fn forces(&self, outputs: &[f64], interval: f64) -> Vec<f64> {
+        let late = 0.5 * self.interval / interval;
+        let held = |k: usize| {
+            let place = (k as f64 - late).max(0.0);
+            let (i, share) = (place as usize, place.fract());
+            let next = outputs.get(i + 1).unwrap_or(&outputs[i]);
+            outputs[i] + (next - outputs[i]) * share
+        };
+        let decay = if self.lag > 0.0 { (-interval / self.lag).exp() } else { 0.0 };
+        // The answer to a slope from sample to sample is late by τ, less what it has forgotten.
+        let behind = self.lag / interval * (1.0 - decay);
+        let mut last: Option<[f64; 2]> = None;
+        (0..outputs.len())
+            .map(|k| {
+                let now = held(k);
+                let force = last.map_or(now, |[before, force]| {
+                    now + (force - before) * decay - (now - before) * behind
+                });
+                last = Some([now, force]);
+                force
+            })
+            .collect()
+    }
 }
 
 #[cfg(test)]
@@ -99,6 +140,25 @@ mod tests {
             assert!((u - expected.clamp(-10.0, 10.0) - 0.5).abs() < 1e-12, "{k}: {u} {expected}");
             before = [q, mean];
         }
+    }
+
+    /// What outputs say of a force that varies slowly is what the drive gives in between.
+    #[test]
+    fn forces_of_outputs_are_those_that_the_drive_gives() {
+        let command =
+            |k: usize| Command { position: 4e-4 * (0.02 * k as f64).sin(), ..Command::default() };
+        let references: Vec<f64> = (0..400).map(|k| command(k).position).collect();
+        let outputs = CASCADE.outputs(&references, &vec![0.0; 400], None);
+        let told = CASCADE.forces(&outputs, CASCADE.interval);
+        let (mut held, mut largest) = (Held::default(), 0.0f64);
+        for k in 0..399 {
+            CASCADE.sample(&mut held, k as f64 * 1e-3, &command(k), 0.0, 0.0);
+            let middle = CASCADE.force(&held, (k as f64 + 0.5) * 1e-3);
+            let expected = 0.5 * (told[k] + told[k + 1]);
+            largest = largest.max(middle.abs());
+            assert!(k < 20 || (middle - expected).abs() < 0.5, "{k}: {middle} {expected}");
+        }
+        assert!(largest > 200.0);
     }
 
     #[test]

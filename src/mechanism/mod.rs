@@ -5,7 +5,6 @@
 //! (m/s, m/s, rad/s), accelerations (m/s², m/s², rad/s²), wrenches (N, N, N·m about the centre of
 //! mass).
 
-pub mod drive_stage;
 pub mod motion;
 pub mod pendulum;
 pub mod three_rpr;

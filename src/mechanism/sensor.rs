@@ -12,6 +12,10 @@ pub enum Reads {
     Position(JointIndex),
     /// The effort of a drive, by its index, in N or N·m.
     Effort(usize),
+    /// What the sampled controller of a drive, by its index, asks of it at its samples, in N or N·m.
+    Output(usize),
+    /// What is added to the output of a drive's sampled controller, by the drive's index, in V.
+    Added(usize),
     /// World coordinate x of a point, m.
     X(Mark),
     /// World coordinate y of a point, m.
@@ -80,11 +84,19 @@ impl Sensor {
         match self.reads {
             Reads::Command(drive) => of(mechanism.actuators[drive].joint, "m", "rad"),
             Reads::Position(joint) => of(joint, "m", "rad"),
-            Reads::Effort(drive) => of(mechanism.actuators[drive].joint, "N", "N·m"),
+            Reads::Effort(drive) | Reads::Output(drive) => {
+                of(mechanism.actuators[drive].joint, "N", "N·m")
+            }
+            Reads::Added(_) => "V",
             Reads::X(_) | Reads::Y(_) => "m",
             Reads::Angle(..) => "rad",
             Reads::Acceleration(..) => "m/s²",
         }
+    }
+
+    /// Whether it says what the machine is told, which is known and no measurement.
+    pub fn tells(&self) -> bool {
+        matches!(self.reads, Reads::Command(_) | Reads::Added(_))
     }
 
     /// Whether it is a tracker's: of x, y or an angle.
@@ -131,7 +143,9 @@ impl Sensor {
                     }
                 }
             }
-            Reads::Effort(drive) => now.drive_forces[drive],
+            // A controller's output is its drive's force but for the drive's lag.
+            Reads::Effort(drive) | Reads::Output(drive) => now.drive_forces[drive],
+            Reads::Added(_) => 0.0,
             Reads::X(mark) => place(mark).x,
             Reads::Y(mark) => place(mark).y,
             Reads::Angle(body, angle) => {

@@ -11,7 +11,6 @@ use super::{motion, native};
 use crate::contact::HertzStep;
 use crate::effects::Wrong;
 use crate::engine::{Schedule, StepControl};
-use crate::mechanism::drive_stage::state as stage_state;
 use crate::mechanism::motion::{Line, Motion};
 use crate::mechanism::{
     Bearing, BodyState, Commands, Imposed, Mechanism, TelescopicLegs, Tracker, angle_near,
@@ -147,28 +146,6 @@ pub fn recorded(
         close(scenario, mechanism)?;
     }
     Ok(built.mechanism)
-}
-
-/// A drive stage with its effects, somewhere on its way: at a length (m) with a rate (m/s) under `commands`.
-///
-/// # Errors
-/// A scenario that is none, an effect that the machine cannot take.
-pub fn started(
-    scenario: &Scenario,
-    start: [f64; 2],
-    commands: Arc<dyn Commands>,
-) -> Result<Mechanism, Problem> {
-    let scenario::Mechanism::DriveStage(_) = scenario.mechanism else {
-        let help = "this takes a drive-stage";
-        return Err(scenario.problem("mechanism.kind", "is another machine", help));
-    };
-    let expanded = expand(scenario)?;
-    let described = described(&expanded);
-    let mut mechanism = build(&expanded, described).mechanism;
-    mechanism.bodies[0].start = stage_state(start);
-    mechanism.commands = commands;
-    add_effects(scenario, &mut mechanism)?;
-    Ok(mechanism)
 }
 
 /// The description of an expanded scenario.

@@ -280,6 +280,8 @@ fn sensor(mechanism: &Mechanism, parts: &Parts, sensor: &scenario::Sensor) -> Op
         Quantity::Command => Reads::Command(drive()?),
         Quantity::Position => Reads::Position(joint_named(mechanism, &sensor.of)?),
         Quantity::Force => Reads::Effort(drive()?),
+        Quantity::Output => Reads::Output(drive()?),
+        Quantity::Added => Reads::Added(drive()?),
         Quantity::X => Reads::X(mark(mechanism, parts, &sensor.of)),
         Quantity::Y => Reads::Y(mark(mechanism, parts, &sensor.of)),
         Quantity::Angle => {

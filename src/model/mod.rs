@@ -18,9 +18,7 @@ mod path;
 mod shape;
 mod templates;
 
-pub use assemble::{
-    Machine, assemble, close, driven, parts_of, radial_clearance, recorded, started,
-};
+pub use assemble::{Machine, assemble, close, driven, parts_of, radial_clearance, recorded};
 pub use build::drive;
 pub use ideal::{Ideal, IdealInstant};
 pub use layout::{Layout, Written};

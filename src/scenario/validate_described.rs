@@ -275,12 +275,24 @@ impl Checks<'_> {
             let of = format!("{path}.of");
             match sensor.quantity {
                 Quantity::Position => self.movable(&of, &sensor.of),
-                Quantity::Command | Quantity::Force => {
+                Quantity::Command | Quantity::Force | Quantity::Output | Quantity::Added => {
                     self.movable(&of, &sensor.of);
-                    let driven = |drive: &JointDrive| drive.joint() == sensor.of;
-                    if !self.described.drives.iter().any(driven) {
-                        let message = format!("\"{}\" has no drive to read", sensor.of);
-                        self.complain(&of, message, "write a [[drive]] of this joint");
+                    let driven = |drive: &&JointDrive| drive.joint() == sensor.of;
+                    let of_controller =
+                        matches!(sensor.quantity, Quantity::Output | Quantity::Added);
+                    match self.described.drives.iter().find(driven) {
+                        None => {
+                            let message = format!("\"{}\" has no drive to read", sensor.of);
+                            self.complain(&of, message, "write a [[drive]] of this joint");
+                        }
+                        Some(drive)
+                            if of_controller && !matches!(drive, JointDrive::Sampled(_)) =>
+                        {
+                            let message =
+                                format!("the drive of \"{}\" has no sampled controller", sensor.of);
+                            self.complain(&of, message, "its effort is quantity = \"force\"");
+                        }
+                        Some(_) => {}
                     }
                 }
                 Quantity::X | Quantity::Y | Quantity::Angle | Quantity::Acceleration => {

@@ -13,7 +13,7 @@ mod timeseries;
 
 pub use crate::model::{
     FIT_SPEED, Ideal, IdealInstant, Machine, assemble, close, drive, driven, leg_use,
-    radial_clearance, started,
+    radial_clearance,
 };
 pub use checks::{Finding, Severity, findings};
 pub use provenance::Provenance;

@@ -36,11 +36,12 @@ const OF_THE_3RPR: [&str; 27] = [
 ];
 
 /// Beside the friction that each of these machines has.
-const OF_ONE_JOINT: [(&str, &str); 4] = [
+const OF_ONE_JOINT: [(&str, &str); 5] = [
     ("pendulum.toml", "pivot-friction joint=A1 coulomb_Nm=1e-3 viscous_Nms=1e-3"),
     ("pendulum.toml", "payload mass_kg=0.02 com_x_m=0.03 com_y_m=0.01"),
     ("drive-stage.toml", "film-friction joint=P1 force_N=12"),
     ("drive-stage.toml", "stribeck-friction joint=P1 coulomb_N=5 static_N=10"),
+    ("drive-stage.toml", "drive-lag joint=P1 lag_s=3e-4"),
 ];
 
 /// `--set` for each part of an effect.

@@ -1,22 +1,51 @@
-//! The drive stage of the EMPS recordings: what its declared model lacks, found one effect after another
-//! on one recording and judged on another.
+//! The drive stage of the EMPS recordings: what its declared model lacks, found one effect after another on one
+//! recording and judged on another, by the way of every machine that sampled controllers hold
+//! ([`held`](crate::calibrate::sensed::held)).
 
-use super::Table;
-use crate::identify::Missing;
-use crate::identify::inverse::{Model, Motion, Term};
-use crate::identify::stage::{PITCH, halves, simulated_force, stage};
+use super::{Missing, Table};
+use crate::calibrate::result::control;
+use crate::calibrate::sensed::held::bench::Bench;
+use crate::calibrate::sensed::held::model::{Model, share};
+use crate::calibrate::sensed::held::plausible;
+use crate::calibrate::sensed::held::terms::{Term, WAYS, of_declared};
+use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::thresholds::BUILDS_UP;
+use crate::model::parts_of;
+use crate::report::number;
+use crate::scenario::Scenario;
 use std::ops::Range;
+use std::path::Path;
 
-pub use crate::identify::stage::Recording;
+/// The machine as its authors declare it, its drive and the columns of its recordings, as a scenario: moved mass and
+/// viscous friction.
+pub const RIG: &str = include_str!("../../../assets/drive-stage-declared.toml");
 
-/// The machine, its drive and the columns of its recordings, as a scenario.
-pub const RIG: &str = include_str!("../../../assets/drive-stage.toml");
+/// Pitch of the ball screw in m (README of the data).
+const PITCH: f64 = 2.5e-3;
 
-/// Declared: moved mass in kg and viscous friction in N·s/m, as published.
-pub const DECLARED: [f64; 2] = [95.1089, 203.50];
+/// Places of both recordings in a bench.
+const TRAIN: usize = 0;
+const PULSES: usize = 1;
 
-/// Speeds v_f in m/s that are tried for friction which builds up.
-const FILM_SPEEDS: [f64; 8] = [2e-3, 4e-3, 6e-3, 8e-3, 1e-2, 1.4e-2, 2e-2, 3e-2];
+/// Reads a recording of a rig.
+///
+/// # Errors
+/// A file that is not there or not what it should be.
+pub fn read(path: &Path, rig: &Scenario) -> Result<Recording, Missing> {
+    if !path.is_file() {
+        return Err(Missing::Absent(path.to_owned()));
+    }
+    let machine = parts_of(rig).map_err(wrong)?;
+    let recording = Recording::read_with_time(path, &machine.sensors, false, rig.time_column())?;
+    match plausible::wrong(rig, &machine, &recording).into_iter().next() {
+        Some(first) => Err(Missing::Wrong(first)),
+        None => Ok(recording),
+    }
+}
+
+fn wrong(error: impl std::fmt::Display) -> Missing {
+    Missing::Wrong(error.to_string())
+}
 
 /// A model and how far off it is: shares of the norm of the recorded force.
 #[derive(Clone, Debug)]
@@ -35,6 +64,15 @@ pub struct Step {
     pub pulses: f64,
     /// Force of the simulated closed loop: training recording, pulses.
     pub simulated: [f64; 2],
+    /// What it leaves of the force of the training recording in N, with the time in s.
+    pub left: Vec<(f64, f64)>,
+}
+
+impl Step {
+    /// A value of the model by its name; none where it has none.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.model.terms.iter().find(|(term, _)| term.sought == name).map(|(_, value)| *value)
+    }
 }
 
 /// What of the last model was identified anew on the first half of the pulses.
@@ -61,85 +99,146 @@ fn unfit() -> Missing {
     Missing::Wrong("the recording does not tell the model's terms apart: does it move?".to_owned())
 }
 
-/// Terms of each step.
-fn plan(film: f64) -> [(&'static str, &'static str, Vec<Term>); 5] {
-    let symmetric = vec![Term::Mass, Term::Viscous, Term::Coulomb, Term::Offset];
-    let asymmetric = vec![
-        Term::Mass,
-        Term::ViscousWay(true),
-        Term::ViscousWay(false),
-        Term::CoulombWay(true),
-        Term::CoulombWay(false),
-    ];
-    let lag = [asymmetric.clone(), vec![Term::Lag]].concat();
-    let film = [lag.clone(), vec![Term::Film(film)]].concat();
-    let ripple = [film.clone(), [true, false].map(|s| Term::Ripple(PITCH, s)).to_vec()].concat();
-    [
-        ("dry friction and an offset", "a force with the sign of the speed", symmetric),
-        ("friction that differs with direction", "error grows with speed, one way", asymmetric),
-        ("lag of the drive", "error with the jerk, at 10 to 35 Hz", lag),
-        ("friction that builds up with speed", "error below 20 mm/s, against the motion", film),
-        ("ripple of the screw", "error periodic in position, 2.5 mm", ripple),
-    ]
+/// The stage with both recordings: as published, the force acting at once; and as the drive gives it, held from sample
+/// to sample.
+struct Stage {
+    at_once: Bench,
+    held: Bench,
+    joint: String,
 }
 
-/// Does the study.
+/// A model's terms, and whether the drive gives its force at once.
+type Plan = (&'static str, &'static str, Vec<Term>, bool);
+
+impl Stage {
+    /// A term that every machine has, by the name of its value.
+    fn common(&self, name: &str) -> Vec<Term> {
+        self.held.common().into_iter().filter(|term| term.sought == name).collect()
+    }
+
+    /// Terms of each step, friction building up over some speed in m/s.
+    fn plan(&self, film: f64) -> [Plan; 5] {
+        let mass = self.common("mass_kg");
+        let friction = |names: &[&'static str]| self.held.friction(&self.joint, names);
+        let symmetric =
+            [mass.clone(), friction(&["viscous_Ns_m", "coulomb_N", "offset_N"])].concat();
+        let asymmetric = [mass, friction(&WAYS)].concat();
+        let lag = [asymmetric.clone(), self.common("lag_s")].concat();
+        let film = [lag.clone(), self.held.over("film-friction", &self.joint, film)].concat();
+        let ripple = [film.clone(), self.held.ripple(&self.joint, PITCH)].concat();
+        [
+            ("dry friction and an offset", "a force with the sign of the speed", symmetric, true),
+            (
+                "friction that differs with direction",
+                "error grows with speed, one way",
+                asymmetric,
+                true,
+            ),
+            ("lag of the drive", "error with the jerk, at 10 to 35 Hz", lag, false),
+            (
+                "friction that builds up with speed",
+                "error below 20 mm/s, against the motion",
+                film,
+                false,
+            ),
+            ("ripple of the screw", "error periodic in position, 2.5 mm", ripple, false),
+        ]
+    }
+
+    fn bench(&self, at_once: bool) -> &Bench {
+        if at_once { &self.at_once } else { &self.held }
+    }
+
+    /// A step, judged.
+    fn step(&self, plan: &Plan, model: Model, halves: Option<[f64; 2]>) -> Result<Step, Missing> {
+        let (name, trace, _, at_once) = *plan;
+        let bench = self.bench(at_once);
+        let error = |run| model.error(bench, run, bench.rows(run));
+        let settings = model.settings();
+        let simulated = |run| {
+            let missed = bench.missed(run, &bench.simulated(run, &settings).map_err(wrong)?);
+            Ok::<f64, Missing>(share(&missed, bench.asked(run)))
+        };
+        let (_, size) = bench.first_output();
+        let left = model.left(bench, TRAIN).into_iter().enumerate();
+        let left = left.map(|(place, left)| (bench.time(TRAIN, place), left * size)).collect();
+        Ok(Step {
+            name,
+            trace,
+            train: error(TRAIN),
+            halves,
+            pulses: error(PULSES),
+            simulated: [simulated(TRAIN)?, simulated(PULSES)?],
+            left,
+            model,
+        })
+    }
+}
+
+/// Does the study; `tell` hears what is being done.
 ///
 /// # Errors
 /// Recordings that cannot be used.
-pub fn study(train: &Recording, pulses: &Recording) -> Result<Outcome, Missing> {
-    let (rows, other) = (train.motion.rows(), pulses.motion.rows());
-    let fit = |motion: &Motion, rows: Range<usize>, terms: &[Term]| {
-        Model::fit(motion, rows, terms, &[]).ok_or_else(unfit)
+pub fn study(
+    rig: &Scenario,
+    recordings: &[Recording; 2],
+    tell: &dyn Fn(&str),
+) -> Result<Outcome, Missing> {
+    let bench =
+        |at_once| Bench::new(rig, recordings.to_vec(), control(rig), at_once).map_err(wrong);
+    let (at_once, held) = (bench(true)?, bench(false)?);
+    let joint = held.machine.actuators.first().ok_or_else(unfit)?.name.clone();
+    let stage = Stage { at_once, held, joint };
+    let fit = |bench: &Bench, rows: Range<usize>, terms: &[Term]| {
+        Model::fit(bench, TRAIN, rows, terms, &[]).ok_or_else(unfit)
     };
-    let step = |name, trace, model: Model, halves| -> Result<Step, Missing> {
-        let mut simulated = [0.0; 2];
-        for (error, recording) in simulated.iter_mut().zip([train, pulses]) {
-            let force = simulated_force(&stage(&model, recording)?, recording)?;
-            *error = recording.motion.relative_error(&force, recording.motion.rows());
-        }
-        let (train, pulses) =
-            (model.error(&train.motion, rows.clone()), model.error(&pulses.motion, other.clone()));
-        Ok(Step { name, trace, model, train, halves, pulses, simulated })
-    };
-    let declared = Model { terms: [Term::Mass, Term::Viscous].into_iter().zip(DECLARED).collect() };
-    let mut steps = vec![step("declared: mass and viscous friction", "", declared, None)?];
+    tell("as declared");
+    let declared = stage.at_once.declared.iter().flat_map(|e| of_declared(&stage.at_once, e));
+    let declared = Model { terms: declared.collect() };
+    let plain = ("declared: mass and viscous friction", "", Vec::new(), true);
+    let mut steps = vec![stage.step(&plain, declared, None)?];
 
-    let mut film = (f64::INFINITY, FILM_SPEEDS[0]);
-    for speed in FILM_SPEEDS {
-        let [.., (_, _, terms), _] = plan(speed);
-        let error = fit(&train.motion, rows.clone(), &terms)?.error(&train.motion, rows.clone());
+    let rows = stage.held.rows(TRAIN);
+    let (_, index) = stage.held.machine.joints().next().ok_or_else(unfit)?;
+    let rate = stage.held.rate(index).ok_or_else(unfit)?;
+    let mut film = (f64::INFINITY, rate);
+    for speed in BUILDS_UP.map(|share| share * rate) {
+        let [.., (_, _, terms, _), _] = stage.plan(speed);
+        let error = fit(&stage.held, rows.clone(), &terms)?.error(&stage.held, TRAIN, rows.clone());
         if error < film.0 {
             film = (error, speed);
         }
     }
-    for (name, trace, terms) in plan(film.1) {
-        let [first, second] = halves(&rows);
-        let by_first = fit(&train.motion, first.clone(), &terms)?;
-        let by_second = fit(&train.motion, second.clone(), &terms)?;
-        let halves = [by_second.error(&train.motion, first), by_first.error(&train.motion, second)];
-        steps.push(step(name, trace, fit(&train.motion, rows.clone(), &terms)?, Some(halves))?);
+    for plan in stage.plan(film.1) {
+        tell(plan.0);
+        let (bench, terms) = (stage.bench(plan.3), &plan.2);
+        let [first, second] = bench.halves(TRAIN);
+        let by_first = fit(bench, first.clone(), terms)?;
+        let by_second = fit(bench, second.clone(), terms)?;
+        let halves = [by_second.error(bench, TRAIN, first), by_first.error(bench, TRAIN, second)];
+        steps.push(stage.step(&plan, fit(bench, rows.clone(), terms)?, Some(halves))?);
     }
-
+    tell("what carries over to the pulses");
     let last = steps.last().map(|step| step.model.clone()).ok_or_else(unfit)?;
-    let carried = carry(&last, pulses)?;
+    let carried = carry(&last, &stage.held)?;
     Ok(Outcome { steps, carried })
 }
 
 /// Identifies anew on the first half of the pulses what need not be the same on another day: the phase
-/// of the screw (where the encoder's zero is), the lag (felt more by pulses), the dry friction.
-fn carry(model: &Model, pulses: &Recording) -> Result<Carried, Missing> {
-    let anew = |term: &Term| matches!(term, Term::Lag | Term::Ripple(..));
+/// of the screw (where the encoder's zero is) and the lag (felt more by pulses).
+fn carry(model: &Model, bench: &Bench) -> Result<Carried, Missing> {
+    let anew = |term: &Term| ["drive-lag", "screw-ripple"].contains(&term.kind().name);
     let (free, fixed): (Vec<_>, Vec<_>) =
-        model.terms.iter().copied().partition(|(term, _)| anew(term));
+        model.terms.iter().cloned().partition(|(term, _)| anew(term));
     let free: Vec<Term> = free.into_iter().map(|(term, _)| term).collect();
-    let [first, second] = halves(&pulses.motion.rows());
-    let again = Model::fit(&pulses.motion, first, &free, &fixed).ok_or_else(unfit)?;
+    let [first, second] = bench.halves(PULSES);
+    let again = Model::fit(bench, PULSES, first, &free, &fixed).ok_or_else(unfit)?;
     let mut carried = Carried { model: again.clone(), inverse: [0.0; 2], simulated: [0.0; 2] };
     for (k, model) in [model, &again].into_iter().enumerate() {
-        carried.inverse[k] = model.error(&pulses.motion, second.clone());
-        let force = simulated_force(&stage(model, pulses)?, pulses)?;
-        carried.simulated[k] = pulses.motion.relative_error(&force, second.clone());
+        carried.inverse[k] = model.error(bench, PULSES, second.clone());
+        let simulated = bench.simulated(PULSES, &model.settings()).map_err(wrong)?;
+        let missed = bench.missed(PULSES, &simulated);
+        carried.simulated[k] = share(&missed[second.clone()], &bench.asked(PULSES)[second.clone()]);
     }
     Ok(carried)
 }
@@ -222,16 +321,12 @@ impl Outcome {
         let Some(last) = self.steps.last() else {
             return Table { header: Vec::new(), rows: Vec::new() };
         };
-        let rows = last.model.terms.iter().map(|(term, factor)| {
-            let there = self.carried.model.factor(*term);
-            let how = if there == *factor { "carried over" } else { "anew, first half" };
-            let (name, unit, scale) = named_term(*term, last.model.factor(Term::Mass));
-            vec![
-                name,
-                format!("{:.4} {unit}", factor * scale),
-                format!("{:.4} {unit}", there * scale),
-                how.to_owned(),
-            ]
+        let rows = last.model.terms.iter().map(|(term, value)| {
+            let there = self.carried.model.value(term);
+            let how = if there == *value { "carried over" } else { "anew, first half" };
+            let unit = term.kind().parameter(term.sought).map_or("", |parameter| parameter.unit);
+            let cell = |value: f64| format!("{} {unit}", number(value));
+            vec![in_words(term), cell(*value), cell(there), how.to_owned()]
         });
         Table {
             header: ["parameter", "training recording", "pulses", ""].map(str::to_owned).to_vec(),
@@ -240,28 +335,17 @@ impl Outcome {
     }
 }
 
-/// A term in words, the unit of its factor, and what the factor is to be multiplied by for it.
-fn named_term(term: Term, mass: f64) -> (String, &'static str, f64) {
-    let way = |outward: bool| if outward { "outward" } else { "inward" };
-    match term {
-        Term::Mass => ("moved mass".to_owned(), "kg", 1.0),
-        Term::Lag => {
-            ("lag of the force, half a sample of it by holding".to_owned(), "ms", 1e3 / mass)
-        }
-        Term::Offset => ("offset".to_owned(), "N", 1.0),
-        Term::Viscous => ("viscous friction".to_owned(), "N s/m", 1.0),
-        Term::ViscousWay(outward) => (format!("viscous friction {}", way(outward)), "N s/m", 1.0),
-        Term::Coulomb => ("dry friction".to_owned(), "N", 1.0),
-        Term::CoulombWay(outward) => (format!("dry friction {}", way(outward)), "N", 1.0),
-        Term::Film(speed) => {
-            (format!("friction that builds up over {} mm/s", 1e3 * speed), "N", 1.0)
-        }
-        Term::Stribeck(speed) => {
-            (format!("friction that falls over {} mm/s", 1e3 * speed), "N", 1.0)
-        }
-        Term::Drag => ("drag".to_owned(), "N s²/m²", 1.0),
-        Term::Ripple(_, sine) => {
-            (format!("ripple of the screw, {}", if sine { "sine" } else { "cosine" }), "N", 1.0)
-        }
-    }
+/// A term in words; waves have a sine and a cosine.
+fn in_words(term: &Term) -> String {
+    let phase =
+        term.kind().scan.and_then(|scan| term.fixed().find(|(name, _)| *name == scan.phase));
+    let part = match phase {
+        Some((_, 0.0)) => ", sine",
+        Some(_) => ", cosine",
+        None => "",
+    };
+    let over = term.fixed().find(|(name, _)| *name == "speed_m_s");
+    let over =
+        over.map_or_else(String::new, |(_, speed)| format!(" over {} mm/s", number(1e3 * speed)));
+    format!("{}: {}{over}{part}", term.kind().name, term.sought)
 }

@@ -8,9 +8,22 @@ pub mod pendulum;
 
 pub use page::{STUDY_FILE, StudyError, emps_page, pendulum_page};
 
-pub use crate::identify::Missing;
-
+use crate::measure::log::LogError;
 use std::path::{Path, PathBuf};
+
+/// Why there is no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Missing {
+    /// The recording is not there.
+    #[error("{0} is not there")]
+    Absent(PathBuf),
+    /// It is there, and not what it should be.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// Anything else.
+    #[error("{0}")]
+    Wrong(String),
+}
 
 /// Environment variable that says where the recordings are.
 pub const VARIABLE: &str = "FREEPLAY_MEASURED";

@@ -1,10 +1,8 @@
 //! The pages of the hardware studies.
 
-use super::{Table, emps, pendulum};
+use super::{Missing, Table, emps, pendulum};
 use crate::calibrate::charts::{POINTS, thinned};
 use crate::calibrate::result::to_json;
-use crate::identify::Missing;
-use crate::identify::stage::Recording;
 use crate::report::{self, Curve, Panel, Part, Picture, Style, panels_svg};
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use serde_json::json;
@@ -95,22 +93,16 @@ fn panel(title: &str, label: &str, curves: Vec<(&str, Vec<(f64, f64)>)>) -> Pane
     }
 }
 
-/// Samples of the training recording that are drawn: one stroke and its turns.
-const DRAWN: std::ops::Range<usize> = 2000..6000;
+/// Seconds of the training recording that are drawn: one stroke and its turns.
+const DRAWN: std::ops::Range<f64> = 2.0..6.0;
 
 /// Writes the page of the drive stage.
 ///
 /// # Errors
 /// Files that cannot be written.
-pub fn emps_page(
-    found: &emps::Outcome,
-    train: &Recording,
-    folder: Folder,
-) -> Result<(String, PathBuf), RunError> {
+pub fn emps_page(found: &emps::Outcome, folder: Folder) -> Result<(String, PathBuf), RunError> {
     let residual = |step: &emps::Step| -> Vec<(f64, f64)> {
-        let model = step.model.force(&train.motion);
-        let drawn = DRAWN.start.min(model.len())..DRAWN.end.min(model.len());
-        drawn.map(|i| (i as f64 * train.log.interval, train.motion.force()[i] - model[i])).collect()
+        step.left.iter().copied().filter(|(t, _)| DRAWN.contains(t)).collect()
     };
     let panels: Vec<Panel> = (found.steps[1..].iter())
         .map(|step| {

@@ -2,7 +2,7 @@
 
 use super::recording::Recording;
 use crate::calibrate::charts::{POINTS, panel, thinned};
-use crate::mechanism::{Mechanism, Reads};
+use crate::mechanism::Mechanism;
 use crate::report::{Curve, Picture, ReportError, Style, panels_svg};
 
 /// Which run is drawn, and what is said of it.
@@ -35,7 +35,7 @@ pub fn of_run(
     };
     let (mut signals, mut missed) = (Vec::new(), Vec::new());
     for (i, sensor) in machine.sensors.iter().enumerate() {
-        let measured = recording.get(i).filter(|_| !matches!(sensor.reads, Reads::Command(_)));
+        let measured = recording.get(i).filter(|_| !sensor.tells());
         let Some(measured) = measured else { continue };
         let unit = sensor.unit(machine);
         let predicted =

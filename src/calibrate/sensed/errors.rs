@@ -1,11 +1,11 @@
 //! By how much predictions miss a recording, column by column, and by how much any would.
 
 use super::recording::Recording;
-use super::simulate::with_noise;
+use super::simulate::noisy;
 use super::thresholds::{DRAWS, TRIM};
 use crate::calibrate::errors::ChannelError;
 use crate::measure::filter::ZeroPhase;
-use crate::mechanism::{Mechanism, Reads, Sensor};
+use crate::mechanism::Mechanism;
 
 /// Corner in Hz of the low-pass that errors are looked at through: as agreed on with whoever reads them.
 const CORNER: f64 = 25.0;
@@ -34,18 +34,18 @@ fn rms(a: &Recording, b: &Recording, sensor: usize) -> Option<f64> {
 
 /// What sensor noise and rattle leave in a column to a perfect model: a replica with noise against the mean of
 /// the others.
-fn floor(sensors: &[Sensor], clean: &[Recording], sensor: usize) -> Option<f64> {
+fn floor(machine: &Mechanism, clean: &[Recording], sensor: usize) -> Option<f64> {
     let mut squares = 0.0;
     for draw in 0..DRAWS {
         let own = draw % clean.len();
-        let noisy = with_noise(&clean[own], sensors, 5000 + draw as u64);
+        let seen = noisy(&clean[own], machine, 5000 + draw as u64);
         let others: Vec<Recording> = if clean.len() > 1 {
             let kept = clean.iter().enumerate().filter(|(i, _)| *i != own);
             kept.map(|(_, recording)| recording.clone()).collect()
         } else {
             clean.to_vec()
         };
-        squares += rms(&noisy, &mean(&others, sensors.len()), sensor)?.powi(2);
+        squares += rms(&seen, &mean(&others, machine.sensors.len()), sensor)?.powi(2);
     }
     Some((squares / DRAWS as f64).sqrt())
 }
@@ -61,7 +61,7 @@ pub fn of_run(
 ) -> Vec<ChannelError> {
     let sensors = &machine.sensors;
     let [declared, predicted] = [before, after].map(|logs| mean(logs, sensors.len()));
-    let measured = |i: &usize| !matches!(sensors[*i].reads, Reads::Command(_));
+    let measured = |i: &usize| !sensors[*i].tells();
     (0..sensors.len())
         .filter(measured)
         .filter_map(|i| {
@@ -72,7 +72,7 @@ pub fn of_run(
                 unit: sensors[i].unit(machine),
                 before: rms(recording, &declared, i)?,
                 after: rms(recording, &predicted, i)?,
-                floor: floor(sensors, after, i)?,
+                floor: floor(machine, after, i)?,
             })
         })
         .collect()

@@ -26,16 +26,21 @@ pub struct View {
 impl View {
     /// Prepares a recording.
     pub fn new(recording: &Recording, sensors: usize) -> Self {
+        Self::through(recording, sensors, [PREFILTER, CORNER, LEAN_CORNER], RATE)
+    }
+
+    /// The same with other corners in Hz of the low-passes, and looked at `rate` times a second at least.
+    pub fn through(recording: &Recording, sensors: usize, corners: [f64; 3], rate: f64) -> Self {
         let h = recording.interval;
         let nyquist = 0.5 / h;
-        let stride = (1.0 / (RATE * h)).floor().max(1.0) as usize;
+        let stride = (1.0 / (rate * h)).floor().max(1.0) as usize;
         let low =
             |corner: f64| (corner < 0.9 * nyquist).then(|| ZeroPhase::butterworth(4, corner, h));
         let pass = |filter: &Option<ZeroPhase>, i: usize| {
             let values = recording.get(i)?;
             Some(filter.as_ref().map_or_else(|| values.to_vec(), |f| f.apply(values)))
         };
-        let [plain, smooth, slow] = [PREFILTER, CORNER, LEAN_CORNER].map(|corner| {
+        let [plain, smooth, slow] = corners.map(|corner| {
             let filter = low(corner);
             (0..sensors).map(|i| pass(&filter, i)).collect()
         });
@@ -93,4 +98,10 @@ pub fn effort_sensor(mechanism: &Mechanism, drive: usize) -> Option<usize> {
 pub fn position_sensor(mechanism: &Mechanism, joint: JointIndex) -> Option<usize> {
     let mut sensors = mechanism.sensors.iter();
     sensors.position(|sensor| matches!(sensor.reads, Reads::Position(of) if of == joint))
+}
+
+/// The sensor that reads what the sampled controller of a drive asks of it.
+pub fn output_sensor(mechanism: &Mechanism, drive: usize) -> Option<usize> {
+    let mut sensors = mechanism.sensors.iter();
+    sensors.position(|sensor| matches!(sensor.reads, Reads::Output(i) if i == drive))
 }

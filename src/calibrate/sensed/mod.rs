@@ -18,6 +18,7 @@ pub mod errors;
 pub mod estimate;
 pub mod events;
 pub mod fit;
+pub mod held;
 pub mod hypotheses;
 pub mod left;
 pub mod limits;

@@ -7,7 +7,7 @@
 use super::problem::Problem;
 use super::recording::Recording;
 use super::simulate::{deviation, with_noise};
-use super::thresholds::{NOISE_BAND, NOISE_DRAWS, OTHER_NOISE, SURE_NOISE};
+use super::thresholds::{MEDIAN, NOISE_BAND, NOISE_DRAWS, OTHER_NOISE, SURE_NOISE};
 use crate::calibrate::spectrum::{Signal, fast_length, transform};
 use crate::mechanism::{Reads, Sensor};
 
@@ -31,7 +31,7 @@ pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<Other
     for i in 0..problem.declared.sensors.len() {
         let sensor = problem.declared.sensors[i].clone();
         let noisy = sensor.std > 0.0 || sensor.resolution > 0.0;
-        if matches!(sensor.reads, Reads::Command(_)) || !noisy {
+        if sensor.tells() || !noisy {
             continue;
         }
         // Of each quiet block the ratio of its power to what noise as declared has there, for the recording and for draws
@@ -84,6 +84,33 @@ fn white(sensor: &Sensor, ratio: f64) -> Option<f64> {
     let rounding = sensor.resolution.powi(2) / 12.0;
     let square = ratio * (sensor.std.powi(2) + rounding) - rounding;
     (square > 0.0).then(|| square.sqrt())
+}
+
+/// Gives sensors that declare no noise that of a recording, so that what it leaves to any model is known; outputs of
+/// controllers have none of their own.
+pub fn measured(sensors: &mut [Sensor], recording: &Recording) {
+    for (i, sensor) in sensors.iter_mut().enumerate() {
+        let silent = sensor.std == 0.0 && sensor.resolution == 0.0;
+        let own = !sensor.tells() && !matches!(sensor.reads, Reads::Output(_));
+        if let (true, Some(values)) = (silent && own, recording.get(i)) {
+            sensor.std = white_of(values);
+        }
+    }
+}
+
+/// Standard deviation of a column's white noise, from its third differences: what moves smoothly has next
+/// to none at the rates that are read here, and those of white noise have `√(1 + 9 + 9 + 1)` times its
+/// deviation. The median, so that hits do not count; at least what rounding to the column's own steps
+/// makes, a step over √12.
+fn white_of(values: &[f64]) -> f64 {
+    let third = |w: &[f64]| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs();
+    let mut sizes: Vec<f64> = values.windows(4).map(third).collect();
+    sizes.sort_by(f64::total_cmp);
+    let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
+    let step = steps.fold(f64::INFINITY, f64::min);
+    let rounding = if step.is_finite() { step / 12f64.sqrt() } else { 0.0 };
+    (median / (MEDIAN * 20f64.sqrt())).max(rounding)
 }
 
 /// Length in s of the blocks that noise is looked at in: machines rest, turn round or rattle for such times.

@@ -135,7 +135,9 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
         }
     } else {
         parts.push(Part::Table(errors_table(&report.errors, NOTE)));
-        parts.push(Part::Table(residuals));
+        if !report.residuals.is_empty() {
+            parts.push(Part::Table(residuals));
+        }
     }
     parts.push(Part::Pictures(pictures));
     parts.push(Part::Table(ranking));

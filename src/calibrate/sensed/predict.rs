@@ -3,16 +3,19 @@
 
 use super::charts::{Drawn, of_run};
 use super::errors::{self, mean};
+use super::held;
+use super::noise;
 use super::recording::Recording;
 use super::simulate::{apart, record};
 use super::start::{StartError, released};
 use super::thresholds::{PREDICTING, SEEN};
+use super::windows::report::remarks;
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE, Predicted, Prediction};
 use crate::calibrate::predict_page;
 use crate::calibrate::report::RattleReport;
 use crate::calibrate::result::{CalibrateError, control, publish, refuse, to_json};
 use crate::engine::StepControl;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Bearing, Mechanism};
 use crate::report::Style;
 use crate::scenario::{Law, Scenario};
 use crate::simulate::Provenance;
@@ -29,6 +32,13 @@ const CAPTION: &str =
 pub struct Prepared {
     machine: Mechanism,
     recording: Recording,
+}
+
+impl Prepared {
+    /// What is to be known of the recording: late rows, columns that nobody asks for.
+    pub fn remarks(&self) -> Vec<String> {
+        remarks(std::slice::from_ref(&self.recording))
+    }
 }
 
 /// Reads a recording of a described machine.
@@ -50,6 +60,14 @@ pub fn prepare(model: &Scenario, path: &Path) -> Result<Prepared, CalibrateError
     refuse(wrong)?;
     let recording = Recording::read_with_time(path, &machine.sensors, false, model.time_column());
     let recording = recording.map_err(|error| CalibrateError::Input(vec![error.to_string()]))?;
+    let columns = model.columns.as_ref();
+    let lacking = columns.and_then(|named| recording.lacks(&machine.sensors, named));
+    refuse(lacking.into_iter().collect())?;
+    refuse(held::plausible::wrong(model, &machine, &recording))?;
+    let mut machine = machine;
+    if held::bench::suits(&machine) {
+        noise::measured(&mut machine.sensors, &recording);
+    }
     super::start::machine(model, &[], &recording)?;
     Ok(Prepared { machine, recording })
 }
@@ -120,13 +138,20 @@ pub fn into_folder(
     Ok(Predicted { prediction, json, folder })
 }
 
-/// The recording with a column for every sensor; those that were not measured hold zeros.
+/// The recording with a column for every sensor that measures; those that were not measured hold zeros.
 fn complete(machine: &Mechanism, recording: &Recording) -> Recording {
     let column = |i: usize| {
         let known = recording.get(i).map(<[f64]>::to_vec);
-        Some(known.unwrap_or_else(|| vec![0.0; recording.samples]))
+        let unknown = || (!machine.sensors[i].tells()).then(|| vec![0.0; recording.samples]);
+        known.or_else(unknown)
     };
     recording.with((0..machine.sensors.len()).map(column).collect())
+}
+
+/// Whether a machine can do otherwise from a start a hair away: what holds it has play somewhere.
+fn may_rattle(machine: &Mechanism) -> bool {
+    let ideal = machine.revolutes.iter().all(|joint| matches!(joint.bearing, Bearing::Ideal));
+    !ideal || machine.actuators.iter().any(|drive| drive.transmission.is_some())
 }
 
 /// A model along a recording.
@@ -150,6 +175,9 @@ impl Along<'_> {
             each.map(|replica| record(from, control, like, replica as u64))
                 .collect::<Result<Vec<Recording>, _>>()
         };
+        if !may_rattle(&released) {
+            return Ok((replicas(&released, 0..1)?, 0.0));
+        }
         let mut logs = replicas(&released, 0..2)?;
         let difference = apart(&machine.sensors, &logs[0], &logs[1]);
         if difference > SEEN {

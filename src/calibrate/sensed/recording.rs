@@ -5,6 +5,7 @@ use crate::measure::log::{LogError, Source, constant_step};
 use crate::measure::spelling::nearest;
 use crate::measure::spline::CubicSpline;
 use crate::mechanism::{Reads, Sensor};
+use crate::scenario::Columns;
 use std::ops::Range;
 use std::path::Path;
 
@@ -204,6 +205,25 @@ impl Recording {
             return wrong(message, format!("expected at least {SHORTEST} s of motion"));
         }
         None
+    }
+
+    /// What a rig's `[columns]` names and the file does not have; what was told beside commands need not be there.
+    pub fn lacks(&self, sensors: &[Sensor], columns: &Columns) -> Option<LogError> {
+        let there =
+            |(i, sensor): (usize, &Sensor)| self.get(i).is_some().then(|| sensor.column.clone());
+        let missing = columns.quantities().find_map(|name| {
+            let column = columns.source(name)?.column;
+            let index = sensors.iter().position(|sensor| sensor.column == column)?;
+            let needed = self.get(index).is_none() && !sensors[index].tells();
+            needed.then(|| format!("no column `{column}`, which columns.{name} asks for"))
+        })?;
+        let measured = sensors.iter().enumerate().filter_map(there);
+        let heads: Vec<String> = std::iter::once(self.time.column.clone())
+            .chain(measured)
+            .chain(self.ignored.iter().cloned())
+            .collect();
+        let help = format!("the file has {}", heads.join(", "));
+        Some(LogError { place: format!("{}:1", self.path), message: missing, help })
     }
 
     /// Whether another recording holds the same samples.

@@ -2,6 +2,7 @@
 
 use super::events::found::sentence;
 use super::events::picture::pictures as events_drawn;
+use super::held;
 use super::hypotheses::Tried;
 use super::left::Left;
 use super::limits::Limit;
@@ -26,7 +27,7 @@ use crate::calibrate::result::{
 };
 use crate::engine::StepControl;
 use crate::measure::log::LogError;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, Reads};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError};
@@ -83,8 +84,31 @@ pub struct Prepared {
     recordings: Vec<Recording>,
     /// How many of them, the first ones, values are fitted to.
     fits: usize,
-    /// Whether the machine is calibrated by windows.
-    by_windows: bool,
+    /// How.
+    way: Way,
+}
+
+/// How a machine is calibrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// Nothing holds it: by windows.
+    Windows,
+    /// Sampled controllers hold it: by what they ask of their drives.
+    Held,
+    /// By residuals in units of noise and simulations.
+    Residuals,
+}
+
+impl Way {
+    fn of(machine: &Mechanism) -> Self {
+        if suits(machine) {
+            Self::Windows
+        } else if held::bench::suits(machine) {
+            Self::Held
+        } else {
+            Self::Residuals
+        }
+    }
 }
 
 /// Reads recordings of a rig whose sensors its file describes, the first `fits` to calibrate on, the others to
@@ -102,9 +126,10 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     }
     refuse(wrong)?;
     let built: Mechanism = crate::model::parts_of(&rig)?;
-    let by_windows = suits(&built);
+    let way = Way::of(&built);
+    let by_windows = way == Way::Windows;
     let mut wrong: Vec<String> = Vec::new();
-    if !by_windows && !rig.effects.is_empty() {
+    if way == Way::Residuals && !rig.effects.is_empty() {
         let message = format!("holds {} effect(s)", rig.effects.len());
         let help =
             "calibrate starts from what a rig's maker declares: give it the rig without [[effect]]";
@@ -120,9 +145,17 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     let mut errors: Vec<LogError> = Vec::new();
     for path in paths {
         match Recording::read_with_time(path, &built.sensors, by_windows, rig.time_column()) {
-            Ok(recording) => recordings.push(recording),
+            Ok(recording) => {
+                let columns = rig.columns.as_ref();
+                errors.extend(columns.and_then(|named| recording.lacks(&built.sensors, named)));
+                recordings.push(recording);
+            }
             Err(error) => errors.push(error),
         }
+    }
+    let implausible = |recording| held::plausible::wrong(&rig, &built, recording);
+    if errors.is_empty() {
+        refuse(recordings.iter().flat_map(implausible).collect())?;
     }
     errors.extend(recordings.iter().filter_map(Recording::wrong));
     for (i, one) in recordings.iter().enumerate() {
@@ -144,8 +177,10 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
         }
     }
     // One look serves all runs: it is through the sensors that all of them have.
-    let common: Vec<bool> =
-        (0..built.sensors.len()).map(|i| recordings.iter().all(|r| r.get(i).is_some())).collect();
+    let everywhere = |i: usize| recordings.iter().all(|r| r.get(i).is_some());
+    // What was added to outputs in one run alone is known of the others: nothing was.
+    let added = |i: usize| matches!(built.sensors[i].reads, Reads::Added(_));
+    let common: Vec<bool> = (0..built.sensors.len()).map(|i| added(i) || everywhere(i)).collect();
     for recording in &mut recordings {
         let columns = common
             .iter()
@@ -162,7 +197,7 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
             machine(&rig, &[], recording)?;
         }
     }
-    Ok(Prepared { rig, recordings, fits, by_windows })
+    Ok(Prepared { rig, recordings, fits, way })
 }
 
 /// A finished calibration.
@@ -195,13 +230,15 @@ pub fn into_folder(
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Calibrated, CalibrateError> {
-    if prepared.by_windows {
-        let Prepared { rig, recordings, fits, .. } = prepared;
-        return by_windows(&rig, recordings, fits, without, folder, tell);
+    let Prepared { rig, recordings, fits, way } = prepared;
+    match way {
+        Way::Windows => return by_windows(&rig, recordings, fits, without, folder, tell),
+        Way::Held => return held::report::into_folder(&rig, recordings, without, folder, tell),
+        Way::Residuals => {}
     }
     let started = Clock::now();
-    let control = control(&prepared.rig);
-    let mut problem = Problem::new(prepared.rig, prepared.recordings, control)?;
+    let control = control(&rig);
+    let mut problem = Problem::new(rig, recordings, control)?;
     let outcome = calibrate(&mut problem, without, tell)?;
     tell("drawing and writing");
     let mut pictures = page::pictures(&problem, &outcome).map_err(RunError::from)?;

@@ -7,7 +7,7 @@
 //! * **acceleration**: each measured one less that of the measured motion.
 
 use super::basis::Basis;
-use super::estimate::{View, effort_sensor, position_sensor};
+use super::estimate::{View, effort_sensor, output_sensor, position_sensor};
 use super::motions::Motions;
 use super::thresholds::{DYNAMICS_BAND, PLAIN_BAND};
 use crate::calibrate::spectrum::Signal;
@@ -67,6 +67,8 @@ pub struct Residuals {
 enum Effort<'a> {
     /// Samples of a sensor, plain and slow, to be corrected for its errors.
     Measured(usize, &'a [f64], &'a [f64]),
+    /// What a sampled drive gives when it is asked for its recorded outputs.
+    Asked(usize),
     /// The law of a drive.
     Law(usize),
     /// Nothing acts.
@@ -80,6 +82,8 @@ struct Look<'a> {
     basis: &'a Basis,
     /// Rate of each driven joint's reading.
     rates: Vec<Option<Vec<f64>>>,
+    /// What each drive with a sampled controller gives by its recorded outputs.
+    asked: Vec<Option<Vec<f64>>>,
 }
 
 /// The residuals of a view under a mechanism on some rows; none where the measured motion leads it where it
@@ -91,7 +95,8 @@ pub fn residuals(
     rows: Range<usize>,
     motions: &Motions,
 ) -> Option<Residuals> {
-    let look = Look { view, mechanism, basis, rates: rates(view, mechanism) };
+    let (rates, asked) = (rates(view, mechanism), asked(view, mechanism));
+    let look = Look { view, mechanism, basis, rates, asked };
     let mut found = Residuals::default();
     look.names(&mut found);
     let poses = motions.of(view, mechanism, basis, rows.clone())?;
@@ -109,6 +114,18 @@ fn rates(view: &View, mechanism: &Mechanism) -> Vec<Option<Vec<f64>>> {
         Some(derivative(view.plain(sensor)?, view.interval))
     };
     mechanism.actuators.iter().map(rate).collect()
+}
+
+/// Efforts of drives with sampled controllers, out of what these were recorded to ask for.
+fn asked(view: &View, mechanism: &Mechanism) -> Vec<Option<Vec<f64>>> {
+    let of = |(index, drive): (usize, &crate::mechanism::Actuator)| {
+        let Drive::Sampled(cascade) = drive.drive else { return None };
+        let sensor = output_sensor(mechanism, index)?;
+        let (errors, read) = (&mechanism.sensors[sensor], view.plain(sensor)?);
+        let outputs: Vec<f64> = (0..read.len()).map(|row| view.shown(errors, read, row)).collect();
+        Some(cascade.forces(&outputs, view.interval))
+    };
+    mechanism.actuators.iter().enumerate().map(of).collect()
 }
 
 impl<'a> Look<'a> {
@@ -133,7 +150,10 @@ impl<'a> Look<'a> {
     fn others(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.mechanism.sensors.len()).filter(|&i| {
             let reads = self.mechanism.sensors[i].reads;
-            let position = !matches!(reads, Reads::Command(_) | Reads::Effort(_));
+            let position = !matches!(
+                reads,
+                Reads::Command(_) | Reads::Added(_) | Reads::Effort(_) | Reads::Output(_)
+            );
             position && !self.basis.needs(i) && self.view.plain(i).is_some()
         })
     }
@@ -148,8 +168,9 @@ impl<'a> Look<'a> {
         match self.mechanism.actuators[drive].drive {
             Drive::Servo { .. } if self.rates[drive].is_some() => Some(Effort::Law(drive)),
             Drive::Effort => Some(Effort::Law(drive)),
+            Drive::Sampled(_) if self.asked[drive].is_some() => Some(Effort::Asked(drive)),
             // What holds a prescribed coordinate is anything, a servo's effort is unknown without its error, and a
-            // sampled controller's output is, too.
+            // sampled controller remembers what nobody recorded.
             Drive::Servo { .. } | Drive::Prescribed | Drive::Sampled(_) => None,
         }
     }
@@ -210,6 +231,11 @@ impl<'a> Look<'a> {
         }
     }
 
+    /// What a drive with a sampled controller gives at a row.
+    fn given(&self, drive: usize, row: usize) -> f64 {
+        self.asked[drive].as_ref().map_or(0.0, |asked| asked[row])
+    }
+
     /// What a sensor looked at, at a row of one of its series.
     fn looked_at(&self, sensor: usize, series: &[f64], row: usize) -> f64 {
         self.view.shown(&self.mechanism.sensors[sensor], series, row)
@@ -243,6 +269,7 @@ impl<'a> Look<'a> {
                     Effort::Measured(sensor, smooth, slow) => {
                         [smooth, slow].map(|series| self.looked_at(sensor, series, row))
                     }
+                    Effort::Asked(drive) => [self.given(drive, row); 2],
                     Effort::Law(drive) => [self.law(drive, t, row); 2],
                     Effort::None => [0.0; 2],
                 })
@@ -289,6 +316,7 @@ impl<'a> Look<'a> {
                     Some(Effort::Measured(sensor, smooth, _)) => {
                         self.looked_at(sensor, smooth, row)
                     }
+                    Some(Effort::Asked(drive)) => self.given(drive, row),
                     Some(Effort::Law(drive)) => self.law(drive, t, row),
                     Some(Effort::None) | None => 0.0,
                 };

@@ -1,10 +1,12 @@
 //! What the sensors of a machine would have recorded.
 
+use super::estimate::position_sensor;
 use super::recording::Recording;
+use super::start::told_by;
 use crate::engine::{Halt, LONGEST_STEP, Schedule, StepControl, run};
 use crate::measure::filter::ZeroPhase;
 use crate::measure::spline::CubicSpline;
-use crate::mechanism::{Mechanism, Reads, Sensor};
+use crate::mechanism::{Drive, Mechanism, Reads, Sensor};
 use nalgebra::Vector2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -52,7 +54,7 @@ pub fn record(
     let rows = lead + (like.samples - 1) * fine;
     let schedule = Schedule { duration: rows as f64 * interval, interval };
     let machine = &machine;
-    let commands = |i: usize| matches!(machine.sensors[i].reads, Reads::Command(_));
+    let commands = |i: usize| machine.sensors[i].tells();
     let read: Vec<usize> =
         (0..machine.sensors.len()).filter(|&i| like.get(i).is_some() && !commands(i)).collect();
     let mut columns: Vec<Vec<f64>> = read.iter().map(|_| Vec::with_capacity(rows + 1)).collect();
@@ -60,15 +62,43 @@ pub fn record(
         for (&i, column) in read.iter().zip(&mut columns) {
             let sensor = &machine.sensors[i];
             let (states, angles) = (instant.states, instant.angles);
-            column.push(sensor.reading(machine, states, angles, instant.evaluation));
+            column.push(match sensor.reads {
+                // A controller makes its output of this.
+                Reads::Output(drive) => machine.encoder(drive, instant.evaluation),
+                _ => sensor.reading(machine, states, angles, instant.evaluation),
+            });
         }
     })?;
     let command = |i| like.get(i).filter(|_| commands(i)).map(<[f64]>::to_vec);
     let mut recorded: Vec<Option<Vec<f64>>> = (0..machine.sensors.len()).map(command).collect();
     for (&i, column) in read.iter().zip(columns) {
-        recorded[i] = Some(shown(&machine.sensors[i], column, interval, lead, fine));
+        let sensor = &machine.sensors[i];
+        recorded[i] = Some(match sensor.reads {
+            Reads::Output(drive) => {
+                let read: Vec<f64> = column[lead..].iter().step_by(fine).copied().collect();
+                let outputs = outputs(machine, like, drive, &read);
+                outputs.into_iter().map(|value| sensor.scale * value + sensor.offset).collect()
+            }
+            _ => shown(sensor, column, interval, lead, fine),
+        });
     }
     Ok(like.with(recorded))
+}
+
+/// What the sampled controller of a drive asks of it (N or N·m) at the rows of a recording where it reads these
+/// coordinates; nothing of other drives and without commands.
+pub(super) fn outputs(
+    machine: &Mechanism,
+    recording: &Recording,
+    drive: usize,
+    read: &[f64],
+) -> Vec<f64> {
+    let commands = told_by(machine, recording, Reads::Command(drive));
+    let added = told_by(machine, recording, Reads::Added(drive));
+    match (machine.actuators[drive].drive, commands) {
+        (Drive::Sampled(cascade), Some(commands)) => cascade.outputs(commands, read, added),
+        _ => vec![0.0; read.len()],
+    }
 }
 
 /// What a sensor shows at every `fine`-th of the samples from `lead` on.
@@ -120,12 +150,32 @@ pub fn apart(sensors: &[Sensor], a: &Recording, b: &Recording) -> f64 {
     sensors.iter().enumerate().filter_map(of).fold(0.0, f64::max)
 }
 
-/// The recording with the sensors' noise and rounding; commands are known.
+/// The recording with the noise of the machine's sensors and what controllers that read them make of it.
+pub fn noisy(clean: &Recording, machine: &Mechanism, seed: u64) -> Recording {
+    let seen = with_noise(clean, &machine.sensors, seed);
+    let column = |(i, sensor): (usize, &Sensor)| {
+        let values = seen.get(i)?.to_vec();
+        let Reads::Output(drive) = sensor.reads else { return Some(values) };
+        let encoder = position_sensor(machine, machine.actuators[drive].joint);
+        let pair = encoder.and_then(|i| seen.get(i).zip(clean.get(i)));
+        let Some([noisy, exact]) =
+            pair.map(|(a, b)| [a, b].map(|read| outputs(machine, clean, drive, read)))
+        else {
+            return Some(values);
+        };
+        let more = noisy.iter().zip(&exact).map(|(noisy, exact)| noisy - exact);
+        Some(values.iter().zip(more).map(|(value, more)| value + more).collect())
+    };
+    let columns: Vec<Option<Vec<f64>>> = machine.sensors.iter().enumerate().map(column).collect();
+    seen.with(columns)
+}
+
+/// The recording with the sensors' noise and rounding; what machines are told is known.
 pub fn with_noise(clean: &Recording, sensors: &[Sensor], seed: u64) -> Recording {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let columns = sensors.iter().enumerate().map(|(i, sensor)| {
         let values = clean.get(i)?;
-        if matches!(sensor.reads, Reads::Command(_)) {
+        if sensor.tells() {
             return Some(values.to_vec());
         }
         let Sensor { std, resolution: step, .. } = *sensor;

@@ -8,7 +8,8 @@ use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};
 use crate::measure::spline::CubicSpline;
 use crate::mechanism::{
-    Actuator, Command, Commands, Drive, Idle, JointIndex, Load, Mechanism, Reads, Situation,
+    Actuator, BodyState, Command, Commands, Drive, Idle, JointIndex, Load, Mechanism, Reads,
+    Sensor, Situation,
 };
 use crate::model::recorded;
 use crate::scenario::{Problem, Scenario};
@@ -31,20 +32,53 @@ const HOLD: f64 = 300.0;
 /// square of time: short beside its swing, and enough rows to average a sensor's steps.
 const FIRST: f64 = 0.012;
 
-/// Commands of a recording, interpolated by cubic splines: they rest before it and after it.
+/// What a recording says that a drive was told.
 #[derive(Debug)]
-struct Recorded(Vec<Option<CubicSpline>>);
+enum Told {
+    /// A command between whose rows it goes along a cubic spline; it rests before them and after them.
+    Smooth(CubicSpline),
+    /// What a sampled controller saw, held from row to row: its command, and what was added to its output in V.
+    Held { command: Vec<f64>, added: Vec<f64>, interval: f64 },
+    /// Nothing.
+    Nothing,
+}
+
+/// The value at time `t` (s) of samples that are held over `interval` s.
+fn held_at(samples: &[f64], interval: f64, t: f64) -> Option<f64> {
+    let row = (t / interval).round().max(0.0) as usize;
+    samples.get(row.min(samples.len().saturating_sub(1))).copied()
+}
+
+/// Commands of a recording.
+#[derive(Debug)]
+struct Recorded(Vec<Told>);
 
 impl Commands for Recorded {
     fn at(&self, t: f64, commands: &mut [Command]) {
-        for (command, spline) in commands.iter_mut().zip(&self.0) {
-            if let Some(spline) = spline {
-                // The last row may be reached a rounding error late.
-                let end = spline.end();
-                let t = if t > end && t < end * (1.0 + 1e-9) { end } else { t };
-                let [position, rate, acceleration] = spline.at(t);
-                *command = Command { position, rate, acceleration };
+        for (told, to) in self.0.iter().zip(commands) {
+            match told {
+                Told::Smooth(spline) => {
+                    // The last row may be reached a rounding error late.
+                    let end = spline.end();
+                    let t = if t > end && t < end * (1.0 + 1e-9) { end } else { t };
+                    let [position, rate, acceleration] = spline.at(t);
+                    *to = Command { position, rate, acceleration };
+                }
+                Told::Held { command, interval, .. } => {
+                    let position = held_at(command, *interval, t).unwrap_or_default();
+                    *to = Command { position, ..Command::default() };
+                }
+                Told::Nothing => {}
             }
+        }
+    }
+
+    fn added(&self, index: usize, t: f64) -> f64 {
+        match self.0.get(index) {
+            Some(Told::Held { added, interval, .. }) => {
+                held_at(added, *interval, t).unwrap_or_default()
+            }
+            _ => 0.0,
         }
     }
 }
@@ -54,13 +88,34 @@ pub fn commands(mechanism: &Mechanism, recording: &Recording) -> Arc<dyn Command
     if mechanism.actuators.is_empty() {
         return Arc::new(Idle);
     }
-    let t: Vec<f64> = (0..recording.samples).map(|i| i as f64 * recording.interval).collect();
-    let spline = |drive: usize| {
-        let reads = |reads: &Reads| matches!(reads, Reads::Command(i) if *i == drive);
-        let sensor = mechanism.sensors.iter().position(|sensor| reads(&sensor.reads))?;
-        Some(CubicSpline::natural(&t, recording.get(sensor)?))
+    let interval = recording.interval;
+    let t: Vec<f64> = (0..recording.samples).map(|i| i as f64 * interval).collect();
+    let told = |drive: usize| {
+        let Some(command) = told_by(mechanism, recording, Reads::Command(drive)) else {
+            return Told::Nothing;
+        };
+        if let Drive::Sampled(_) = mechanism.actuators[drive].drive {
+            let added = told_by(mechanism, recording, Reads::Added(drive));
+            let added = added.unwrap_or_default().to_vec();
+            return Told::Held { command: command.to_vec(), added, interval };
+        }
+        Told::Smooth(CubicSpline::natural(&t, command))
     };
-    Arc::new(Recorded((0..mechanism.actuators.len()).map(spline).collect()))
+    Arc::new(Recorded((0..mechanism.actuators.len()).map(told).collect()))
+}
+
+/// The column of a recording that holds what a drive was told.
+pub(super) fn told_by<'a>(
+    mechanism: &Mechanism,
+    recording: &'a Recording,
+    what: Reads,
+) -> Option<&'a [f64]> {
+    let same = |reads: &Reads| match (reads, what) {
+        (Reads::Command(a), Reads::Command(b)) | (Reads::Added(a), Reads::Added(b)) => *a == b,
+        _ => false,
+    };
+    let mut sensors = mechanism.sensors.iter();
+    recording.get(sensors.position(|sensor| same(&sensor.reads))?)
 }
 
 /// Coordinates at the first row of joints that no drive moves and that are measured, by sensor.
@@ -107,6 +162,42 @@ impl Commands for Holding {
         for (command, position) in held.iter_mut().zip(&self.held) {
             *command = Command { position: *position, ..Command::default() };
         }
+    }
+
+    fn added(&self, index: usize, t: f64) -> f64 {
+        self.drives.added(index, t)
+    }
+}
+
+/// Puts drives with sampled controllers where their encoders show them at the first row, which need not be where they
+/// are told to be; others stay at their commands.
+fn placed(mechanism: &mut Mechanism, recording: &Recording) {
+    let mut first = vec![Command::default(); mechanism.actuators.len()];
+    mechanism.commands.at(0.0, &mut first);
+    for (drive, first) in mechanism.actuators.iter().zip(&mut first) {
+        let sensor = position_sensor(mechanism, drive.joint);
+        let read = sensor.and_then(|sensor| Some((sensor, *recording.get(sensor)?.first()?)));
+        if let (Drive::Sampled(_), Some((sensor, value))) = (drive.drive, read) {
+            let Sensor { offset, scale, .. } = mechanism.sensors[sensor];
+            first.position = (value - offset) / scale;
+        }
+    }
+    let commands = std::mem::replace(&mut mechanism.commands, Arc::new(Fixed(first)));
+    // What cannot be closed there stays where it is told to be.
+    let starts: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
+    if mechanism.close(0.0).is_err() {
+        mechanism.bodies.iter_mut().zip(starts).for_each(|(body, start)| body.start = start);
+    }
+    mechanism.commands = commands;
+}
+
+/// Commands that stay.
+#[derive(Debug)]
+struct Fixed(Vec<Command>);
+
+impl Commands for Fixed {
+    fn at(&self, _: f64, commands: &mut [Command]) {
+        commands.copy_from_slice(&self.0);
     }
 }
 
@@ -193,7 +284,8 @@ pub struct Released {
 }
 
 /// The machine of a rig with these effects as it was let go: a driven one at rest at its first commands, some
-/// time before the first row; one that drives leave free after it was held there, at the first row.
+/// time before the first row, or, where a sampled controller holds it, where it was at the first row; one that drives
+/// leave free after it was held there, at the first row.
 ///
 /// # Errors
 /// An effect that the machine cannot take, joints that do not close, a run that breaks down.
@@ -209,7 +301,13 @@ pub fn released(
             body.start.twist.fill(0.0);
         }
         release(&mut mechanism, 0);
-        mechanism.epoch = -LEAD;
+        let sampled = |drive: &Actuator| matches!(drive.drive, Drive::Sampled(_));
+        if mechanism.actuators.iter().any(sampled) {
+            placed(&mut mechanism, recording);
+            mechanism.epoch = 0.0;
+        } else {
+            mechanism.epoch = -LEAD;
+        }
         return Ok(Released { machine: mechanism, coordinates: Vec::new() });
     }
     let let_go = |values: &[f64]| let_go_at(rig, effects, recording, values, control);

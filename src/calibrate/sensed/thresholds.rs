@@ -225,3 +225,54 @@ pub const CLEARED: f64 = 0.5;
 /// Standard deviations of the mean squares of draws of noise, beyond their mean, up to which a residual's own is noise:
 /// of sixteen draws, one of two hundred lies beyond by chance (Student's t).
 pub const CHANCE: f64 = 3.0;
+
+/// Factors by which units are mistaken: milli, centi, inches, degrees.
+pub const FACTORS: [f64; 8] = [
+    1e3,
+    1e-3,
+    1e2,
+    1e-2,
+    0.0254,
+    1.0 / 0.0254,
+    std::f64::consts::PI / 180.0,
+    180.0 / std::f64::consts::PI,
+];
+
+/// Share by which a recording's rate may differ from its controller's: more is another machine.
+pub const CLOCK: f64 = 1e-3;
+
+/// Share by which recorded outputs of a controller may differ from what it makes of the recorded readings: a wrong unit
+/// is beyond, and controllers as they are published are below.
+pub const TOLERATED: f64 = 0.15;
+
+/// Order and corner in Hz of the low-pass, forward and backward, through which outputs of sampled controllers are held
+/// against the motion; and time in s that is left out at both ends, where it has no neighbours. As the published
+/// figures of such recordings were had (Janot, Gautier, Brunot 2019): working motions have their share below 15 Hz.
+pub const OUTPUT_FILTER: (usize, f64) = (4, 50.0);
+/// See [`OUTPUT_FILTER`].
+pub const OUTPUT_TRIM: f64 = 0.2;
+
+/// Stretches in s over which models of such machines are compared: longer than what is left remembers, a tenth of a
+/// second at most, with some to spare.
+pub const STRETCH: f64 = 1.0;
+
+/// Half widths of a 95 % interval that a candidate has to be better by there: three standard errors, since a dozen are
+/// tried in each round.
+pub const BETTER: f64 = 1.5;
+
+/// Share by which it has to be better besides: what is certain and less than this is not worth a value.
+pub const WORTH: f64 = 0.01;
+
+/// Share of a joint's rate (root mean square) at which dry friction is near its full value there: below what turns take
+/// to pass.
+pub const SIGN_AT: f64 = 1e-3;
+
+/// Shares of that rate over which friction that builds up or falls is tried: from where filters hide it to a good
+/// share of the motion.
+pub const BUILDS_UP: [f64; 9] = [0.025, 0.05, 0.075, 0.1, 0.125, 0.175, 0.25, 0.375, 0.625];
+
+/// Share of a value's trace that others do not make up from which recordings of such a machine tell it.
+pub const APART: f64 = 1e-3;
+
+/// Median of the size of a normal variable in standard deviations.
+pub const MEDIAN: f64 = 0.674_49;

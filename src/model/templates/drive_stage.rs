@@ -1,10 +1,11 @@
 //! A load that slides along the x axis on the driven joint P1.
 
+use super::instruments;
 use super::parts::{body, described, drive, ground, plain_output, prismatic};
 use crate::model::motion;
 use crate::scenario::{
-    Described, DriveStage, JointLine, JointMotion, JointMultisine, JointPath, JointQuintic,
-    JointTable, Motion, Problem, Scenario, Term, Term1,
+    Described, DriveMode, DriveStage, JointLine, JointMotion, JointMultisine, JointPath,
+    JointQuintic, JointTable, Motion, Problem, Quantity, Scenario, Term, Term1,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -23,11 +24,22 @@ pub(super) fn expand(scenario: &Scenario, stage: &DriveStage) -> Result<Scenario
         joints: vec![prismatic("P1", "ground.P", "load.P", None)],
         drives: vec![drive(scenario, "P1", Some("1"))],
         outputs: plain_output("load"),
+        sensors: instruments::named(scenario, known(scenario.drive.mode))?,
         ..Described::default()
     };
     let motion =
         Motion::Joints(vec![JointMotion { joint: "P1".to_owned(), path: along(scenario) }]);
     Ok(described(scenario, machine, motion, None))
+}
+
+/// What recordings of a stage hold: of a sampled controller what it asks of its drive, and what was added to that.
+fn known(mode: DriveMode) -> &'static [(&'static str, Quantity, &'static str)] {
+    const COMMAND: (&str, Quantity, &str) = ("q1_cmd", Quantity::Command, "P1");
+    const LENGTH: (&str, Quantity, &str) = ("q1", Quantity::Position, "P1");
+    const SAMPLED: [(&str, Quantity, &str); 4] =
+        [COMMAND, LENGTH, ("F1", Quantity::Output, "P1"), ("added1", Quantity::Added, "P1")];
+    const OTHERS: [(&str, Quantity, &str); 3] = [COMMAND, LENGTH, ("F1", Quantity::Force, "P1")];
+    if mode == DriveMode::Sampled { &SAMPLED } else { &OTHERS }
 }
 
 /// The x of a path.

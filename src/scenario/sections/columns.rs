@@ -1,6 +1,6 @@
 //! `[columns]`: which column of a recording is which quantity, and in which unit.
 
-use crate::measure::log::{Channel, Source};
+use crate::measure::log::Source;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -31,30 +31,7 @@ impl Column {
 /// The name of time.
 const TIME: &str = "t";
 
-/// The column of time, and those of channels.
-pub type Sources = (Source, Vec<(Channel, Source)>);
-
 impl Columns {
-    /// The column of time, and those of channels out of `known`; the first name that is none of them.
-    ///
-    /// # Errors
-    /// That name.
-    pub fn sources(&self, known: &[Channel]) -> Result<Sources, &str> {
-        let mut time = Source::new(TIME, 1.0);
-        let mut found = Vec::new();
-        for (name, column) in &self.0 {
-            let source = column.source();
-            if name == TIME {
-                time = source;
-                continue;
-            }
-            let channel =
-                known.iter().find(|channel| channel.to_string() == *name).ok_or(name.as_str())?;
-            found.push((*channel, source));
-        }
-        Ok((time, found))
-    }
-
     /// Where a quantity stands, by its name; none where nothing is said of it.
     pub fn source(&self, quantity: &str) -> Option<Source> {
         self.0.get(quantity).map(Column::source)

@@ -430,6 +430,10 @@ pub enum Quantity {
     Command,
     /// Force or torque of a drive.
     Force,
+    /// What a sampled controller asks of its drive at its samples, N or N·m.
+    Output,
+    /// What is added to the output of a sampled controller, V; recordings without it had nothing added.
+    Added,
     /// World coordinate of a point.
     X,
     /// World coordinate of a point.

@@ -107,7 +107,7 @@ impl Mechanism {
     /// Whether its recordings are read by `[[sensor]]`s: its file's own, or those that the template makes of
     /// `[columns]`.
     pub fn has_sensors(&self) -> bool {
-        matches!(self, Mechanism::Described(_) | Mechanism::Pendulum(_))
+        matches!(self, Mechanism::Described(_) | Mechanism::Pendulum(_) | Mechanism::DriveStage(_))
     }
 
     /// The sections beside those of every machine that this one has a use for.

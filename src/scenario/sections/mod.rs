@@ -16,7 +16,7 @@ mod simulation;
 
 pub use crate::contact::StiffnessForm;
 pub use crate::engine::StepControl;
-pub use columns::{Columns, Sources};
+pub use columns::Columns;
 pub use contact::{Contact, Law};
 pub use described::{
     Body, Described, Fixed, Force, GROUND, Ground, Joint, JointDrive, On, Output, Prismatic,

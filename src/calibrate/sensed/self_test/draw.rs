@@ -9,7 +9,7 @@ use crate::calibrate::sensed::basis::Basis;
 use crate::calibrate::sensed::candidates::candidates;
 use crate::calibrate::sensed::start::machine;
 use crate::effects::{Kind, Targets};
-use crate::mechanism::{Mechanism, Reads};
+use crate::mechanism::Mechanism;
 use crate::model::parts_of;
 use crate::scenario::Problem;
 
@@ -100,7 +100,7 @@ impl Trial {
 fn columns(family: &Family) -> Result<Vec<String>, Problem> {
     let rig = of_family(family)?;
     let sensors = parts_of(&rig)?.sensors.into_iter();
-    let measured = sensors.filter(|sensor| !matches!(sensor.reads, Reads::Command(_)));
+    let measured = sensors.filter(|sensor| !sensor.tells());
     Ok(measured.map(|sensor| sensor.column).collect())
 }
 

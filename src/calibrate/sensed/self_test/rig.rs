@@ -108,13 +108,15 @@ fn instruments(described: &mut Described, scale: Scale, trial: &Trial) {
     for sensor in &mut described.sensors {
         let straight = prismatic.contains(&sensor.of);
         let by = match sensor.quantity {
-            Quantity::Force if straight => scale.mass,
-            Quantity::Force => scale.mass * scale.length,
+            Quantity::Force | Quantity::Output if straight => scale.mass,
+            Quantity::Force | Quantity::Output => scale.mass * scale.length,
             Quantity::X | Quantity::Y => scale.length,
             Quantity::Position if straight => scale.length,
-            Quantity::Position | Quantity::Angle | Quantity::Acceleration | Quantity::Command => {
-                1.0
-            }
+            Quantity::Position
+            | Quantity::Angle
+            | Quantity::Acceleration
+            | Quantity::Command
+            | Quantity::Added => 1.0,
         };
         sensor.std *= by * trial.noise;
         sensor.resolution *= by * trial.noise;

@@ -10,7 +10,7 @@ use crate::calibrate::sensed::problem::{Problem, Stopped};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::SEEN;
 use crate::effects::Setting;
-use crate::mechanism::{Reads, Sensor};
+use crate::mechanism::Sensor;
 
 /// How often another target or way of an effect is drawn that does not show.
 const DRAWS: usize = 3;
@@ -83,8 +83,7 @@ pub(super) fn hide(trial: &Trial, bench: &Bench) -> Result<Option<Hidden>, Stopp
 
 /// Makes one of the measuring sensors noisier; its column.
 fn make_noisy(sensors: &mut [Sensor], dice: &mut Dice) -> String {
-    let measuring: Vec<usize> =
-        (0..sensors.len()).filter(|&i| !matches!(sensors[i].reads, Reads::Command(_))).collect();
+    let measuring: Vec<usize> = (0..sensors.len()).filter(|&i| !sensors[i].tells()).collect();
     let sensor = &mut sensors[dice.one_of(&measuring).copied().unwrap_or_default()];
     let rounding = sensor.resolution.powi(2) / 12.0;
     let square = NOISIER.powi(2) * (sensor.std.powi(2) + rounding) - rounding;

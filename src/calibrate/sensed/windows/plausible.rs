@@ -6,8 +6,7 @@ use super::bench::Bench;
 use super::outcome::horizons;
 use super::score::score;
 use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::thresholds::{ASTRAY, FOLLOWED};
-use crate::identify::plausible::FACTORS;
+use crate::calibrate::sensed::thresholds::{ASTRAY, FACTORS, FOLLOWED};
 use crate::measure::splice::{Samples, one_run};
 use crate::mechanism::{Mechanism, Reads};
 use crate::scenario::{Problem, Scenario};
@@ -31,7 +30,7 @@ pub fn wrong(rig: &Scenario, bench: &Bench) -> Vec<String> {
 
 /// Columns of places and angles that leave their place or speed at once. Rows that were put on a grid are not looked
 /// at: splines bend there.
-fn spliced(machine: &Mechanism, run: &Recording) -> Vec<String> {
+pub(in crate::calibrate::sensed) fn spliced(machine: &Mechanism, run: &Recording) -> Vec<String> {
     let one = |(i, sensor): (usize, &crate::mechanism::Sensor)| {
         let values = run.get(i).filter(|_| run.jitter == 0.0)?;
         let place = matches!(
@@ -100,7 +99,12 @@ fn units(rig: &Scenario, machine: &Mechanism, run: &Recording) -> Option<Problem
 }
 
 /// Where a rig says how sensor `index` is read, and what it would say with `factor` times the scale.
-fn scaled_by(rig: &Scenario, machine: &Mechanism, index: usize, factor: f64) -> (String, String) {
+pub(in crate::calibrate::sensed) fn scaled_by(
+    rig: &Scenario,
+    machine: &Mechanism,
+    index: usize,
+    factor: f64,
+) -> (String, String) {
     let sensor = &machine.sensors[index];
     let (column, scale) = (&sensor.column, sensor.factor * factor);
     if rig.mechanism.described().is_some() {

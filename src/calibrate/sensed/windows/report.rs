@@ -110,7 +110,7 @@ pub(super) fn run_zeros(bench: &Bench, zeros: &[Vec<[f64; 2]>]) -> Vec<RunZero> 
 }
 
 /// What is to be known of recordings: late rows, columns that nobody asks for.
-pub(super) fn remarks(runs: &[Recording]) -> Vec<String> {
+pub(in crate::calibrate::sensed) fn remarks(runs: &[Recording]) -> Vec<String> {
     let mut remarks = Vec::new();
     for run in runs {
         if run.jitter > 0.0 {
