@@ -70,6 +70,19 @@ fn the_run_that_was_fitted_proves_nothing() {
     place.refused(line, &["b.csv: holds the same samples as a.csv", "another run"]);
 }
 
+/// Noise that is larger than all that a column ever showed.
+#[test]
+fn noise_that_cannot_be_is_refused() {
+    let rigs = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs-planar/planar-2");
+    let place = Place::new();
+    let rig = std::fs::read_to_string(format!("{rigs}/rig.toml")).unwrap();
+    place.write("rig.toml", &rig.replace("std = 0.003", "std = 300.0"));
+    place.refused(
+        &format!("calibrate --rig rig.toml --data {rigs}/run-a.csv --quiet"),
+        &["rig.toml:", "sensor.2.std: noise of T_O is 300 N·m, and all that it shows spans"],
+    );
+}
+
 #[test]
 fn rigs_that_cannot_be_calibrated_are_refused() {
     let (machine, _) = FOUR_BAR.split_once("[[sensor]]").unwrap();

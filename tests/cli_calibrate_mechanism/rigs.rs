@@ -46,6 +46,31 @@ fn a_four_bar_whose_rocker_is_not_as_long_as_declared_is_explained() {
     assert!(worst(&report) < 1.5, "{}", report["errors"]);
 }
 
+/// Nobody knows how noisy its sensors are: that is measured.
+#[test]
+fn without_declared_noise_the_four_bar_is_explained_as_well() {
+    let place = Place::new();
+    let rig = std::fs::read_to_string(file("planar-2", "rig.toml")).unwrap();
+    let noise = |line: &&str| line.starts_with("std") || line.starts_with("resolution");
+    let silent = rig.lines().filter(|line| !noise(line)).collect::<Vec<_>>().join("\n");
+    place.write("rig.toml", &silent);
+    let text = place.good(&format!(
+        "calibrate --rig rig.toml --data {} --validate {} --out found --json --quiet",
+        file("planar-2", "run-a.csv"),
+        file("planar-2", "run-b.csv")
+    ));
+    let report: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(report["verdict"], "explained", "{}", report["summary"]);
+    assert_eq!(report["effects"][0]["point"], "rocker.B");
+    let torque =
+        report["noises"].as_array().unwrap().iter().find(|n| n["column"] == "T_O").unwrap();
+    assert_eq!(torque["declared"], 0.0);
+    let measured = torque["measured"].as_f64().unwrap();
+    assert!((measured / 0.003 - 1.0).abs() < 0.1, "{measured} of 0.003");
+    assert!(report["summary"].as_str().unwrap().contains("T_O declares no noise"));
+    assert!(worst(&report) < 1.5, "{}", report["errors"]);
+}
+
 /// A motor's torque and command, and an encoder on the other side: the crank's own angle was not recorded, and the
 /// rocker's does not say which way the crank went through its dead centres.
 #[test]

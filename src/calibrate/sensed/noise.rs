@@ -8,15 +8,17 @@ use super::problem::Problem;
 use super::recording::Recording;
 use super::simulate::{deviation, with_noise};
 use super::thresholds::{MEDIAN, NOISE_BAND, NOISE_DRAWS, OTHER_NOISE, SURE_NOISE};
+use crate::calibrate::quantity;
 use crate::calibrate::spectrum::{Signal, fast_length, transform};
-use crate::mechanism::{Reads, Sensor};
+use crate::mechanism::{Mechanism, Reads, Sensor};
+use crate::scenario::Scenario;
 
 /// A sensor whose noise is not what is declared.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct OtherNoise {
     /// Its column.
     pub column: String,
-    /// Standard deviation as declared, rounding among it, in its unit.
+    /// Standard deviation as declared, rounding among it, in its unit; 0 where none is.
     pub declared: f64,
     /// The same as measured.
     pub measured: f64,
@@ -26,7 +28,25 @@ pub struct OtherNoise {
 
 /// Sensors whose noise differs from what is declared by more than chance and by more than it matters; `simulated`
 /// are noiseless recordings of the declared machine, run by run. The problem goes on with what was measured.
+///
+/// Sensors that declare none are given that of the first recording beforehand, and are among what is found.
 pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<OtherNoise> {
+    let before = problem.declared.sensors.clone();
+    if let Some(run) = problem.runs.first() {
+        measured(&mut problem.declared.sensors, &run.recording);
+    }
+    let mut found = beside(problem, simulated);
+    let silent = before.iter().map(is_silent).zip(&problem.declared.sensors);
+    for (_, sensor) in silent.filter(|(silent, sensor)| *silent && !is_silent(sensor)) {
+        found.retain(|other| other.column != sensor.column);
+        let (measured, unit) = (deviation(sensor, &[]), sensor.unit(&problem.declared));
+        found.push(OtherNoise { column: sensor.column.clone(), declared: 0.0, measured, unit });
+    }
+    found
+}
+
+/// Sensors whose noise differs from what they have by now.
+fn beside(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<OtherNoise> {
     let mut found = Vec::new();
     for i in 0..problem.declared.sensors.len() {
         let sensor = problem.declared.sensors[i].clone();
@@ -68,7 +88,7 @@ pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<Other
         if !ratio.is_finite() || ratio <= 0.0 || !other || (ratio - 1.0).abs() < chance {
             continue;
         }
-        let Some(std) = white(&sensor, ratio) else { continue };
+        let std = white(&sensor, ratio);
         let declared = deviation(&sensor, &[]);
         let unit = sensor.unit(&problem.declared);
         problem.declared.sensors[i].std = std;
@@ -78,19 +98,55 @@ pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<Other
     found
 }
 
-/// White noise beside its rounding with which a sensor's noise has `ratio` times its power; none where rounding
-/// alone has more.
-fn white(sensor: &Sensor, ratio: f64) -> Option<f64> {
+/// White noise beside its rounding with which a sensor's noise has `ratio` times its power; 0 where rounding alone has
+/// more.
+fn white(sensor: &Sensor, ratio: f64) -> f64 {
     let rounding = sensor.resolution.powi(2) / 12.0;
-    let square = ratio * (sensor.std.powi(2) + rounding) - rounding;
-    (square > 0.0).then(|| square.sqrt())
+    (ratio * (sensor.std.powi(2) + rounding) - rounding).max(0.0).sqrt()
+}
+
+/// What speaks against the noise that a rig declares: more than all that a column ever shows.
+pub fn wrong(rig: &Scenario, machine: &Mechanism, recordings: &[Recording]) -> Vec<String> {
+    let range = |i: usize| {
+        let own = recordings.iter().filter_map(|recording| recording.get(i));
+        let ranges = own.map(|values| {
+            let (least, most) = values
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+            most - least
+        });
+        ranges.fold(0.0, f64::max)
+    };
+    let sensors = machine.sensors.iter().enumerate();
+    let too_much = sensors.filter_map(|(i, sensor)| {
+        let range = range(i);
+        let Sensor { column, std, .. } = sensor;
+        if range <= 0.0 || *std <= range {
+            return None;
+        }
+        let key = match rig.mechanism.has_sensors() {
+            true => format!("sensor.{i}.std"),
+            false => "sensors".to_owned(),
+        };
+        let unit = sensor.unit(machine);
+        let [std, range] = [*std, range].map(|value| quantity(value, unit));
+        let message = format!("noise of {column} is {std}, and all that it shows spans {range}");
+        let help = "is it in the unit of the column? Without std and resolution it is measured";
+        Some(rig.problem(&key, message, help).to_string())
+    });
+    too_much.collect()
+}
+
+/// Whether a sensor declares no noise at all.
+fn is_silent(sensor: &Sensor) -> bool {
+    sensor.std == 0.0 && sensor.resolution == 0.0
 }
 
 /// Gives sensors that declare no noise that of a recording, so that what it leaves to any model is known; outputs of
 /// controllers have none of their own.
 pub fn measured(sensors: &mut [Sensor], recording: &Recording) {
     for (i, sensor) in sensors.iter_mut().enumerate() {
-        let silent = sensor.std == 0.0 && sensor.resolution == 0.0;
+        let silent = is_silent(sensor);
         let own = !sensor.tells() && !matches!(sensor.reads, Reads::Output(_));
         if let (true, Some(values)) = (silent && own, recording.get(i)) {
             sensor.std = white_of(values);

@@ -6,7 +6,7 @@ use super::held;
 use super::hypotheses::Tried;
 use super::left::Left;
 use super::limits::Limit;
-use super::noise::OtherNoise;
+use super::noise::{self, OtherNoise};
 use super::outcome::{Outcome, calibrate};
 use super::page;
 use super::problem::{Problem, Stopped};
@@ -18,6 +18,7 @@ use super::windows::plausible;
 use super::windows::report::{Windows, into_folder as by_windows};
 use crate::calibrate::errors::{ChannelError, worst};
 use crate::calibrate::outcome::Verdict;
+use crate::calibrate::quantity;
 use crate::calibrate::recording::stem_of;
 use crate::calibrate::report::{
     ActsOn, Depends, EffectReport, Ranked, RattleReport, ResidualReport, Seeds,
@@ -188,6 +189,7 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
             .map(|(i, common)| recording.get(i).filter(|_| *common).map(<[f64]>::to_vec));
         *recording = recording.with(columns.collect());
     }
+    refuse(noise::wrong(&rig, &built, &recordings))?;
     // What the machine cannot be at a recording's first row is told before anything is written.
     if by_windows {
         let bench = Bench::new(&rig, recordings.clone())?;
@@ -336,8 +338,16 @@ fn summary(outcome: &Outcome) -> String {
 
 /// What is said of instruments that are noisier or quieter than declared.
 fn noises(noises: &[OtherNoise]) -> String {
-    let one = |noise: &OtherNoise| {
-        format!(" Noise of {} is {:.2} × declared.", noise.column, noise.measured / noise.declared)
+    let one = |noise: &OtherNoise| match noise.declared {
+        0.0 => {
+            let OtherNoise { column, measured, unit, .. } = noise;
+            format!(" {column} declares no noise: {} was measured.", quantity(*measured, unit))
+        }
+        _ => format!(
+            " Noise of {} is {:.2} × declared.",
+            noise.column,
+            noise.measured / noise.declared
+        ),
     };
     noises.iter().map(one).collect()
 }
