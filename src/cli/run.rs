@@ -2,10 +2,12 @@
 
 use super::failure::{Failure, refuse_errors};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
+use super::output;
 use super::progress::Progress;
+use super::signals;
 use crate::report::{length, number};
 use crate::simulate::{Summary, assemble, findings};
-use crate::study::{self, Outcome, SUMMARY_FILE};
+use crate::study::{self, Outcome, RunError, SUMMARY_FILE};
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -17,6 +19,9 @@ use std::fmt::Write as _;
 /// each joint the eccentricity in m and the contact force in N), summary.json (the main figures),
 /// scenario.toml (the scenario with every default filled in: `freeplay run` on it repeats the run)
 /// and pictures (SVG).
+///
+/// Ctrl-C and SIGTERM end a run early: what was computed is kept, and summary.json says
+/// `"interrupted": true`.
 ///
 /// Peaks, means and fractions leave out the first simulation.settle seconds, in which the journals,
 /// centred at the start, find their rings.
@@ -48,11 +53,19 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.folder.prepare("run", &scenario.name, SUMMARY_FILE)?;
 
     let mut progress = Progress::new(scenario.simulation.duration, arguments.print.quiet);
-    let outcome = study::run(&scenario, &mut machine, folder, &mut |t| progress.reached(t));
+    let stop = signals::looked_at();
+    let outcome = study::run(&scenario, &mut machine, folder, stop, &mut |t| progress.reached(t));
     progress.clear();
-    let outcome = outcome?;
+    let outcome = match outcome {
+        Err(dropped @ RunError::Dropped) => {
+            output::complain(&dropped.to_string());
+            return Err(signals::interrupted());
+        }
+        outcome => outcome?,
+    };
     arguments.print.result(&outcome.json, || text(&outcome))?;
     match outcome.summary.halted {
+        None if outcome.summary.interrupted => Err(signals::interrupted()),
         None => Ok(()),
         Some(reason) => Err(Failure::Other(reason)),
     }
@@ -68,6 +81,10 @@ fn text(outcome: &Outcome) -> String {
         number(s.wall_s),
         s.steps
     );
+    if s.interrupted {
+        let (reached, asked) = (number(s.simulated_s), number(outcome.duration));
+        let _ = writeln!(text, "  interrupted at {reached} of {asked} s\n");
+    }
     if !s.has_figures() {
         let _ = writeln!(text, "  no figures: the run ended within the first {} s", s.settle_s);
     }

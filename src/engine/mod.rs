@@ -11,6 +11,7 @@ mod clock;
 mod colliders;
 mod dispatcher;
 mod fixed;
+mod halt;
 mod inserter;
 mod leapfrog;
 mod native;
@@ -26,8 +27,9 @@ pub use adaptive::LONGEST_STEP;
 pub use clearance_joints::{ClearanceJoint, ClearanceJoints};
 pub use colliders::{JointColliders, Solver};
 pub use dispatcher::RingDispatcher;
+pub use halt::{Halt, MOST_STEPS_PER_S};
 pub use ring::BearingRing;
-pub use run::{Halt, Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Work, run, run_while};
+pub use run::{Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Work, run, run_while};
 pub use watch::{Peaks, Tally};
 
 use nalgebra::Vector2;

@@ -26,6 +26,8 @@ pub struct Summary {
     pub tolerance_m_s: Option<f64>,
     /// Why the run stopped early, if it did.
     pub halted: Option<String>,
+    /// Whether it was told to stop before its end.
+    pub interrupted: bool,
     /// Time reached in s.
     pub simulated_s: f64,
     /// Start left out of the figures below, in s.
@@ -281,6 +283,7 @@ impl Recorder {
             step_s,
             tolerance_m_s,
             halted,
+            interrupted: work.stopped,
             simulated_s: work.reached,
             settle_s: scenario.simulation.settle(),
             peak_contact_force: joints.iter().map(|j| j.peak_force).fold(f64::NAN, f64::max),

@@ -16,6 +16,6 @@ pub mod sweep;
 pub use check::{
     Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Found, Ideal, check,
 };
-pub use folder::{Folder, FolderError, default_name};
+pub use folder::{Folder, FolderError, abandon, default_name};
 pub use run::{Outcome, RunError, SUMMARY_FILE, run};
 pub(crate) use run::{PAGE_FILE, refused};

@@ -14,6 +14,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant as Clock;
 
 /// The JSON file of a run, by which its folder is known.
@@ -34,6 +35,8 @@ pub struct Outcome {
     pub json: String,
     /// Where all files are.
     pub folder: PathBuf,
+    /// Simulated time in s that was asked for.
+    pub duration: f64,
 }
 
 /// Why a run has no files.
@@ -47,16 +50,9 @@ pub enum RunError {
         /// Why.
         source: io::Error,
     },
-    /// A file of a run cannot be written, and others were.
-    #[error("cannot write {file}: {source}; what was written before is in `{}`", kept.display())]
-    Cut {
-        /// Its name.
-        file: String,
-        /// Why.
-        source: io::Error,
-        /// Where the others are.
-        kept: PathBuf,
-    },
+    /// It was told to stop, and an earlier result is worth more than the part of a new one.
+    #[error("the run was interrupted; the earlier result stands")]
+    Dropped,
     /// A picture cannot be drawn.
     #[error(transparent)]
     Picture(#[from] ReportError),
@@ -72,24 +68,25 @@ pub(crate) fn refused(file: &str) -> impl FnOnce(io::Error) -> RunError {
 }
 
 /// Simulates a machine and writes everything about it into `folder`. `progress` is told the time
-/// reached, in s. A run that breaks down is written up to there; its summary says so in `halted`.
+/// reached, in s. A run that breaks down is written up to there; its summary says so in `halted`. So is
+/// one that ends because `stop` turned true, as `interrupted`, unless an earlier result would be lost
+/// to it.
 ///
 /// # Errors
-/// [`RunError`]; the folder is left as it was. A file that cannot be written ends the run at once, and
-/// those written before are kept beside it.
+/// [`RunError`]; the folder is left as it was. A file that cannot be written ends the run at once.
 pub fn run(
     scenario: &Scenario,
     machine: &mut Machine,
     folder: Folder,
+    stop: &AtomicBool,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Outcome, RunError> {
-    match run_into(scenario, machine, &folder, progress) {
-        Ok((summary, json)) => Ok(Outcome { summary, json, folder: folder.finish()? }),
-        Err(RunError::File { file, source }) => {
-            Err(RunError::Cut { file, source, kept: folder.keep() })
-        }
-        Err(error) => Err(error),
+    let (summary, json) = run_into(scenario, machine, &folder, stop, progress)?;
+    if summary.interrupted && folder.replaces() {
+        return Err(RunError::Dropped);
     }
+    let duration = scenario.simulation.duration;
+    Ok(Outcome { summary, json, folder: folder.finish()?, duration })
 }
 
 /// The summary, and the text of its file.
@@ -97,6 +94,7 @@ fn run_into(
     scenario: &Scenario,
     machine: &mut Machine,
     folder: &Folder,
+    stop: &AtomicBool,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Summary, String), RunError> {
     let started = Clock::now();
@@ -111,7 +109,8 @@ fn run_into(
     let mut written = Ok(());
     let mut positions = Vec::new();
     let ideal = &mut machine.ideal;
-    let ended = engine::run_while(mechanism, machine.control, machine.schedule, &mut |instant| {
+    let (control, schedule) = (machine.control, machine.schedule);
+    let ended = engine::run_while(mechanism, control, schedule, stop, &mut |instant| {
         let ideal = ideal.at(instant.t);
         recorder.row(mechanism, instant, &ideal);
         gallery.row(mechanism, instant, &ideal);
@@ -139,7 +138,9 @@ fn run_into(
         .chain(pictures.iter().map(|picture| picture.file.clone()))
         .collect();
     let mut summary = recorder.finish(scenario, machine, work, wall, halted, files);
+    summary.interrupted |= stop.load(Ordering::Relaxed);
     if summary.halted.is_none()
+        && !summary.interrupted
         && let Some(Chaos { lyapunov, horizon, .. }) =
             chaos::look(&machine.mechanism, machine.control, machine.schedule, &positions, 0.0)
     {

@@ -25,6 +25,12 @@ fn lead(s: &Summary, body: &str) -> String {
             number(s.simulated_s)
         );
     }
+    if s.interrupted {
+        return format!(
+            "The run was interrupted. What follows holds up to {} s.",
+            number(s.simulated_s)
+        );
+    }
     let drives = s.drive_peaks();
     if s.without_play() {
         let needs: Vec<String> =
