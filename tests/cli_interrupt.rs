@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 const SIGNALS: [(&str, Option<i32>); 3] = [("KILL", None), ("TERM", Some(143)), ("INT", Some(130))];
 
 /// Moments at which each command is ended.
-const MOMENTS: usize = 24;
+const MOMENTS: usize = 18;
 
 fn start(place: &Place, line: &str) -> Child {
     Command::new(env!("CARGO_BIN_EXE_freeplay"))
@@ -36,10 +36,24 @@ fn signal(child: &Child, name: &str) {
         .status();
 }
 
-/// Starts a command and ends it after a while, if it has not ended by itself.
-fn end_after(place: &Place, line: &str, name: &str, wait: Duration) -> ExitStatus {
+/// Starts a command and ends it after a share of the time that it takes, which is brought up to date where
+/// it has ended by itself.
+fn end_after(
+    place: &Place,
+    line: &str,
+    name: &str,
+    share: f64,
+    takes: &mut Duration,
+) -> ExitStatus {
+    let started = Instant::now();
     let mut child = start(place, line);
-    std::thread::sleep(wait);
+    while started.elapsed() < takes.mul_f64(share) {
+        if let Some(status) = child.try_wait().unwrap() {
+            *takes = (*takes).min(started.elapsed());
+            return status;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
     signal(&child, name);
     child.wait().unwrap()
 }
@@ -51,13 +65,13 @@ fn time(place: &Place, line: &str) -> Duration {
     started.elapsed()
 }
 
-/// Signals in turn, at moments before `longest` that follow from a seed.
-fn moments(longest: Duration) -> impl Iterator<Item = (&'static str, Option<i32>, Duration)> {
+/// Signals in turn, at shares of a command's time that follow from a seed.
+fn moments() -> impl Iterator<Item = (&'static str, Option<i32>, f64)> {
     let mut random = ChaCha8Rng::seed_from_u64(20);
     (0..MOMENTS).map(move |i| {
         let share = f64::from(random.next_u32()) / f64::from(u32::MAX);
         let (name, code) = SIGNALS[i % SIGNALS.len()];
-        (name, code, longest.mul_f64(share))
+        (name, code, share)
     })
 }
 
@@ -78,10 +92,10 @@ fn whole(folder: &Path, marker: &str) -> Option<Value> {
 /// Ends `line` (which writes into `r`) at many moments; `next` must then succeed and leave nothing else.
 fn survives(place: &Place, line: &str, marker: &str, next: &str) {
     place.write("mine.txt", "years of work");
-    let longest = time(place, line).mul_f64(1.1);
+    let mut takes = time(place, line);
     let mut ended = 0;
-    for (name, code, wait) in moments(longest) {
-        let status = end_after(place, line, name, wait);
+    for (name, code, share) in moments() {
+        let status = end_after(place, line, name, share, &mut takes);
         ended += usize::from(!status.success());
         if let (Some(code), false) = (code, status.success()) {
             // A process that had not yet come to listen ends as any does.
@@ -93,7 +107,7 @@ fn survives(place: &Place, line: &str, marker: &str, next: &str) {
         let left: Vec<String> = place.entries().iter().filter(others).cloned().collect();
         assert!(left.is_empty() || (dead && left == ["r.partial"]), "{name}: {left:?}");
         place.good(next);
-        assert_eq!(place.entries(), ["mine.txt", "r"], "{line}: {name} after {wait:?}");
+        assert_eq!(place.entries(), ["mine.txt", "r"], "{line}: {name} at {share}");
         assert_eq!(place.read("mine.txt"), "years of work");
         std::fs::remove_dir_all(place.path("r")).unwrap();
     }
@@ -121,10 +135,10 @@ fn a_replaced_result_is_always_one_or_the_other() {
     let place = Place::new();
     let [short, long] =
         ["0.02", "0.2"].map(|d| format!("run --duration {d} --out r --force --quiet"));
-    let longest = time(&place, &long).mul_f64(1.1);
-    for (name, _, wait) in moments(longest) {
+    let mut takes = time(&place, &long);
+    for (name, _, share) in moments() {
         place.good(&short);
-        end_after(&place, &long, name, wait);
+        end_after(&place, &long, name, share, &mut takes);
         let json = whole(&place.path("r"), "summary.json").expect("one of them");
         let duration = json["simulated_s"].as_f64().unwrap();
         assert!([0.02, 0.2].contains(&duration) && json["interrupted"] == false, "{json}");
@@ -137,19 +151,19 @@ fn a_replaced_result_is_always_one_or_the_other() {
 fn a_sweep_goes_on_where_it_was_ended() {
     let place = Place::new();
     let line = "sweep --vary joints.clearance=1e-4..5e-4:12 --duration 0.05 --threads 2 --quiet";
-    let longest = time(&place, &format!("{line} --out whole"));
-    for (name, _, wait) in moments(longest.mul_f64(0.6)) {
-        end_after(&place, &format!("{line} --out r"), name, wait);
+    let mut takes = time(&place, &format!("{line} --out whole"));
+    for (i, (name, _, share)) in moments().enumerate() {
+        end_after(&place, &format!("{line} --out r"), name, 0.6 * share, &mut takes);
         if let Ok(text) = std::fs::read_to_string(place.path("r/sweep.json")) {
             let json: Value = serde_json::from_str(&text).expect("half a file");
             assert!(json["complete"] == false || place.path("r/sweep.csv").exists());
         }
-        if wait.as_nanos() % 3 > 0 {
+        if i % 3 < 2 {
             // Ended again, where it had come to.
             continue;
         }
         place.good(&format!("{line} --out r"));
-        assert_eq!(place.read("r/sweep.csv"), place.read("whole/sweep.csv"), "{name} {wait:?}");
+        assert_eq!(place.read("r/sweep.csv"), place.read("whole/sweep.csv"), "{name} {share}");
         assert_eq!(place.entries(), ["r", "whole"]);
         assert_eq!(names(&place.path("r")), names(&place.path("whole")));
         std::fs::remove_dir_all(place.path("r")).unwrap();

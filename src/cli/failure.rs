@@ -67,6 +67,7 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
             RunError::Folder(error) => error.into(),
+            RunError::TooMuch(_) => Failure::Input(vec![error.to_string()]),
             error => Failure::Other(error.to_string()),
         }
     }

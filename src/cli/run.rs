@@ -7,7 +7,7 @@ use super::progress::Progress;
 use super::signals;
 use crate::report::{length, number};
 use crate::simulate::{Summary, assemble, findings};
-use crate::study::{self, Outcome, RunError, SUMMARY_FILE};
+use crate::study::{self, Outcome, RunError, SUMMARY_FILE, Terms};
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -30,6 +30,10 @@ use std::fmt::Write as _;
 pub(super) struct Arguments {
     #[command(flatten)]
     scenario: ScenarioOptions,
+    /// Go on although the run will take more than 10 min or write more than 1 GB, as judged by its
+    /// beginning; without this it ends there, with exit code 2
+    #[arg(long)]
+    yes: bool,
     #[command(flatten)]
     folder: FolderOptions,
     #[command(flatten)]
@@ -53,8 +57,8 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.folder.prepare("run", &scenario.name, SUMMARY_FILE)?;
 
     let mut progress = Progress::new(scenario.simulation.duration, arguments.print.quiet);
-    let stop = signals::looked_at();
-    let outcome = study::run(&scenario, &mut machine, folder, stop, &mut |t| progress.reached(t));
+    let terms = Terms { stop: signals::looked_at(), at_any_cost: arguments.yes };
+    let outcome = study::run(&scenario, &mut machine, folder, terms, &mut |t| progress.reached(t));
     progress.clear();
     let outcome = match outcome {
         Err(dropped @ RunError::Dropped) => {
@@ -64,8 +68,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         outcome => outcome?,
     };
     arguments.print.result(&outcome.json, || text(&outcome))?;
+    let watched = &outcome.summary.watched;
+    for doubt in &watched.doubts {
+        output::complain(&format!("warning: {doubt}"));
+    }
     match outcome.summary.halted {
         None if outcome.summary.interrupted => Err(signals::interrupted()),
+        None if !watched.faults.is_empty() => Err(Failure::Other(watched.faults.join("; "))),
         None => Ok(()),
         Some(reason) => Err(Failure::Other(reason)),
     }

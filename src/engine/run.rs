@@ -2,6 +2,7 @@
 
 use super::adaptive::Adaptive;
 use super::clock::Clock;
+use super::energy::{Energy, Ledger, drift};
 use super::fixed::Fixed;
 use super::halt::{Halt, Pace, TOO_MANY_STEPS, impossible, likely_cause};
 use super::native::Native;
@@ -81,6 +82,28 @@ pub struct Work {
     pub step_error: Option<f64>,
     /// Whether it was told to stop before its end.
     pub stopped: bool,
+    /// Steps that were taken although their error exceeded the tolerance: near singular poses shorter ones
+    /// win nothing.
+    pub forced_steps: u64,
+    /// How far rigid joints had come apart in a row, in m.
+    pub drift: f64,
+    /// Where the energy went, up to the last row; none of native contacts, whose forces are known as
+    /// impulses only.
+    pub energy: Option<Energy>,
+}
+
+impl Work {
+    /// Counts a step of `dt` s that reached `t`.
+    fn step(&mut self, dt: f64, t: f64, stepper: &dyn Stepper) {
+        self.steps += 1;
+        self.reached = t;
+        self.smallest_step = self.smallest_step.min(dt);
+        self.largest_step = self.largest_step.max(dt);
+        self.forced_steps += u64::from(stepper.forced());
+        if let Some(error) = stepper.step_error() {
+            self.step_error = Some(self.step_error.map_or(error, |worst| worst.max(error)));
+        }
+    }
 }
 
 /// Simulates `mechanism` and calls `observe` at each row of the schedule.
@@ -133,6 +156,8 @@ fn drive(
     let mut t = 0.0;
     let mut clock = Clock::new(mechanism);
     let mut pace = Pace::new(control);
+    let mut ledger = Ledger::new(mechanism);
+    let mut stepped = false;
     for row in 0..=schedule.intervals() {
         let until = schedule.time(row);
         loop {
@@ -140,7 +165,11 @@ fn drive(
             let (states, now) = (stepper.states(), stepper.evaluation());
             if let Some(what) = impossible(mechanism, states, now, t >= until) {
                 let cause = likely_cause(mechanism, control);
-                return Err(Halt { t, what, cause, work });
+                return Err(Halt { t, what, cause, work: work.into() });
+            }
+            // A row's instant is looked at twice: the step that ended there counts once.
+            if std::mem::take(&mut stepped) {
+                ledger.add(stepper.exchange());
             }
             watch.account(&now.contacts, stepper.mean_forces());
             watch.record(mechanism, states, now, stepper.peaks_inside());
@@ -156,22 +185,19 @@ fn drive(
             }
             let reached = stepper.advance(mechanism, t, clock.end(until));
             let dt = reached - t;
+            stepped = true;
             watch.elapse(dt);
             t = reached;
-            work.steps += 1;
-            work.reached = t;
-            work.smallest_step = work.smallest_step.min(dt);
-            work.largest_step = work.largest_step.max(dt);
+            work.step(dt, t, stepper);
             if let Some(what) = pace.exceeded(t, work.steps) {
-                return Err(Halt { t, what, cause: TOO_MANY_STEPS.to_owned(), work });
-            }
-            if let Some(error) = stepper.step_error() {
-                work.step_error = Some(work.step_error.map_or(error, |worst| worst.max(error)));
+                return Err(Halt { t, what, cause: TOO_MANY_STEPS.to_owned(), work: work.into() });
             }
         }
         watch.look_at_angles(stepper.states(), |_, _| true);
         let Watch { tallies, peaks, angles, .. } = &watch;
         let (states, evaluation) = (stepper.states(), stepper.evaluation());
+        work.energy = ledger.row(mechanism, states);
+        work.drift = work.drift.max(drift(mechanism, states));
         let instant = Instant { t, states, angles, evaluation, tallies, peaks: *peaks };
         if observe(&instant).is_break() {
             break;

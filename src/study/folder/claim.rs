@@ -50,6 +50,8 @@ impl Claim {
     pub fn new(target: &Path, absolute: &Path, marker: &str) -> Result<Claim, FolderError> {
         let path = place(absolute);
         for _ in 0..ATTEMPTS {
+            // Nobody abandons what is made here before it is on the list.
+            let mut making = making::hold();
             let made = match fs::create_dir(&path) {
                 Ok(()) => true,
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => false,
@@ -67,7 +69,8 @@ impl Claim {
             if !made && let Some(entry) = foreign(&path, marker) {
                 return Err(FolderError::Foreign { folder: path, entry });
             }
-            making::add(&path);
+            making.push(path.clone());
+            drop(making);
             let claim = Claim { path, _lock: lock };
             fs::write(claim.path.join(MARK), MARK_TEXT)
                 .and_then(|()| clear(&claim.path))

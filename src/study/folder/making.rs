@@ -1,7 +1,7 @@
 //! The folders that this process has in the making, so that a signal can end it without litter.
 
 use super::claim::remove;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 static MAKING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -12,10 +12,6 @@ const ATTEMPTS: usize = 20;
 /// The list; as long as it is held, nothing is abandoned.
 pub(super) fn hold() -> MutexGuard<'static, Vec<PathBuf>> {
     MAKING.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-pub(super) fn add(path: &Path) {
-    hold().push(path.to_owned());
 }
 
 /// Removes every folder that this process has in the making, for a process that is about to end: no

@@ -133,7 +133,7 @@ impl Folder {
 
     fn claim(target: &Path, marker: &'static str, force: bool) -> Result<Folder, FolderError> {
         let absolute = from_root(target)?;
-        let Some(parent) = absolute.parent() else {
+        let (Some(parent), Some(_)) = (absolute.parent(), absolute.file_name()) else {
             // The root of a file system.
             return Err(FolderError::Taken(target.to_owned()));
         };

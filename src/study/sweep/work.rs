@@ -139,7 +139,7 @@ fn summary(scenario: &Scenario, mut machine: Machine) -> Summary {
     });
     let (work, halted) = match ended {
         Ok(work) => (work, None),
-        Err(halt) => (halt.work, Some(halt.to_string())),
+        Err(halt) => (*halt.work, Some(halt.to_string())),
     };
     // No wall time: what a row says must not depend on the day.
     recorder.finish(scenario, &machine, work, f64::NAN, halted, Vec::new())
