@@ -20,7 +20,7 @@ const MOST_FORCED: f64 = 0.01;
 /// Hits that a run must predict, within its own error, for single ones to be taken at their word.
 const FEWEST_HITS: u64 = 3;
 
-/// Share of the largest contact force by which contact forces may differ from those with a tenth of the
+/// Share of the largest contact force by which peaks of contact forces may differ from those with a tenth of the
 /// error while positions still agree.
 const LARGEST_FORCE_ERROR: f64 = 0.5;
 
@@ -78,10 +78,10 @@ pub struct OwnError {
     pub to_the_end: bool,
     /// Largest difference at the output body until then, in m.
     pub position_m: f64,
-    /// Largest difference of a contact force at a row until then, in N.
+    /// Largest difference of a joint's peak contact force until then, in N.
     #[serde(rename = "contact_force_N")]
     pub contact_force: f64,
-    /// Largest contact force at a row until then, in N.
+    /// Largest contact force until then, in N.
     #[serde(rename = "largest_contact_force_N")]
     pub largest_contact_force: f64,
     /// Hits until then.
@@ -163,7 +163,7 @@ impl Watched {
         }
         if own.contact_force > LARGEST_FORCE_ERROR * own.largest_contact_force {
             self.doubts.push(format!(
-                "contact forces differ by up to {:.1e} of {:.1e} N from those with a tenth of the error, \
+                "peaks of contact forces differ by up to {:.1e} of {:.1e} N from those with a tenth of the error, \
                  before t = {:.4} s: single hits are not resolved; try a smaller simulation.tolerance",
                 own.contact_force, own.largest_contact_force, own.until_s
             ));

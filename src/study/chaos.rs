@@ -47,8 +47,8 @@ pub struct Look {
     t: f64,
     /// Of the output body, in m.
     position: Vector2<f64>,
-    /// Normal force in each revolute joint in N.
-    forces: Vec<f64>,
+    /// Peak of the normal force in each revolute joint since the row before, in N.
+    peaks: Vec<f64>,
     /// Hits since the start, in all joints.
     hits: u64,
 }
@@ -59,7 +59,7 @@ impl Look {
         Self {
             t: instant.t,
             position: mechanism.output_state(instant.states).position,
-            forces: instant.evaluation.contacts.iter().map(|c| c.normal_force).collect(),
+            peaks: instant.tallies.iter().map(|tally| tally.peak).collect(),
             hits: instant.tallies.iter().map(|tally| tally.impacts).sum(),
         }
     }
@@ -67,12 +67,17 @@ impl Look {
     fn distance(&self, other: &Self) -> f64 {
         (self.position - other.position).norm()
     }
+}
 
-    /// Largest difference of a joint's force, in N.
-    fn force_difference(&self, other: &Self) -> f64 {
-        let forces = self.forces.iter().zip(&other.forces);
-        forces.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-    }
+/// Largest normal force in each joint over some rows, in N.
+fn peaks<'a>(rows: impl Iterator<Item = &'a Look>) -> Vec<f64> {
+    rows.fold(Vec::new(), |mut peaks, row| {
+        peaks.resize(row.peaks.len(), 0.0);
+        for (peak, now) in peaks.iter_mut().zip(&row.peaks) {
+            *peak = peak.max(*now);
+        }
+        peaks
+    })
 }
 
 /// The rows of a schedule, or nothing if the run breaks down or is told to stop.
@@ -174,15 +179,15 @@ pub fn own_error(
     let pairs: Vec<_> = track.iter().zip(rows).take(schedule.intervals()).collect();
     let apart = pairs.iter().position(|(p, q)| p.distance(q) > HORIZON_ERROR);
     let good = &pairs[..apart.unwrap_or(pairs.len())];
-    let largest =
-        |of: &dyn Fn(&Look, &Look) -> f64| good.iter().map(|(p, q)| of(p, q)).fold(0.0, f64::max);
+    let [finer, own] = [peaks(good.iter().map(|(p, _)| *p)), peaks(good.iter().map(|(_, q)| *q))];
+    let differences = finer.iter().zip(&own).map(|(a, b)| (a - b).abs());
     let end = apart.or(pairs.len().checked_sub(1));
     Some(OwnError {
         until_s: end.map_or(0.0, |row| pairs[row].1.t),
         to_the_end: apart.is_none(),
-        position_m: largest(&Look::distance),
-        contact_force: largest(&Look::force_difference),
-        largest_contact_force: largest(&|_, q| q.forces.iter().copied().fold(0.0, f64::max)),
+        position_m: good.iter().map(|(p, q)| p.distance(q)).fold(0.0, f64::max),
+        contact_force: differences.fold(0.0, f64::max),
+        largest_contact_force: own.iter().copied().fold(0.0, f64::max),
         hits: good.last().map_or(0, |(_, q)| q.hits),
     })
 }

@@ -216,7 +216,7 @@ fn balance(s: &Summary) -> Vec<Fact> {
             label: "Own error".into(),
             value: length(own.position_m),
             note: format!(
-                "until t = {} s, and {} N in contact forces, against a run with a tenth of the error; {} hits \
+                "until t = {} s, and {} N in peaks of contact forces, against a run with a tenth of the error; {} hits \
                  until then",
                 number(own.until_s),
                 number(own.contact_force),
