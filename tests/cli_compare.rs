@@ -51,13 +51,26 @@ fn a_comparison_writes_everything_that_was_promised() {
     let csv = place.read("freeplay-compare-default/compare.csv");
     assert_eq!(csv.lines().count(), 9);
     let columns = csv.lines().map(|line| line.split(',').count());
-    assert!(columns.eq([38; 9]), "{csv}");
+    assert!(columns.eq([37; 9]), "{csv}");
     assert!(csv.starts_with("law,step_s,tolerance_m_s,resolved,starts,halted,steps_per_s,"));
 
     let page = place.read("freeplay-compare-default/index.html");
     let answer = page.find("<section id=\"answer\">").unwrap();
     assert!(page.rfind("<section").unwrap() == answer, "the page ends with the answer");
     assert!(!page.contains("NaN"));
+}
+
+/// Times of computing are in the JSON and on the page only.
+#[test]
+fn the_same_comparison_gives_the_same_table() {
+    let place = Place::new();
+    for out in ["a", "b"] {
+        place.good(&format!("compare --duration 0.03 --steps 2e-5 --starts 2 --out {out}"));
+    }
+    for file in ["compare.csv", "table.md", "scenario.toml"] {
+        let [a, b] = ["a", "b"].map(|out| place.read(&format!("{out}/{file}")));
+        assert_eq!(a, b, "{file}");
+    }
 }
 
 #[test]

@@ -296,7 +296,7 @@ fn runs_that_break_down_or_cannot_be_done_get_a_row() {
     assert!(done.err.contains("warning: 1 of 2 runs are refused"), "{}", done.err);
     assert!(done.out.contains("0 ok, 1 halted, 1 refused"), "{}", done.out);
     let status = column(&table(&place, "h"), "status");
-    assert!(status[0].starts_with("halted: the simulation broke down at t = 0.1"), "{status:?}");
+    assert!(status[0].starts_with("halted: the simulation broke down at t = 0.0"), "{status:?}");
     assert!(status[1].starts_with("refused: --vary motion.radius: leg 1 "), "{status:?}");
     assert_eq!(column(&table(&place, "h"), "steps")[1], "");
     assert!(place.read("h/index.html").contains("broke down on the way"));

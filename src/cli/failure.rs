@@ -14,6 +14,8 @@ pub(super) enum Failure {
     Input(Vec<String>),
     /// Anything else.
     Other(String),
+    /// It was told to end by this signal; what became of its work was said.
+    Interrupted(u8),
 }
 
 impl Failure {
@@ -22,6 +24,7 @@ impl Failure {
         let messages = match self {
             Failure::Input(messages) => messages.as_slice(),
             Failure::Other(message) => std::slice::from_ref(message),
+            Failure::Interrupted(_) => &[],
         };
         for message in messages {
             output::complain(&format!("error: {message}"));
@@ -33,6 +36,8 @@ impl Failure {
         match self {
             Failure::Input(_) => ExitCode::from(2),
             Failure::Other(_) => ExitCode::FAILURE,
+            // As shells report a process that a signal ended.
+            Failure::Interrupted(signal) => ExitCode::from(128 + signal),
         }
     }
 }
@@ -51,7 +56,10 @@ impl From<Problem> for Failure {
 
 impl From<FolderError> for Failure {
     fn from(error: FolderError) -> Self {
-        Failure::Input(vec![error.to_string()])
+        match error {
+            FolderError::Name { .. } => Failure::Other(error.to_string()),
+            error => Failure::Input(vec![error.to_string()]),
+        }
     }
 }
 
@@ -59,6 +67,7 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
             RunError::Folder(error) => error.into(),
+            RunError::TooMuch(_) => Failure::Input(vec![error.to_string()]),
             error => Failure::Other(error.to_string()),
         }
     }

@@ -1,7 +1,8 @@
 //! The command line: one file per command. Commands parse, call and print; what they call is in the
 //! rooms below.
 //!
-//! Exit codes: 0 done, 2 wrong input (what, where, what would be right), 1 anything else. Results go
+//! Exit codes: 0 done, 2 wrong input (what, where, what would be right), 130 and 143 ended by Ctrl-C and
+//! SIGTERM, 1 anything else. Results go
 //! to standard output, everything else to standard error.
 
 mod calibrate;
@@ -20,6 +21,7 @@ mod predict;
 mod progress;
 mod run;
 mod self_test;
+mod signals;
 mod study;
 mod sweep;
 
@@ -51,7 +53,7 @@ Examples:
   freeplay expand                               the same machine, body by body, to be changed
   freeplay effects payload                      what a scenario can add to a machine
 
-Exit codes: 0 done, 2 wrong input, 1 anything else.";
+Exit codes: 0 done, 2 wrong input, 130 and 143 ended by Ctrl-C and SIGTERM, 1 anything else.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -71,7 +73,9 @@ enum Command {
 
 /// Runs the command that the process was called with.
 pub fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    let command = Cli::parse().command;
+    signals::watch();
+    let done = match command {
         Command::Run(arguments) => run::main(&arguments),
         Command::Study(arguments) => study::main(&arguments),
         Command::Compare(arguments) => compare::main(&arguments),

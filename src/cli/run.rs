@@ -2,10 +2,12 @@
 
 use super::failure::{Failure, refuse_errors};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
+use super::output;
 use super::progress::Progress;
+use super::signals;
 use crate::report::{length, number};
 use crate::simulate::{Summary, assemble, findings};
-use crate::study::{self, Outcome, SUMMARY_FILE};
+use crate::study::{self, Outcome, RunError, SUMMARY_FILE, Terms};
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -18,6 +20,9 @@ use std::fmt::Write as _;
 /// scenario.toml (the scenario with every default filled in: `freeplay run` on it repeats the run)
 /// and pictures (SVG).
 ///
+/// Ctrl-C and SIGTERM end a run early: what was computed is kept, and summary.json says
+/// `"interrupted": true`.
+///
 /// Peaks, means and fractions leave out the first simulation.settle seconds, in which the journals,
 /// centred at the start, find their rings.
 #[derive(Debug, Args)]
@@ -25,6 +30,10 @@ use std::fmt::Write as _;
 pub(super) struct Arguments {
     #[command(flatten)]
     scenario: ScenarioOptions,
+    /// Go on although the run will take more than 10 min or write more than 1 GB, as judged by its
+    /// beginning; without this it ends there, with exit code 2
+    #[arg(long)]
+    yes: bool,
     #[command(flatten)]
     folder: FolderOptions,
     #[command(flatten)]
@@ -48,11 +57,24 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.folder.prepare("run", &scenario.name, SUMMARY_FILE)?;
 
     let mut progress = Progress::new(scenario.simulation.duration, arguments.print.quiet);
-    let outcome = study::run(&scenario, &mut machine, folder, &mut |t| progress.reached(t));
+    let terms = Terms { stop: signals::looked_at(), at_any_cost: arguments.yes };
+    let outcome = study::run(&scenario, &mut machine, folder, terms, &mut |t| progress.reached(t));
     progress.clear();
-    let outcome = outcome?;
+    let outcome = match outcome {
+        Err(dropped @ RunError::Dropped) => {
+            output::complain(&dropped.to_string());
+            return Err(signals::interrupted());
+        }
+        outcome => outcome?,
+    };
     arguments.print.result(&outcome.json, || text(&outcome))?;
+    let watched = &outcome.summary.watched;
+    for doubt in &watched.doubts {
+        output::complain(&format!("warning: {doubt}"));
+    }
     match outcome.summary.halted {
+        None if outcome.summary.interrupted => Err(signals::interrupted()),
+        None if !watched.faults.is_empty() => Err(Failure::Other(watched.faults.join("; "))),
         None => Ok(()),
         Some(reason) => Err(Failure::Other(reason)),
     }
@@ -68,6 +90,10 @@ fn text(outcome: &Outcome) -> String {
         number(s.wall_s),
         s.steps
     );
+    if s.interrupted {
+        let (reached, asked) = (number(s.simulated_s), number(outcome.duration));
+        let _ = writeln!(text, "  interrupted at {reached} of {asked} s\n");
+    }
     if !s.has_figures() {
         let _ = writeln!(text, "  no figures: the run ended within the first {} s", s.settle_s);
     }

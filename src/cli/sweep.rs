@@ -4,6 +4,7 @@ use super::failure::Failure;
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::output;
 use super::progress::RunsProgress;
+use super::signals;
 use crate::report::number;
 use crate::study::sweep::{Outcome, Plan, Shard, SweepError, on_threads, sweep};
 use clap::Args;
@@ -66,6 +67,10 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         }
         let name = &plan.base().name;
         let out = arguments.folder.path("sweep", name);
+        signals::work_is(format!(
+            "finished rows are kept in `{}`; the same command goes on from there",
+            out.display()
+        ));
         let progress = RunsProgress::new(quiet);
         let outcome = sweep(&plan, &out, arguments.folder.force, &|finished, runs| {
             progress.finished(finished, runs);

@@ -5,6 +5,16 @@ use super::{CoulombFriction, ForceLaw};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
+/// Largest half width a of a contact as a share of the journal's radius R for which laws after Hertz hold
+/// to some per cent: they take the contact for small against the bodies.
+const LARGEST_HALF_WIDTH: f64 = 0.3;
+
+/// Penetration δ in m beyond which no law of this room holds for a journal of `journal_radius` R:
+/// `a = √(R δ)` reaches 0.3 R at `δ = 0.09 R`. A journal that is farther out has left its ring.
+pub fn valid_penetration(journal_radius: f64) -> f64 {
+    LARGEST_HALF_WIDTH * LARGEST_HALF_WIDTH * journal_radius
+}
+
 /// What a clearance joint is made of.
 #[derive(Clone, Debug)]
 pub struct Clearance {

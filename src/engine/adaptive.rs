@@ -11,9 +11,10 @@
 //! the forward half of the last average got wrong is made good in the next, where the path is known
 //! better: `kick = ∫F over the past step − forward part given before + forward part`.
 
+use super::energy::{Exchange, Power};
 use super::stepper::Stepper;
 use super::world::{Target, World, joint_advance};
-use crate::mechanism::{Bearing, BodyState, Dynamics, Evaluation, Mechanism, Situation};
+use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism, Situation};
 use nalgebra::Vector3;
 
 /// Inner nodes of the four-point Lobatto rule on [0, 1]: ½(1 ∓ 1/√5); weights 1, 5, 5, 1 over 12.
@@ -48,12 +49,19 @@ pub(super) struct Adaptive {
     /// The instant before: length of the step since, wrenches and accelerations.
     previous_step: f64,
     previous_wrenches: Vec<Vector3<f64>>,
+    previous_commands: Vec<Command>,
     previous_accelerations: Vec<Vector3<f64>>,
     /// Forward part of the last average, N·s.
     forward: Vec<Vector3<f64>>,
     next_step: f64,
     /// Estimated error of the last step in m/s.
     step_error: f64,
+    /// Whether the last step was taken although its error exceeds the tolerance.
+    forced: bool,
+    /// Power now and where the last step began, and what that exchanged.
+    power: Power,
+    previous_power: Power,
+    exchange: Exchange,
     /// Work space: a point of the predicted path.
     path_states: Vec<BodyState>,
     path: Evaluation,
@@ -101,10 +109,15 @@ impl Adaptive {
             jerks: zeros.clone(),
             previous_step: 0.0,
             previous_wrenches: zeros.clone(),
+            previous_commands: vec![Command::default(); mechanism.actuators.len()],
             previous_accelerations: zeros.clone(),
             forward: zeros.clone(),
             next_step: FIRST_STEP,
             step_error: 0.0,
+            forced: false,
+            power: Power::default(),
+            previous_power: Power::default(),
+            exchange: Exchange::default(),
             ends: zeros.clone(),
             sums: zeros.clone(),
             turns: vec![0.0; bodies],
@@ -125,7 +138,7 @@ impl Adaptive {
         }
     }
 
-    /// The past step once more, on the corrected path: the sum of its forces, and their peaks.
+    /// The past step once more, on the corrected path: the sum of its forces, their peaks and their work.
     fn look_back(&mut self, mechanism: &Mechanism, t: f64) {
         let hp = self.previous_step;
         self.peaks.fill(0.0);
@@ -135,8 +148,14 @@ impl Adaptive {
             *sum = before + now;
         }
         if hp > 0.0 {
-            for s in NODES {
+            let mut inside = [Power::default(); 2];
+            for (power, s) in inside.iter_mut().zip(NODES) {
                 self.look(mechanism, t, -hp * (1.0 - s));
+                if !self.coupled {
+                    self.path.command_between(&self.previous_commands, &self.now.commands, s);
+                    self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
+                }
+                *power = Power::of(&self.dynamics, mechanism, &self.path_states, &self.path);
                 for (sum, w) in self.sums.iter_mut().zip(&self.path.wrenches) {
                     *sum += w * 5.0;
                 }
@@ -144,6 +163,16 @@ impl Adaptive {
                     *peak = peak.max(contact.normal_force);
                 }
             }
+            let [outer, inner] = [1.0 / 12.0, 5.0 / 12.0];
+            self.exchange = Exchange::over(
+                hp,
+                [
+                    (outer, self.previous_power),
+                    (inner, inside[0]),
+                    (inner, inside[1]),
+                    (outer, self.power),
+                ],
+            );
         }
     }
 
@@ -189,6 +218,7 @@ impl Stepper for Adaptive {
             self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
             self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
         }
+        self.power = Power::of(&self.dynamics, mechanism, &self.states, &self.now);
         if self.coupled {
             self.dynamics.replace_wrenches(&mut self.now);
         }
@@ -216,11 +246,20 @@ impl Stepper for Adaptive {
         &self.peaks
     }
 
+    fn exchange(&self) -> Option<Exchange> {
+        Some(self.exchange)
+    }
+
+    fn forced(&self) -> bool {
+        self.forced
+    }
+
     // The jerk stays that of before: a force that jumps says nothing of how it goes on.
     fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]) {
         self.dynamics.sample(mechanism, t, &self.states, due);
         self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
         self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
+        self.power = Power::of(&self.dynamics, mechanism, &self.states, &self.now);
         if self.coupled {
             self.dynamics.replace_wrenches(&mut self.now);
         }
@@ -228,6 +267,8 @@ impl Stepper for Adaptive {
 
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         self.dynamics.remember(mechanism, t, &self.states);
+        self.previous_power = self.power;
+        self.forced = false;
         let hp = self.previous_step;
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {
             *sum = *sum * (hp / 12.0) - forward;
@@ -275,6 +316,7 @@ impl Stepper for Adaptive {
             // Shorter steps do not help against the errors of a nearly singular pose.
             if self.coupled && self.dynamics.was_singular() {
                 if h <= SINGULAR_STEP {
+                    self.forced = true;
                     self.next_step = h;
                     break (h, if last { until } else { t + h });
                 }
@@ -306,6 +348,7 @@ impl Stepper for Adaptive {
         };
         self.world.step(h, &self.sums, Some(turns), targets, advances);
         self.previous_wrenches.copy_from_slice(&self.now.wrenches);
+        self.previous_commands.copy_from_slice(&self.now.commands);
         self.previous_accelerations.copy_from_slice(&self.now.accelerations);
         self.previous_step = h;
         reached

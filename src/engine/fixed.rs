@@ -9,6 +9,7 @@
 //! That is the velocity-Verlet scheme, symmetric in time: on the reference curves its error is a
 //! seventh of the extrapolation's, and a tenth in the rebound of one hit.
 
+use super::energy::{Exchange, Power};
 use super::stepper::{Stepper, equal_step};
 use super::world::{Target, World, joint_advance};
 use crate::mechanism::{BodyState, Command, Dynamics, Evaluation, Mechanism};
@@ -42,6 +43,10 @@ pub(super) struct Fixed {
     inside: Evaluation,
     touched: bool,
     peaks: Vec<f64>,
+    /// Power now and where the last step began, and what that exchanged.
+    power: Power,
+    previous_power: Power,
+    exchange: Exchange,
 }
 
 impl Fixed {
@@ -67,12 +72,16 @@ impl Fixed {
             inside: Evaluation::new(mechanism),
             touched: false,
             peaks: vec![0.0; mechanism.revolutes.len()],
+            power: Power::default(),
+            previous_power: Power::default(),
+            exchange: Exchange::default(),
         }
     }
 
     fn evaluate(&mut self, mechanism: &Mechanism, t: f64) {
         self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
         self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
+        self.power = Power::of(&self.dynamics, mechanism, &self.states, &self.now);
     }
 
     /// Largest contact forces inside the step that ends at `t`.
@@ -118,6 +127,8 @@ impl Stepper for Fixed {
             self.dynamics.replace_wrenches(&mut self.now);
         }
         if h > 0.0 {
+            // The trapezoidal rule is of the stepping's own order.
+            self.exchange = Exchange::over(h, [(0.5, self.previous_power), (0.5, self.power)]);
             self.look_inside(mechanism, t);
         }
     }
@@ -132,6 +143,10 @@ impl Stepper for Fixed {
 
     fn peaks_inside(&self) -> &[f64] {
         &self.peaks
+    }
+
+    fn exchange(&self) -> Option<Exchange> {
+        Some(self.exchange)
     }
 
     // The kick of a full step is centred here: half of it belongs to the forces of before.
@@ -151,6 +166,7 @@ impl Stepper for Fixed {
 
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         self.dynamics.remember(mechanism, t, &self.states);
+        self.previous_power = self.power;
         let (dt, reached) = equal_step(self.step, t, until);
         // The first step is a half kick: v_½ = v_0 + (h/2) a_0.
         let first = self.previous_step == 0.0;

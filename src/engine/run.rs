@@ -1,14 +1,16 @@
-//! A mechanism from start to end: what a run is asked for, what it hands out, how it can fail.
+//! A mechanism from start to end: what a run is asked for, and what it hands out.
 
 use super::adaptive::Adaptive;
 use super::clock::Clock;
+use super::energy::{Energy, Ledger, drift};
 use super::fixed::Fixed;
+use super::halt::{Halt, Pace, TOO_MANY_STEPS, impossible, likely_cause};
 use super::native::Native;
 use super::stepper::Stepper;
 use super::watch::{Peaks, Tally, Watch};
-use crate::contact::Contact;
 use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How the time step is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,60 +80,67 @@ pub struct Work {
     pub reached: f64,
     /// Largest velocity error of a step in m/s, where the way of stepping estimates it.
     pub step_error: Option<f64>,
+    /// Whether it was told to stop before its end.
+    pub stopped: bool,
+    /// Steps that were taken although their error exceeded the tolerance: near singular poses shorter ones
+    /// win nothing.
+    pub forced_steps: u64,
+    /// How far rigid joints had come apart in a row, in m.
+    pub drift: f64,
+    /// Where the energy went, up to the last row; none of native contacts, whose forces are known as
+    /// impulses only.
+    pub energy: Option<Energy>,
 }
 
-/// A run that had to stop. What was handed out before stands.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the simulation broke down at t = {t:.6} s in {what}; {cause}")]
-pub struct Halt {
-    /// When, in s.
-    pub t: f64,
-    /// The joint or body where it shows, and what is impossible about its state.
-    pub what: String,
-    /// Likely cause, and what to try.
-    pub cause: String,
-    /// Work done until then.
-    pub work: Work,
+impl Work {
+    /// Counts a step of `dt` s that reached `t`.
+    fn step(&mut self, dt: f64, t: f64, stepper: &dyn Stepper) {
+        self.steps += 1;
+        self.reached = t;
+        self.smallest_step = self.smallest_step.min(dt);
+        self.largest_step = self.largest_step.max(dt);
+        self.forced_steps += u64::from(stepper.forced());
+        if let Some(error) = stepper.step_error() {
+            self.step_error = Some(self.step_error.map_or(error, |worst| worst.max(error)));
+        }
+    }
 }
 
 /// Simulates `mechanism` and calls `observe` at each row of the schedule.
 ///
 /// # Errors
-/// [`Halt`] when a state turns impossible; the rows handed out before stand.
+/// [`Halt`] when a state turns impossible or steps too short; the rows handed out before stand.
 pub fn run(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
     observe: &mut dyn FnMut(&Instant),
 ) -> Result<Work, Halt> {
-    run_while(mechanism, control, schedule, &mut |instant| {
+    run_while(mechanism, control, schedule, &AtomicBool::new(false), &mut |instant| {
         observe(instant);
         ControlFlow::Continue(())
     })
 }
 
-/// [`run`] with an `observe` that may end it early: the work is then what was done until that row.
+/// [`run`] with an `observe` that may end it early, as does `stop` between any two steps once it is true:
+/// the work is then what was done until there.
 ///
 /// # Errors
-/// [`Halt`] when a state turns impossible; the rows handed out before stand.
+/// [`Halt`] when a state turns impossible or steps too short; the rows handed out before stand.
 pub fn run_while(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
+    stop: &AtomicBool,
     observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
     let native = mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Native { .. }));
-    match control {
-        StepControl::Fixed(step) if native => {
-            drive(&mut Native::new(mechanism, step), mechanism, control, schedule, observe)
-        }
-        StepControl::Fixed(step) => {
-            drive(&mut Fixed::new(mechanism, step), mechanism, control, schedule, observe)
-        }
-        StepControl::Tolerance(tolerance) => {
-            drive(&mut Adaptive::new(mechanism, tolerance), mechanism, control, schedule, observe)
-        }
-    }
+    let mut stepper: Box<dyn Stepper> = match control {
+        StepControl::Fixed(step) if native => Box::new(Native::new(mechanism, step)),
+        StepControl::Fixed(step) => Box::new(Fixed::new(mechanism, step)),
+        StepControl::Tolerance(tolerance) => Box::new(Adaptive::new(mechanism, tolerance)),
+    };
+    drive(&mut *stepper, mechanism, control, schedule, stop, observe)
 }
 
 fn drive(
@@ -139,44 +148,56 @@ fn drive(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
+    stop: &AtomicBool,
     observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
     let mut work = Work { smallest_step: f64::INFINITY, ..Work::default() };
     let mut watch = Watch::new(mechanism);
     let mut t = 0.0;
     let mut clock = Clock::new(mechanism);
+    let mut pace = Pace::new(control);
+    let mut ledger = Ledger::new(mechanism);
+    let mut stepped = false;
     for row in 0..=schedule.intervals() {
         let until = schedule.time(row);
         loop {
             stepper.synchronise(mechanism, t);
             let (states, now) = (stepper.states(), stepper.evaluation());
-            if let Some(what) = impossible(mechanism, states, &now.contacts) {
+            if let Some(what) = impossible(mechanism, states, now, t >= until) {
                 let cause = likely_cause(mechanism, control);
-                return Err(Halt { t, what, cause, work });
+                return Err(Halt { t, what, cause, work: work.into() });
+            }
+            // A row's instant is looked at twice: the step that ended there counts once.
+            if std::mem::take(&mut stepped) {
+                ledger.add(stepper.exchange());
             }
             watch.account(&now.contacts, stepper.mean_forces());
             watch.record(mechanism, states, now, stepper.peaks_inside());
             if t >= until {
                 break;
             }
+            if stop.load(Ordering::Relaxed) {
+                work.stopped = true;
+                return Ok(work);
+            }
             if clock.due(t) {
                 stepper.sample(mechanism, t, &clock.due);
             }
             let reached = stepper.advance(mechanism, t, clock.end(until));
             let dt = reached - t;
+            stepped = true;
             watch.elapse(dt);
             t = reached;
-            work.steps += 1;
-            work.reached = t;
-            work.smallest_step = work.smallest_step.min(dt);
-            work.largest_step = work.largest_step.max(dt);
-            if let Some(error) = stepper.step_error() {
-                work.step_error = Some(work.step_error.map_or(error, |worst| worst.max(error)));
+            work.step(dt, t, stepper);
+            if let Some(what) = pace.exceeded(t, work.steps) {
+                return Err(Halt { t, what, cause: TOO_MANY_STEPS.to_owned(), work: work.into() });
             }
         }
         watch.look_at_angles(stepper.states(), |_, _| true);
         let Watch { tallies, peaks, angles, .. } = &watch;
         let (states, evaluation) = (stepper.states(), stepper.evaluation());
+        work.energy = ledger.row(mechanism, states);
+        work.drift = work.drift.max(drift(mechanism, states));
         let instant = Instant { t, states, angles, evaluation, tallies, peaks: *peaks };
         if observe(&instant).is_break() {
             break;
@@ -184,46 +205,6 @@ fn drive(
         watch.new_row();
     }
     Ok(work)
-}
-
-/// The first thing that is impossible at an instant, if any: a state that is no number, or a
-/// journal whose penetration exceeds its bearing's radius.
-fn impossible(mechanism: &Mechanism, states: &[BodyState], contacts: &[Contact]) -> Option<String> {
-    let finite = |s: &BodyState| (s.position.sum() + s.twist.sum()).is_finite();
-    for (joint, contact) in mechanism.revolutes.iter().zip(contacts) {
-        if let Bearing::Clearance(clearance) = &joint.bearing
-            && (contact.penetration.is_nan() || contact.penetration >= clearance.bearing_radius)
-        {
-            let what = if contact.penetration.is_finite() {
-                format!("the journal has left its ring by {:.3e} m", contact.penetration)
-            } else {
-                "the journal's position is not a number".to_owned()
-            };
-            return Some(format!("joint {}: {what}", joint.name));
-        }
-    }
-    let body = mechanism.bodies.iter().zip(states).find(|(_, s)| !finite(s));
-    body.map(|(b, _)| format!("{}: position or velocity is not a number", b.name))
-}
-
-/// Why a run may have broken down, and what to try.
-fn likely_cause(mechanism: &Mechanism, control: StepControl) -> String {
-    let key = match (control, mechanism.longest_step(TYPICAL_IMPACT_SPEED)) {
-        (StepControl::Fixed(step), Some(longest)) if step > longest => {
-            // Half of it, because two digits may round up.
-            let enough = longest / 2.0;
-            return format!(
-                "likely the step of {step:.1e} s is too long for the contacts: try \
-                 simulation.step = {enough:.1e}"
-            );
-        }
-        (StepControl::Fixed(_), _) => "step",
-        (StepControl::Tolerance(_), _) => "tolerance",
-    };
-    format!(
-        "likely hits far harder than usual, or a machine near a singularity: try a smaller \
-         simulation.{key}, or `freeplay check`"
-    )
 }
 
 #[cfg(test)]

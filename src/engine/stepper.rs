@@ -1,5 +1,6 @@
 //! What a way of stepping has to do for a run.
 
+use super::energy::Exchange;
 use crate::mechanism::{BodyState, Evaluation, Mechanism};
 
 /// A way of stepping. The driver asks it for the present instant, then for a step towards the next
@@ -23,6 +24,15 @@ pub(super) trait Stepper {
     /// Estimated velocity error of the last step in m/s, if there is an estimate.
     fn step_error(&self) -> Option<f64> {
         None
+    }
+    /// What forces did to the bodies in the step that ended at the instant last synchronised, where the
+    /// way of stepping knows them.
+    fn exchange(&self) -> Option<Exchange> {
+        None
+    }
+    /// Whether the last step was taken although its error exceeds the tolerance.
+    fn forced(&self) -> bool {
+        false
     }
     /// Whether the contact forces of an instant are the means over the step that ended there, and not
     /// those of the instant itself.

@@ -49,6 +49,23 @@ impl Evaluation {
         }
     }
 
+    /// Takes commands at a share of the way between two instants for those of the present time, unless they
+    /// are known: over a step they are as good as straight, and inverse kinematics is dear.
+    pub fn command_between(&mut self, before: &[Command], after: &[Command], share: f64) {
+        if self.commanded == self.t {
+            return;
+        }
+        let between = |a: f64, b: f64| a + (b - a) * share;
+        for ((command, a), b) in self.commands.iter_mut().zip(before).zip(after) {
+            *command = Command {
+                position: between(a.position, b.position),
+                rate: between(a.rate, b.rate),
+                acceleration: between(a.acceleration, b.acceleration),
+            };
+        }
+        self.commanded = self.t;
+    }
+
     /// Asks for the commands, unless they are those of this time already: inverse kinematics costs
     /// more than all contacts in flight.
     pub(super) fn command(&mut self, mechanism: &Mechanism) {

@@ -28,6 +28,19 @@ impl Prismatic {
         self.telescope(states).length
     }
 
+    /// How far the slider has come off the axis, in m, and what the angle between the two makes over the
+    /// joint's length.
+    pub fn drift(&self, states: &[BodyState]) -> f64 {
+        let state = self.telescope(states);
+        let [base, slider] = self.points();
+        let across = (state.offset[1] + slider.y - base.y).abs();
+        let rotation =
+            |body: Option<usize>, axis| body.map_or(axis, |i: usize| states[i].rotation * axis);
+        let [base, slider] =
+            [rotation(self.base.body, self.axes[0]), rotation(self.slider.body, self.axes[1])];
+        across + (base.re * slider.im - base.im * slider.re).abs() * state.length.abs()
+    }
+
     pub(super) fn telescope(&self, states: &[BodyState]) -> Telescope {
         Telescope::new(self, states)
     }

@@ -10,6 +10,7 @@ mod provenance;
 mod summary;
 mod three_rpr;
 mod timeseries;
+mod watched;
 
 pub use crate::model::{
     FIT_SPEED, Ideal, IdealInstant, Machine, assemble, close, drive, driven, leg_use,
@@ -19,3 +20,4 @@ pub use checks::{Finding, Severity, findings};
 pub use provenance::Provenance;
 pub use summary::{JointSummary, Recorder, Summary};
 pub use timeseries::TimeSeries;
+pub use watched::{Balance, OwnError, Watched};

@@ -1,6 +1,7 @@
 //! `summary.json`: the main figures of a run, gathered row by row in constant memory.
 
 use super::provenance::Provenance;
+use super::watched::Watched;
 use crate::engine::{Instant, StepControl, Work};
 use crate::mechanism::{JointIndex, Mechanism};
 use crate::model::{IdealInstant, Machine, radial_clearance};
@@ -26,6 +27,8 @@ pub struct Summary {
     pub tolerance_m_s: Option<f64>,
     /// Why the run stopped early, if it did.
     pub halted: Option<String>,
+    /// Whether it was told to stop before its end.
+    pub interrupted: bool,
     /// Time reached in s.
     pub simulated_s: f64,
     /// Start left out of the figures below, in s.
@@ -87,6 +90,8 @@ pub struct Summary {
     pub wall_s: f64,
     /// The same per simulated second.
     pub wall_s_per_simulated_s: f64,
+    /// What the run saw of its own errors.
+    pub watched: Watched,
     /// Joint by joint, in the order of the columns.
     pub joints: Vec<JointSummary>,
     /// What stands beside this file.
@@ -140,6 +145,7 @@ pub struct Recorder {
     /// Time of the first row after the start that is left out, and of the last row, in s.
     span: Option<[f64; 2]>,
     rows: u64,
+    rows_without_ideal: u64,
     /// Sums over the rows of squared deviations: position, acceleration, drive forces, drive torques.
     squares: [f64; 4],
     peak_acceleration: f64,
@@ -178,6 +184,7 @@ impl Recorder {
             settle: settle * (1.0 - 1e-9),
             span: None,
             rows: 0,
+            rows_without_ideal: 0,
             squares: [0.0; 4],
             // f64::max takes the other value for a NaN: the first one counted.
             peak_acceleration: f64::NAN,
@@ -224,6 +231,9 @@ impl Recorder {
             *sum += square;
         }
         self.rows += 1;
+        let known = ideal.position.sum() + ideal.acceleration.sum();
+        let known = known + ideal.drive_forces.iter().sum::<f64>();
+        self.rows_without_ideal += u64::from(!known.is_finite());
         self.max_path_error = self.max_path_error.max(path_error);
         self.ideal_peaks[0] = self.ideal_peaks[0].max(ideal.acceleration.xy().norm());
         self.ideal_peaks[1] = self.ideal_peaks[1].max(largest(false));
@@ -281,6 +291,7 @@ impl Recorder {
             step_s,
             tolerance_m_s,
             halted,
+            interrupted: work.stopped,
             simulated_s: work.reached,
             settle_s: scenario.simulation.settle(),
             peak_contact_force: joints.iter().map(|j| j.peak_force).fold(f64::NAN, f64::max),
@@ -307,6 +318,7 @@ impl Recorder {
             largest_step_s: work.largest_step,
             wall_s: wall,
             wall_s_per_simulated_s: wall / work.reached,
+            watched: Watched::new(&work, self.rows_without_ideal),
             joints,
             files,
         }

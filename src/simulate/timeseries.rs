@@ -13,6 +13,7 @@ use std::io::{self, Write};
 pub struct TimeSeries<W> {
     out: W,
     line: String,
+    bytes: u64,
     layout: Layout,
 }
 
@@ -47,7 +48,7 @@ impl<W: Write> TimeSeries<W> {
         }
         line.push('\n');
         out.write_all(line.as_bytes())?;
-        Ok(Self { out, line, layout: layout.clone() })
+        Ok(Self { out, bytes: line.len() as u64, line, layout: layout.clone() })
     }
 
     /// Writes one row.
@@ -84,7 +85,13 @@ impl<W: Write> TimeSeries<W> {
             self.numbers([&contact.eccentricity.norm(), &contact.normal_force, &peak]);
         }
         self.line.push('\n');
+        self.bytes += self.line.len() as u64;
         self.out.write_all(self.line.as_bytes())
+    }
+
+    /// Size of everything so far.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// Ten digits: 1e-11 m on a machine of less than 1 m, and no solver agrees on more.

@@ -4,11 +4,13 @@
 //! The distance of two such motions, measured at the platform, grows like `e^{λt}` until it is as
 //! large as the clearances allow; λ is the largest Lyapunov exponent, 1/λ the e-folding time.
 
-use crate::engine::{self, Schedule, StepControl, TYPICAL_IMPACT_SPEED};
+use crate::engine::{self, Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Bearing, Mechanism, Revolute};
-use crate::simulate::radial_clearance;
+use crate::simulate::{OwnError, radial_clearance};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 
 /// Time in s that is watched: at an e-folding time of 10 ms a distance grows from 1e-12 m to 0.5 mm.
 pub const WINDOW: f64 = 0.2;
@@ -33,38 +35,89 @@ const INTERVAL: f64 = 1e-4;
 /// Longest step in s for pairs.
 const PAIR_STEP: f64 = 1e-5;
 
+/// Shortest step in s for pairs: below, looking at a run would take longer than the run.
+const SHORTEST_PAIR_STEP: f64 = 2e-7;
+
 /// Distance over time: (s, m).
 pub type Distances = Vec<(f64, f64)>;
 
-/// Positions (m) of the output body over the rows of a schedule, or nothing if the run breaks down.
+/// What is compared of a row of two runs.
+#[derive(Clone, Debug)]
+pub struct Look {
+    t: f64,
+    /// Of the output body, in m.
+    position: Vector2<f64>,
+    /// Peak of the normal force in each revolute joint since the row before, in N.
+    peaks: Vec<f64>,
+    /// Hits since the start, in all joints.
+    hits: u64,
+}
+
+impl Look {
+    /// At a row.
+    pub fn at(mechanism: &Mechanism, instant: &Instant) -> Self {
+        Self {
+            t: instant.t,
+            position: mechanism.output_state(instant.states).position,
+            peaks: instant.tallies.iter().map(|tally| tally.peak).collect(),
+            hits: instant.tallies.iter().map(|tally| tally.impacts).sum(),
+        }
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        (self.position - other.position).norm()
+    }
+}
+
+/// Largest normal force in each joint over some rows, in N.
+fn peaks<'a>(rows: impl Iterator<Item = &'a Look>) -> Vec<f64> {
+    rows.fold(Vec::new(), |mut peaks, row| {
+        peaks.resize(row.peaks.len(), 0.0);
+        for (peak, now) in peaks.iter_mut().zip(&row.peaks) {
+            *peak = peak.max(*now);
+        }
+        peaks
+    })
+}
+
+/// The rows of a schedule, or nothing if the run breaks down or is told to stop.
 fn track(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
-) -> Option<Vec<(f64, Vector2<f64>)>> {
+    stop: &AtomicBool,
+) -> Option<Vec<Look>> {
     let mut track = Vec::with_capacity(schedule.intervals() + 1);
-    let done = engine::run(mechanism, control, schedule, &mut |instant| {
-        track.push((instant.t, mechanism.output_state(instant.states).position));
+    let done = engine::run_while(mechanism, control, schedule, stop, &mut |instant| {
+        track.push(Look::at(mechanism, instant));
+        ControlFlow::Continue(())
     });
-    done.ok().map(|_| track)
+    done.ok().filter(|work| !work.stopped).map(|_| track)
 }
 
 /// Distance over time of a mechanism from itself with its output body displaced by [`DISPLACEMENT`]
 /// in a direction (share of a turn). Steps are fixed: steps chosen by error would differ between the
-/// two, and part them by more than the displacement. `None` if no joint has clearance under a law, or a
-/// run breaks down.
-fn pair(mechanism: &Mechanism, duration: f64, direction: f64) -> Option<Distances> {
-    let laws = |joint: &Revolute| matches!(joint.bearing, Bearing::Clearance(_));
-    if !mechanism.revolutes.iter().any(laws) {
+/// two, and part them by more than the displacement. `None` if no joint has clearance under a law, if a
+/// run breaks down, or if it takes steps that are too short.
+fn pair(
+    mechanism: &Mechanism,
+    duration: f64,
+    direction: f64,
+    stop: &AtomicBool,
+) -> Option<Distances> {
+    if !has_law(mechanism) {
         return None;
     }
     let step = PAIR_STEP.min(0.5 * mechanism.longest_step(TYPICAL_IMPACT_SPEED)?);
+    if step < SHORTEST_PAIR_STEP {
+        return None;
+    }
     let control = StepControl::Fixed(step);
     let schedule = Schedule { duration, interval: INTERVAL };
     let (sin, cos) = (TAU * direction).sin_cos();
     let displaced = mechanism.displaced(Vector2::new(cos, sin) * DISPLACEMENT);
-    let [a, b] = [mechanism, &displaced].map(|m| track(m, control, schedule));
-    Some(a?.iter().zip(b?).map(|((t, p), (_, q))| (*t, (p - q).norm())).collect())
+    let [a, b] = [mechanism, &displaced].map(|m| track(m, control, schedule, stop));
+    Some(a?.iter().zip(&b?).map(|(p, q)| (p.t, p.distance(q))).collect())
 }
 
 /// Growth rate in 1/s of a distance: the slope of its logarithm over the exponential range, which ends
@@ -97,34 +150,51 @@ fn growth(mechanism: &Mechanism, distances: &Distances) -> Option<f64> {
 /// displaced in a direction (share of a turn). `None` where there is nothing to see: no joint has
 /// clearance under a law, a run breaks down, or the range of growth is too short.
 pub fn exponent(mechanism: &Mechanism, duration: f64, direction: f64) -> Option<f64> {
-    growth(mechanism, &pair(mechanism, duration, direction)?)
-}
-
-/// The first time in s at which a distance exceeds `size` m, if it does.
-fn first_beyond(distances: &Distances, size: f64) -> Option<f64> {
-    distances.iter().find(|(_, d)| *d > size).map(|(t, _)| *t)
+    growth(mechanism, &pair(mechanism, duration, direction, &AtomicBool::new(false))?)
 }
 
 /// How far a run is from the same run with a tenth of the error (a tenth of the tolerance; half the
-/// step), in m over the time in s: its own numerical error, and what chaos makes of it.
+/// step), as long as that is less than [`HORIZON_ERROR`]: its own numerical error, and what chaos makes
+/// of it.
 ///
-/// `positions` are the run's own, at the rows of `schedule`; rows after [`WINDOW`] are not looked at.
-/// It takes one more run of that length. `None` if the run breaks down.
-fn own_error(
+/// `rows` are the run's own; those after [`WINDOW`] are not looked at. It takes one more run of that
+/// length. `None` if no joint has clearance under a law, if that run breaks down, and once `stop` is true.
+pub fn own_error(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
-    positions: &[Vector2<f64>],
-) -> Option<Distances> {
+    rows: &[Look],
+    stop: &AtomicBool,
+) -> Option<OwnError> {
+    if !has_law(mechanism) {
+        return None;
+    }
     let finer = match control {
         StepControl::Fixed(step) => StepControl::Fixed(0.5 * step),
         StepControl::Tolerance(tolerance) => StepControl::Tolerance(0.1 * tolerance),
     };
     let schedule = Schedule { duration: schedule.duration.min(WINDOW), ..schedule };
-    let track = track(mechanism, finer, schedule)?;
+    let track = track(mechanism, finer, schedule, stop)?;
     // A window that ends between two rows of the run has a row of its own there, which is left out.
-    let own = track.iter().zip(positions).take(schedule.intervals());
-    Some(own.map(|((t, p), q)| (*t, (p - q).norm())).collect())
+    let pairs: Vec<_> = track.iter().zip(rows).take(schedule.intervals()).collect();
+    let apart = pairs.iter().position(|(p, q)| p.distance(q) > HORIZON_ERROR);
+    let good = &pairs[..apart.unwrap_or(pairs.len())];
+    let [finer, own] = [peaks(good.iter().map(|(p, _)| *p)), peaks(good.iter().map(|(_, q)| *q))];
+    let differences = finer.iter().zip(&own).map(|(a, b)| (a - b).abs());
+    let end = apart.or(pairs.len().checked_sub(1));
+    Some(OwnError {
+        until_s: end.map_or(0.0, |row| pairs[row].1.t),
+        to_the_end: apart.is_none(),
+        position_m: good.iter().map(|(p, q)| p.distance(q)).fold(0.0, f64::max),
+        contact_force: differences.fold(0.0, f64::max),
+        largest_contact_force: own.iter().copied().fold(0.0, f64::max),
+        hits: good.last().map_or(0, |(_, q)| q.hits),
+    })
+}
+
+fn has_law(mechanism: &Mechanism) -> bool {
+    let law = |joint: &Revolute| matches!(joint.bearing, Bearing::Clearance(_));
+    mechanism.revolutes.iter().any(law)
 }
 
 /// What two short looks at a run say of chaos.
@@ -134,26 +204,41 @@ pub struct Chaos {
     pub lyapunov: Option<f64>,
     /// Distance of that pair.
     pub distances: Distances,
-    /// Time in s until which the run's own error, with what chaos makes of it, stays below
-    /// [`HORIZON_ERROR`]; none if it does so all through [`WINDOW`].
-    pub horizon: Option<f64>,
+    /// How far the run is from one with a tenth of the error.
+    pub own: OwnError,
 }
 
-/// Looks at the first [`WINDOW`] of a run whose positions there (m, at the rows of `schedule`) are
-/// known. That takes three more runs of that length, two of them with fixed steps. `None` where no
-/// joint has clearance under a law, or where a run breaks down.
+impl Chaos {
+    /// Looks at a pair beside a run whose own error is known.
+    pub fn of(
+        mechanism: &Mechanism,
+        schedule: Schedule,
+        own: OwnError,
+        direction: f64,
+        stop: &AtomicBool,
+    ) -> Option<Self> {
+        let distances = pair(mechanism, schedule.duration.min(WINDOW), direction, stop)?;
+        Some(Self { lyapunov: growth(mechanism, &distances), distances, own })
+    }
+
+    /// Time in s until which the run's own error, with what chaos makes of it, stays below
+    /// [`HORIZON_ERROR`]; none if it does so all through [`WINDOW`].
+    pub fn horizon(&self) -> Option<f64> {
+        (!self.own.to_the_end).then_some(self.own.until_s)
+    }
+}
+
+/// Looks at the first [`WINDOW`] of a run whose rows there are known. That takes three more runs of that
+/// length, two of them with fixed steps. `None` where no joint has clearance under a law, or where a run
+/// breaks down.
 pub fn look(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
-    positions: &[Vector2<f64>],
+    rows: &[Look],
     direction: f64,
 ) -> Option<Chaos> {
-    let distances = pair(mechanism, schedule.duration.min(WINDOW), direction)?;
-    let own = own_error(mechanism, control, schedule, positions)?;
-    Some(Chaos {
-        lyapunov: growth(mechanism, &distances),
-        distances,
-        horizon: first_beyond(&own, HORIZON_ERROR),
-    })
+    let never = AtomicBool::new(false);
+    let own = own_error(mechanism, control, schedule, rows, &never)?;
+    Chaos::of(mechanism, schedule, own, direction, &never)
 }

@@ -6,6 +6,7 @@ mod check;
 pub mod compare;
 mod film;
 mod folder;
+mod forecast;
 pub mod paper;
 mod pictures;
 mod recent;
@@ -16,6 +17,7 @@ pub mod sweep;
 pub use check::{
     Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Found, Ideal, check,
 };
-pub use folder::{Folder, FolderError, default_name};
-pub use run::{Outcome, RunError, SUMMARY_FILE, run};
+pub use folder::{Folder, FolderError, abandon, default_name};
+pub use forecast::Forecast;
+pub use run::{Outcome, RunError, SUMMARY_FILE, Terms, run};
 pub(crate) use run::{PAGE_FILE, refused};

@@ -14,7 +14,9 @@ pub(super) fn page(summary: &Summary, body: &str, pictures: &[Picture]) -> Strin
         Part::Link { file: PLAYER_FILE, text: "▶ Watch the machine and its joints move" };
     let parts =
         [player, Part::Facts(&facts), Part::Pictures(pictures), Part::Provenance(&provenance)];
-    report::document(&title, &lead(summary, body), &parts)
+    let doubts = summary.watched.doubts.iter().map(|doubt| format!(" Doubtful: {doubt}."));
+    let lead = lead(summary, body) + &doubts.collect::<String>();
+    report::document(&title, &lead, &parts)
 }
 
 /// The main result in words.
@@ -24,6 +26,15 @@ fn lead(s: &Summary, body: &str) -> String {
             "The run did not reach its end: {reason}. What follows holds up to {} s.",
             number(s.simulated_s)
         );
+    }
+    if s.interrupted {
+        return format!(
+            "The run was interrupted. What follows holds up to {} s.",
+            number(s.simulated_s)
+        );
+    }
+    if !s.watched.faults.is_empty() {
+        return format!("Do not trust this run: {}.", s.watched.faults.join("; "));
     }
     let drives = s.drive_peaks();
     if s.without_play() {
@@ -169,6 +180,7 @@ fn facts(s: &Summary, body: &str) -> Vec<Fact> {
             },
         ));
     }
+    facts.extend(balance(s));
     facts.push(fact(
         "Steps",
         s.steps.to_string(),
@@ -179,6 +191,39 @@ fn facts(s: &Summary, body: &str) -> Vec<Fact> {
             number(s.simulated_s)
         ),
     ));
+    facts
+}
+
+/// What the run saw of its own errors.
+fn balance(s: &Summary) -> Vec<Fact> {
+    let watched = &s.watched;
+    let mut facts = Vec::new();
+    if let Some(energy) = &watched.energy {
+        facts.push(Fact {
+            label: "Energy is off by at most".into(),
+            value: format!("{} %", number(100.0 * energy.imbalance_share)),
+            note: format!(
+                "{} J of {} J that changed hands; drives put in {} J, contacts and loads took {} J",
+                number(energy.imbalance),
+                number(energy.turned_over),
+                number(energy.put_in),
+                number(energy.taken)
+            ),
+        });
+    }
+    if let Some(own) = &watched.own_error {
+        facts.push(Fact {
+            label: "Own error".into(),
+            value: length(own.position_m),
+            note: format!(
+                "until t = {} s, and {} N in peaks of contact forces, against a run with a tenth of the error; {} hits \
+                 until then",
+                number(own.until_s),
+                number(own.contact_force),
+                own.hits
+            ),
+        });
+    }
     facts
 }
 

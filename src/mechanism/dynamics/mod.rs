@@ -249,6 +249,21 @@ impl Dynamics {
         }
     }
 
+    /// Power in W at the instant whose accelerations were asked for last: of everything, `Σ (M a)·v`, and
+    /// of the drives, `Σ F q̇`.
+    pub fn power(&self, mechanism: &Mechanism, states: &[BodyState], now: &Evaluation) -> [f64; 2] {
+        let bodies = self.masses.iter().zip(&now.accelerations).zip(states);
+        let total = bodies.map(|((m, a), state)| m.component_mul(a).dot(&state.twist)).sum();
+        let drives = mechanism.actuators.iter().zip(&now.drive_forces).map(|(actuator, effort)| {
+            let rate = match actuator.joint {
+                JointIndex::Prismatic(i) => self.prismatics[i].length_rate,
+                JointIndex::Revolute(i) => mechanism.revolutes[i].spin(states),
+            };
+            effort * rate
+        });
+        [total, drives.sum()]
+    }
+
     /// Replaces the wrenches by those that alone would give the accelerations, `M a`: the forces of
     /// the rigid joints included.
     pub fn replace_wrenches(&self, out: &mut Evaluation) {

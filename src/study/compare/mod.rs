@@ -20,7 +20,7 @@ pub use result::{ChaosResult, Comparison, NativeResult, RowResult, TrendResult};
 pub use statistics::{Behaviour, Mean, Trend};
 pub use verdict::{Use, Verdict, in_words};
 
-use super::chaos::{self, Chaos};
+use super::chaos::{self, Chaos, Look};
 use super::folder::Folder;
 use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused};
 use crate::engine::{self, StepControl};
@@ -178,14 +178,14 @@ fn looks(scenario: &Scenario, plan: &Plan) -> Result<Vec<Chaos>, Problem> {
         let mut machine = machine(scenario, Law::HertzStep, control, start, plan.starts)?;
         machine.schedule.duration = machine.schedule.duration.min(chaos::WINDOW);
         let mechanism = &machine.mechanism;
-        let mut positions = Vec::new();
+        let mut rows = Vec::new();
         let done = engine::run(mechanism, control, machine.schedule, &mut |instant| {
-            positions.push(mechanism.output_state(instant.states).position);
+            rows.push(Look::at(mechanism, instant));
         });
         let direction = start as f64 / plan.starts as f64;
         Ok(done
             .ok()
-            .and_then(|_| chaos::look(mechanism, control, machine.schedule, &positions, direction)))
+            .and_then(|_| chaos::look(mechanism, control, machine.schedule, &rows, direction)))
     };
     let looks = (0..plan.starts).into_par_iter().map(look).collect::<Result<Vec<_>, _>>()?;
     Ok(looks.into_iter().flatten().collect())
@@ -198,7 +198,7 @@ fn chaos_result(looks: &[Chaos]) -> Option<ChaosResult> {
     }
     let rate = Mean::of(lyapunov.iter().copied());
     let mut horizons: Vec<f64> =
-        looks.iter().map(|look| look.horizon.unwrap_or(f64::INFINITY)).collect();
+        looks.iter().map(|look| look.horizon().unwrap_or(f64::INFINITY)).collect();
     horizons.sort_by(f64::total_cmp);
     let median = horizons[horizons.len() / 2];
     Some(ChaosResult {

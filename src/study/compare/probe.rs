@@ -56,7 +56,7 @@ pub fn measure(
     progress(machine.schedule.duration - told);
     let (work, halted) = match ended {
         Ok(work) => (work, None),
-        Err(halt) => (halt.work, Some(halt.to_string())),
+        Err(halt) => (*halt.work, Some(halt.to_string())),
     };
     probe.finish(recorder, scenario, machine, work, started.elapsed().as_secs_f64(), halted)
 }

@@ -8,11 +8,10 @@ use crate::report::number;
 use crate::scenario::Law;
 use std::fmt::Write as _;
 
-/// `compare.csv`: a row per law and step.
+/// `compare.csv`: a row per law and step. Times of computing are in `compare.json` alone: the same
+/// comparison gives the same table.
 pub fn csv(comparison: &Comparison) -> String {
-    let mut table = "law,step_s,tolerance_m_s,resolved,starts,halted,steps_per_s,\
-                     wall_s_per_simulated_s"
-        .to_owned();
+    let mut table = "law,step_s,tolerance_m_s,resolved,starts,halted,steps_per_s".to_owned();
     for quantity in &QUANTITIES {
         // Writing to a string cannot fail, here and below.
         let _ = write!(table, ",{},{}_sem", quantity.key, quantity.key);
@@ -26,9 +25,7 @@ pub fn csv(comparison: &Comparison) -> String {
             .map(|v| v.map_or_else(String::new, |v| format!("{v:e}")));
         let runs = format!("{},{}", row.starts, row.halted);
         let _ = write!(table, "{law},{step},{tolerance},{resolved},{runs}");
-        for value in [row.steps_per_s, row.wall_s_per_simulated_s] {
-            let _ = write!(table, ",{}", number(value));
-        }
+        let _ = write!(table, ",{}", number(row.steps_per_s));
         for mean in &row.quantities {
             let _ = write!(table, ",{},{}", number(mean.mean), number(mean.sem));
         }

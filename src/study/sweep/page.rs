@@ -27,7 +27,7 @@ fn lead(record: &Record, rows: &Rows) -> String {
     }
     lead += &format!(": {} reached their end", record.ok);
     for (count, how, wanted) in [
-        (record.halted, "broke down on the way", Status::Halted),
+        (record.halted, "broke down on the way or do not balance", Status::Halted),
         (record.refused, "cannot be done by the machine", Status::Refused),
     ] {
         let first = rows.values().find(|row| status(row) == wanted);

@@ -70,12 +70,11 @@ pub(super) fn write(
 ) -> Result<Outcome, RunError> {
     let table = table(identity, rows).map_err(refused(TABLE_FILE))?;
     let mut record = Record::new(identity.clone(), shard, rows, folder);
-    record.complete = record.finished == record.runs_of_shard;
     record.table_sha256 = Some(sha256(table.as_bytes()));
-    let json = record.to_json();
     let pictures = pictures::draw(identity, rows)?;
-    // The record first: a table that it does not vouch for would pass for one edited by hand.
-    put(place, RECORD_FILE, &json)?;
+    // The record first: a table that it does not vouch for would pass for one edited by hand. That
+    // all is complete it says last, when it is.
+    put(place, RECORD_FILE, record.to_json())?;
     put(place, TABLE_FILE, &table)?;
     #[cfg(feature = "parquet")]
     {
@@ -85,7 +84,10 @@ pub(super) fn write(
     for picture in &pictures {
         put(place, &picture.file, &picture.svg)?;
     }
+    record.complete = record.finished == record.runs_of_shard;
     put(place, PAGE_FILE, page::page(&record, rows, &pictures))?;
+    let json = record.to_json();
+    put(place, RECORD_FILE, &json)?;
     Ok(Outcome { record, json, folder: folder.to_owned() })
 }
 

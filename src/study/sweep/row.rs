@@ -33,7 +33,8 @@ pub(super) const FIGURES: [&str; 18] = [
 #[cfg(feature = "parquet")]
 pub(super) const COUNTS: [&str; 2] = ["impacts", "steps"];
 
-/// The last column: `ok`, or `halted: …` or `refused: …` with the reason.
+/// The last column: `ok`, or `halted: …` or `refused: …` with the reason. A run that does not balance has
+/// come to its end, but not where it should: it counts as halted.
 const STATUS: &str = "status";
 
 const OK: &str = "ok";
@@ -45,7 +46,7 @@ const REFUSED: &str = "refused: ";
 pub(super) enum Status {
     /// It reached its end.
     Ok,
-    /// It broke down on the way; figures hold up to there.
+    /// It broke down on the way, and figures hold up to there; or it does not balance.
     Halted,
     /// The machine cannot do what its scenario asks for; there are no figures.
     Refused,
@@ -117,8 +118,10 @@ pub(super) fn of_summary(values: Vec<String>, summary: &Summary, more: &[String]
         // No number is an empty cell.
         _ => String::new(),
     }));
+    let faults = &summary.watched.faults;
     row.push(match &summary.halted {
-        None => OK.to_owned(),
+        None if faults.is_empty() => OK.to_owned(),
+        None => format!("{HALTED}{}", faults.join("; ")),
         Some(reason) => format!("{HALTED}{reason}"),
     });
     row

@@ -81,12 +81,14 @@ pub fn sweep(
 
 /// The journal of this sweep in `target`, and the rows that are there.
 fn open(plan: &Plan, target: &Path, force: bool) -> Result<(Journal, Rows), SweepError> {
-    if force && target.join(JOURNAL_FILE).exists() {
-        drop(lock(target)?);
-    }
+    Folder::mend(target, RECORD_FILE).map_err(RunError::from)?;
+    // Held until the journal is replaced: nobody works on what is thrown away.
+    let replaced =
+        if force && target.join(JOURNAL_FILE).exists() { Some(lock(target)?) } else { None };
     if force || !target.join(RECORD_FILE).exists() {
         create(plan, target, force)?;
     }
+    drop(replaced);
     let record = Record::read(target)?;
     let mut differences = record.identity.differences(plan.identity());
     if record.shard != plan.shard() {
@@ -137,7 +139,7 @@ fn summary(scenario: &Scenario, mut machine: Machine) -> Summary {
     });
     let (work, halted) = match ended {
         Ok(work) => (work, None),
-        Err(halt) => (halt.work, Some(halt.to_string())),
+        Err(halt) => (*halt.work, Some(halt.to_string())),
     };
     // No wall time: what a row says must not depend on the day.
     recorder.finish(scenario, &machine, work, f64::NAN, halted, Vec::new())

@@ -1,5 +1,19 @@
 //! Output folders: written aside, named at the end, and never at the cost of somebody's files.
+//!
+//! ```text
+//! OUT.partial  (claimed: locked by one process) ── finish ──► OUT   exchanged in one step
+//! OUT.replaced (the old result for an instant, only where the system cannot exchange)
+//! ```
+//! A process that is killed leaves its `OUT.partial` behind, unlocked. The next start that uses the same
+//! `OUT` finds it so, and clears it; a live one's is locked, and the second process is told.
 
+mod claim;
+mod making;
+mod swap;
+
+pub use making::abandon;
+
+use claim::Claim;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,7 +26,7 @@ pub struct Folder {
     target: PathBuf,
     /// The same from the root: the working directory itself may be meant.
     absolute: PathBuf,
-    partial: PathBuf,
+    claim: Claim,
     marker: &'static str,
     force: bool,
 }
@@ -39,6 +53,17 @@ pub enum FolderError {
     /// There is a file of that name.
     #[error("`{0}` is a file; --out needs the name of a folder")]
     File(PathBuf),
+    /// Another process makes a result of that name.
+    #[error(
+        "another freeplay is at work on `{0}`; wait for it, or choose another folder with --out"
+    )]
+    Busy(PathBuf),
+    /// Somebody's unfinished result is there, and nothing says whether its process lives.
+    #[error(
+        "`{0}` was left by a freeplay that was killed, or one is at work there (this file system \
+         has no locks to tell): delete it if none is, or choose another folder with --out"
+    )]
+    Left(PathBuf),
     /// The file system refuses.
     #[error("cannot write to `{folder}`: {source}; choose another folder with --out")]
     Io {
@@ -47,6 +72,21 @@ pub enum FolderError {
         /// Why.
         source: io::Error,
     },
+    /// The file system refuses the finished result its name.
+    #[error("cannot give the result its name `{folder}`: {source}")]
+    Name {
+        /// The folder.
+        folder: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+impl FolderError {
+    fn io(folder: &Path) -> impl FnOnce(io::Error) -> FolderError {
+        let folder = folder.to_owned();
+        |source| FolderError::Io { folder, source }
+    }
 }
 
 /// Name of the folder of a command's results where the user gives none: command and scenario, with
@@ -60,8 +100,9 @@ pub fn default_name(command: &str, scenario: &str) -> PathBuf {
 
 impl Folder {
     /// Makes sure that results can be written to `target`, and where to put them until then. Missing
-    /// folders on the way are made. `marker` is the JSON file by which a result is known: it says
-    /// `"program": "freeplay"`, and in `"files"` what else belongs to the result.
+    /// folders on the way are made; what a killed process left of an earlier attempt is removed. `marker`
+    /// is the JSON file by which a result is known: it says `"program": "freeplay"`, and in `"files"` what
+    /// else belongs to the result.
     ///
     /// # Errors
     /// [`FolderError`], before anything is written.
@@ -70,86 +111,89 @@ impl Folder {
         marker: &'static str,
         force: bool,
     ) -> Result<Folder, FolderError> {
+        let claimed = Self::claim(target, marker, force);
+        // A name that is taken is the better news where the folder beside it cannot be made either.
         may_replace(target, marker, force)?;
-        let refused = |folder: &Path| {
-            let folder = folder.to_owned();
-            |source| FolderError::Io { folder, source }
-        };
-        let absolute = std::path::absolute(target).map_err(refused(target))?;
-        let (Some(parent), Some(name)) = (absolute.parent(), absolute.file_name()) else {
+        claimed
+    }
+
+    /// Tidies up what a killed process left beside `target`, for those who go on in a folder that is
+    /// there already.
+    ///
+    /// # Errors
+    /// [`FolderError::Busy`] if a living process makes a result of that name.
+    pub fn mend(target: &Path, marker: &'static str) -> Result<(), FolderError> {
+        let absolute = from_root(target)?;
+        let left = [claim::place(&absolute), swap::aside(&absolute)];
+        if left.iter().any(|path| path.symlink_metadata().is_ok()) {
+            drop(Self::claim(target, marker, false)?);
+        }
+        Ok(())
+    }
+
+    fn claim(target: &Path, marker: &'static str, force: bool) -> Result<Folder, FolderError> {
+        let absolute = from_root(target)?;
+        let (Some(parent), Some(_)) = (absolute.parent(), absolute.file_name()) else {
             // The root of a file system.
             return Err(FolderError::Taken(target.to_owned()));
         };
-        fs::create_dir_all(parent).map_err(refused(parent))?;
-        let name = name.to_string_lossy();
-        let partial = parent.join(format!("{name}.partial-{}", std::process::id()));
-        fs::create_dir(&partial).map_err(refused(parent))?;
-        Ok(Folder { target: target.to_owned(), absolute, partial, marker, force })
+        fs::create_dir_all(parent).map_err(FolderError::io(parent))?;
+        let claim = Claim::new(target, &absolute, marker)?;
+        swap::mend(&absolute, marker).map_err(FolderError::io(target))?;
+        Ok(Folder { target: target.to_owned(), absolute, claim, marker, force })
     }
 
     /// Where the files of the result are to be written now.
     pub fn path(&self) -> &Path {
-        &self.partial
+        self.claim.path()
     }
 
     /// Where a file of the result is to be written now.
     pub fn file(&self, name: &str) -> PathBuf {
-        self.partial.join(name)
+        self.path().join(name)
     }
 
-    /// Gives the folder its name.
+    /// Whether there is an earlier result under the name, which `finish` would replace.
+    pub fn replaces(&self) -> bool {
+        self.absolute.join(self.marker).exists()
+    }
+
+    /// Gives the folder its name, in one step.
     ///
     /// # Errors
     /// If the file system refuses, or if files turned up there meanwhile.
-    pub fn finish(self) -> Result<PathBuf, FolderError> {
+    pub fn finish(mut self) -> Result<PathBuf, FolderError> {
         may_replace(&self.target, self.marker, self.force)?;
-        let refused = |source| FolderError::Io { folder: self.target.clone(), source };
-        if self.absolute.exists() {
-            // Moved aside first: at no time is there half a result under the name.
-            let mut old = self.partial.clone().into_os_string();
-            old.push("-old");
-            fs::rename(&self.absolute, &old).map_err(refused)?;
-            if let Err(error) = fs::rename(&self.partial, &self.absolute) {
-                fs::rename(&old, &self.absolute).map_err(refused)?;
-                return Err(refused(error));
-            }
-            fs::remove_dir_all(&old).map_err(refused)?;
-        } else {
-            fs::rename(&self.partial, &self.absolute).map_err(refused)?;
+        // Nobody abandons this between its two names.
+        let mut making = making::hold();
+        let named = self.claim.unmark().and_then(|()| swap::name(self.path(), &self.absolute));
+        if named.is_ok() {
+            self.claim.let_go(&mut making);
         }
+        drop(making);
+        named.map_err(|source| FolderError::Name { folder: self.target.clone(), source })?;
         Ok(self.target.clone())
     }
 }
 
-impl Folder {
-    /// Leaves what was written under the name that it has now, and says that name: half a result is
-    /// worth more than none, but it is not the result.
-    pub fn keep(mut self) -> PathBuf {
-        std::mem::take(&mut self.partial)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // After `finish` there is nothing left under this name, after `keep` there is no name. A
-        // failure to tidy up is no news.
-        let _ = fs::remove_dir_all(&self.partial);
-    }
+/// A path from the root, links resolved where it exists: what a link points at is what is replaced.
+fn from_root(target: &Path) -> Result<PathBuf, FolderError> {
+    target.canonicalize().or_else(|_| std::path::absolute(target)).map_err(FolderError::io(target))
 }
 
 /// Whether `target` is free, empty, or a result that may be replaced.
 fn may_replace(target: &Path, marker: &str, force: bool) -> Result<(), FolderError> {
-    let refused = |source| FolderError::Io { folder: target.to_owned(), source };
     let entries = match fs::read_dir(target) {
         Ok(entries) => entries,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         Err(_) if target.is_file() => return Err(FolderError::File(target.to_owned())),
-        Err(error) => return Err(refused(error)),
+        Err(error) => return Err(FolderError::io(target)(error)),
     };
     let ours = files_of_result(&target.join(marker));
     let mut empty = true;
     for entry in entries {
-        let entry = entry.map_err(refused)?.file_name().to_string_lossy().into_owned();
+        let entry = entry.map_err(FolderError::io(target))?;
+        let entry = entry.file_name().to_string_lossy().into_owned();
         if !ours.contains(&entry) {
             return Err(FolderError::Foreign { folder: target.to_owned(), entry });
         }

@@ -1,0 +1,74 @@
+//! What Ctrl-C (SIGINT) and SIGTERM do: a command ends without litter, or with what it has.
+//!
+//! A thread waits for them. By default it removes what the process has in the making and ends it; a run
+//! asks to be told instead, and keeps what was computed. The second signal always ends the process.
+
+use super::failure::Failure;
+use super::output::complain;
+use crate::study::abandon;
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// A command that looks at this ends by itself.
+static STOP: AtomicBool = AtomicBool::new(false);
+static LOOKS: AtomicBool = AtomicBool::new(false);
+
+/// The signal that came, or zero.
+static CAME: AtomicU8 = AtomicU8::new(0);
+
+/// What users are told of the work that was done.
+static WORK: Mutex<String> = Mutex::new(String::new());
+
+/// From now on, signals end this process as described above.
+#[cfg(unix)]
+pub(super) fn watch() {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    // Where the system refuses, signals end the process at once, as they do by default: the next start
+    // tidies up.
+    if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) {
+        std::thread::spawn(move || {
+            for signal in signals.forever() {
+                received(u8::try_from(signal).unwrap_or(0));
+            }
+        });
+    }
+}
+
+/// Elsewhere processes are ended at once; the next start tidies up.
+#[cfg(not(unix))]
+pub(super) fn watch() {}
+
+/// Says that this command looks at the flag that is returned, which turns true when it is to end.
+pub(super) fn looked_at() -> &'static AtomicBool {
+    LOOKS.store(true, Ordering::Relaxed);
+    &STOP
+}
+
+/// What users are to be told of the work that was done, should a signal come.
+pub(super) fn work_is(what: String) {
+    *WORK.lock().unwrap_or_else(PoisonError::into_inner) = what;
+}
+
+/// How a command fails that ended because of a signal.
+pub(super) fn interrupted() -> Failure {
+    Failure::Interrupted(CAME.load(Ordering::Relaxed))
+}
+
+#[cfg(unix)]
+fn received(signal: u8) {
+    let first = CAME.swap(signal, Ordering::Relaxed) == 0;
+    if first && LOOKS.load(Ordering::Relaxed) {
+        STOP.store(true, Ordering::Relaxed);
+        complain("interrupted: what was computed is being written; once more drops it");
+        return;
+    }
+    let dropped = abandon() > 0;
+    let work = WORK.lock().unwrap_or_else(PoisonError::into_inner);
+    match (work.as_str(), dropped) {
+        ("", true) => complain("interrupted: nothing was written"),
+        ("", false) => complain("interrupted"),
+        (work, _) => complain(&format!("interrupted: {work}")),
+    }
+    std::process::exit(128 + i32::from(signal));
+}

@@ -1,0 +1,194 @@
+//! The balance of a run: what forces should have made of the kinetic energy, and what it is.
+//!
+//! Exactly, `T(t) = T(0) + ∫ Σ (M a)·v dt` over all bodies, with the accelerations a that all forces and joints
+//! give them. The left side is read off the states that were stepped, the right side is integrated along
+//! the way, to at least the order of the stepping; the difference is what stepping got wrong.
+
+use crate::mechanism::{Bearing, Body, BodyState, Dynamics, Evaluation, Mechanism, Revolute};
+
+/// Power of what acts on a machine at one instant, in W.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Power {
+    /// Of everything: the rate of the kinetic energy.
+    pub total: f64,
+    /// Of the drives.
+    pub drives: f64,
+}
+
+impl Power {
+    /// At states whose accelerations `now` knows.
+    pub fn of(
+        dynamics: &Dynamics,
+        mechanism: &Mechanism,
+        states: &[BodyState],
+        now: &Evaluation,
+    ) -> Self {
+        let [total, drives] = dynamics.power(mechanism, states, now);
+        Self { total, drives }
+    }
+}
+
+/// Work done over a step or a run, in J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Exchange {
+    total: f64,
+    drives: f64,
+    /// `∫ |P| dt`: how much energy changed hands.
+    turned_over: f64,
+}
+
+impl Exchange {
+    /// Over a step of `h` s, by a quadrature rule: shares of the step, each with the power there.
+    pub fn over<const N: usize>(h: f64, rule: [(f64, Power); N]) -> Self {
+        rule.into_iter().fold(Self::default(), |sum, (share, power)| Self {
+            total: sum.total + h * share * power.total,
+            drives: sum.drives + h * share * power.drives,
+            turned_over: sum.turned_over + h * share * power.total.abs(),
+        })
+    }
+}
+
+/// Where the energy of a run went, in J since its start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Work of the drives.
+    pub put_in: f64,
+    /// Growth of the kinetic energy.
+    pub kinetic: f64,
+    /// Growth of the potential energy of gravity.
+    pub gravity: f64,
+    /// What contacts, friction, springs and other loads took: dissipated, or stored in them.
+    pub taken: f64,
+    /// `∫ |P| dt`, P the rate of the kinetic energy: how much changed hands.
+    pub turned_over: f64,
+    /// Largest kinetic energy of a row.
+    pub most_kinetic: f64,
+    /// By how much the kinetic energy of a row was off at most, of all rows.
+    pub imbalance: f64,
+}
+
+/// Energies in J below which a balance means nothing: a thousandth of what a hit of 1 g at 1 cm/s has.
+const NOTHING: f64 = 5e-11;
+
+impl Energy {
+    /// The imbalance as a share of what changed hands.
+    pub fn share(&self) -> f64 {
+        self.imbalance / self.turned_over.max(self.most_kinetic).max(NOTHING)
+    }
+}
+
+/// Keeps the balance of a run.
+#[derive(Debug)]
+pub(super) struct Ledger {
+    start: [f64; 2],
+    done: Option<Exchange>,
+    energy: Energy,
+}
+
+impl Ledger {
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
+        let start = [kinetic(mechanism, &states), potential(mechanism, &states)];
+        Self { start, done: Some(Exchange::default()), energy: Energy::default() }
+    }
+
+    /// Takes what a step exchanged, if that is known: otherwise there is no balance.
+    pub fn add(&mut self, step: Option<Exchange>) {
+        self.done = self.done.zip(step).map(|(done, step)| Exchange {
+            total: done.total + step.total,
+            drives: done.drives + step.drives,
+            turned_over: done.turned_over + step.turned_over,
+        });
+    }
+
+    /// Draws the balance of a row.
+    pub fn row(&mut self, mechanism: &Mechanism, states: &[BodyState]) -> Option<Energy> {
+        let now = kinetic(mechanism, states);
+        let gained = now - self.start[0];
+        let gravity = potential(mechanism, states) - self.start[1];
+        let Exchange { total, drives, turned_over } = self.done?;
+        let Energy { most_kinetic, imbalance, .. } = self.energy;
+        self.energy = Energy {
+            put_in: drives,
+            kinetic: gained,
+            gravity,
+            taken: drives - gravity - total,
+            turned_over,
+            most_kinetic: most_kinetic.max(now),
+            imbalance: imbalance.max((gained - total).abs()),
+        };
+        Some(self.energy)
+    }
+}
+
+/// `T = ½ Σ (m v² + I ω²)` in J.
+fn kinetic(mechanism: &Mechanism, states: &[BodyState]) -> f64 {
+    let of = |(body, state): (&Body, &BodyState)| {
+        let (v, spin) = (state.twist.xy(), state.twist.z);
+        0.5 * (body.mass * v.norm_squared() + body.inertia * spin * spin)
+    };
+    mechanism.bodies.iter().zip(states).map(of).sum()
+}
+
+/// `V = −Σ m g·x` in J.
+fn potential(mechanism: &Mechanism, states: &[BodyState]) -> f64 {
+    let bodies = mechanism.bodies.iter().zip(states);
+    bodies.map(|(body, state)| -body.mass * mechanism.gravity.dot(&state.position)).sum()
+}
+
+/// How far rigid joints have come apart, in m: centres of ideal revolute joints, and prismatic joints across
+/// their axis. (Of a prismatic joint's angle, what it makes at the slider's end.)
+pub(super) fn drift(mechanism: &Mechanism, states: &[BodyState]) -> f64 {
+    let ideal = |joint: &&Revolute| matches!(joint.bearing, Bearing::Ideal);
+    let gaps =
+        mechanism.revolutes.iter().filter(ideal).map(|joint| {
+            (joint.journal.frame(states).centre - joint.ring.frame(states).centre).norm()
+        });
+    let slides = mechanism.prismatics.iter().map(|joint| joint.drift(states));
+    gaps.chain(slides).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::engine::{Energy, Schedule, run};
+    use crate::model::assemble;
+    use crate::scenario::Scenario;
+
+    fn energy(sets: &[&str], duration: f64) -> Energy {
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        let scenario = Scenario::load(None, &sets).expect("right");
+        let machine = assemble(&scenario).expect("put together");
+        let schedule = Schedule { duration, interval: 1e-3 };
+        let ended = run(&machine.mechanism, machine.control, schedule, &mut |_| {});
+        ended.unwrap_or_else(|halt| *halt.work).energy.expect("under a law")
+    }
+
+    /// The balance closes as the tolerance does, whoever drives, and at fixed steps with their square.
+    #[test]
+    fn the_balance_closes_with_the_error_of_stepping() {
+        let gravity = "environment.gravity=[0,-9.81]";
+        for (sets, most) in [
+            (&["simulation.tolerance=1e-5", gravity][..], 2e-4),
+            (&["simulation.tolerance=1e-8"], 1e-6),
+            (&["simulation.tolerance=1e-5", "drive.mode=servo", gravity], 2e-4),
+            (&["simulation.tolerance=1e-5", "joints.friction=0.1", gravity], 2e-4),
+            (&["simulation.step=1e-5"], 2e-4),
+            (&["simulation.step=5e-6"], 5e-5),
+            (&["contact.law=ideal", gravity], 1e-8),
+        ] {
+            let energy = energy(sets, 0.2);
+            assert!(energy.share() < most, "{sets:?}: {:e}", energy.share());
+            let sum = energy.kinetic + energy.gravity + energy.taken;
+            let left = (energy.put_in - sum).abs();
+            assert!(left <= energy.imbalance + 1e-15, "{sets:?}: {energy:?}");
+            assert!(energy.turned_over > 1e-5, "{energy:?}");
+        }
+    }
+
+    /// Dampers far too strong for the masses are stepped wrongly, and energy comes from nowhere.
+    #[test]
+    fn energy_from_nowhere_is_seen() {
+        let energy = energy(&["contact.c_max=1e6"], 0.3);
+        assert!(energy.share() > 0.05, "{energy:?}");
+    }
+}
