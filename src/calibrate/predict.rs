@@ -176,7 +176,7 @@ fn complete(model: &Scenario, log: &Log) -> Log {
     for channel in Channel::all(3) {
         let value = match channel {
             Channel::Pose(k) => start[k],
-            Channel::Command(_) | Channel::Length(_) | Channel::Force(_) | Channel::Added(_) => 0.0,
+            Channel::Command(_) | Channel::Length(_) | Channel::Force(_) => 0.0,
         };
         if log.get(channel).is_none() {
             channels.push((channel, vec![value; log.samples]));

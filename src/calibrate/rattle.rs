@@ -80,7 +80,7 @@ pub fn swing_lasts(a: &Log, b: &Log, sensors: &Sensors) -> bool {
 /// steps of h is noise of `h/√12`.
 pub fn noise(sensors: &Sensors, channel: Channel) -> Option<f64> {
     let (declared, exact) = match channel {
-        Channel::Command(_) | Channel::Added(_) => return None,
+        Channel::Command(_) => return None,
         Channel::Length(_) => (sensors.length_resolution / 12f64.sqrt(), EXACT[0]),
         Channel::Pose(2) => (sensors.angle_std, EXACT[1]),
         Channel::Pose(_) => (sensors.pose_std, EXACT[0]),

@@ -153,7 +153,7 @@ pub fn with_noise(clean: &Log, sensors: &Sensors, seed: u64) -> Log {
             0.0
         };
         let noisy = values.iter().map(|value| match channel {
-            Channel::Command(_) | Channel::Added(_) => *value,
+            Channel::Command(_) => *value,
             Channel::Length(_) if step > 0.0 => ((value + offset) / step).round() * step - offset,
             Channel::Length(_) => *value,
             Channel::Force(_) => value + sensors.force_std * sample(&mut random),

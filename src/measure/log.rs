@@ -15,8 +15,6 @@ pub enum Channel {
     Length(usize),
     /// Force of its drive, N: `F1`.
     Force(usize),
-    /// What was added to the output of its controller, V: `added1`.
-    Added(usize),
     /// Pose of the output, x and y in m, φ in rad: `x`, `y`, `phi`.
     Pose(usize),
 }
@@ -27,7 +25,6 @@ impl Channel {
         match self {
             Channel::Command(_) | Channel::Length(_) | Channel::Pose(0 | 1) => "m",
             Channel::Force(_) => "N",
-            Channel::Added(_) => "V",
             Channel::Pose(_) => "rad",
         }
     }
@@ -51,7 +48,6 @@ impl fmt::Display for Channel {
             Channel::Command(i) => write!(f, "q{}_cmd", i + 1),
             Channel::Length(i) => write!(f, "q{}", i + 1),
             Channel::Force(i) => write!(f, "F{}", i + 1),
-            Channel::Added(i) => write!(f, "added{}", i + 1),
             Channel::Pose(i) => f.write_str(["x", "y", "phi"][*i]),
         }
     }
@@ -188,7 +184,7 @@ impl Log {
             for (channel, values) in &self.channels {
                 let value = values[row];
                 let _ = match channel {
-                    Channel::Command(_) | Channel::Added(_) => write!(text, ",{value}"),
+                    Channel::Command(_) => write!(text, ",{value}"),
                     Channel::Force(_) => write!(text, ",{value:.6}"),
                     Channel::Length(_) | Channel::Pose(_) => write!(text, ",{value:.9}"),
                 };

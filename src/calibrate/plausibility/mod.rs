@@ -188,7 +188,6 @@ fn still(log: &Log) -> Vec<Channel> {
         Channel::Command(_) => false,
         Channel::Length(leg) => moves(leg),
         Channel::Force(_) | Channel::Pose(_) => (0..3).any(moves),
-        Channel::Added(_) => false,
     };
     log.channels().filter(|channel| moved(*channel) && range(*channel) == 0.0).collect()
 }

@@ -68,7 +68,7 @@ pub fn recorded(trial: &Trial) -> Result<(Case, Vec<Setting>), SearchError> {
                 // Nine decimals, as logs have them.
                 Channel::Command(leg) => (length(i, leg) * 1e9).round() * 1e-9,
                 Channel::Length(leg) => length(i, leg),
-                Channel::Force(_) | Channel::Added(_) => 0.0,
+                Channel::Force(_) => 0.0,
                 Channel::Pose(k) => pose(i)[k],
             });
             (channel, values.collect())
