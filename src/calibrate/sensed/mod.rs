@@ -28,6 +28,7 @@ pub mod outcome;
 mod page;
 mod periodic;
 pub mod predict;
+mod prepare;
 pub mod problem;
 pub mod recording;
 pub mod report;
@@ -45,4 +46,5 @@ pub mod unnamed;
 mod unseen;
 pub mod windows;
 
-pub use report::{into_folder, prepare};
+pub use prepare::prepare;
+pub use report::into_folder;

@@ -6,15 +6,12 @@ use super::held;
 use super::hypotheses::Tried;
 use super::left::Left;
 use super::limits::Limit;
-use super::noise::{self, OtherNoise};
+use super::noise::OtherNoise;
 use super::outcome::{Outcome, calibrate};
 use super::page;
+use super::prepare::{Prepared, Way};
 use super::problem::{Problem, Stopped};
-use super::recording::Recording;
 use super::search::name;
-use super::start::machine;
-use super::windows::bench::{Bench, suits};
-use super::windows::plausible;
 use super::windows::report::{Windows, into_folder as by_windows};
 use crate::calibrate::errors::{ChannelError, worst};
 use crate::calibrate::outcome::Verdict;
@@ -24,16 +21,13 @@ use crate::calibrate::report::{
     ActsOn, Depends, EffectReport, Ranked, RattleReport, ResidualReport, Seeds,
 };
 use crate::calibrate::result::{
-    CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, refuse, to_json,
+    CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, to_json,
 };
 use crate::engine::StepControl;
-use crate::measure::log::LogError;
-use crate::mechanism::{Mechanism, Reads};
-use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant as Clock;
 
 /// The report. Keys are promised to scripts; see the README.
@@ -76,130 +70,6 @@ pub struct Report {
     /// Of a machine that forgets its start: what errors are, and by how much predictions miss over windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub windows: Option<Windows>,
-}
-
-/// A rig and recordings that nothing speaks against, before anything is simulated.
-#[derive(Debug)]
-pub struct Prepared {
-    rig: Scenario,
-    recordings: Vec<Recording>,
-    /// How many of them, the first ones, values are fitted to.
-    fits: usize,
-    /// How.
-    way: Way,
-}
-
-/// How a machine is calibrated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
-    /// Nothing holds it: by windows.
-    Windows,
-    /// Sampled controllers hold it: by what they ask of their drives.
-    Held,
-    /// By residuals in units of noise and simulations.
-    Residuals,
-}
-
-impl Way {
-    fn of(machine: &Mechanism) -> Self {
-        if suits(machine) {
-            Self::Windows
-        } else if held::bench::suits(machine) {
-            Self::Held
-        } else {
-            Self::Residuals
-        }
-    }
-}
-
-/// Reads recordings of a rig whose sensors its file describes, the first `fits` to calibrate on, the others to
-/// validate on.
-///
-/// # Errors
-/// Everything that is wrong with them.
-pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, CalibrateError> {
-    let mut wrong: Vec<String> = Vec::new();
-    let built: Mechanism = crate::model::parts_of(&rig)?;
-    if built.sensors.is_empty() {
-        let help = "describe each column of the recordings by a [[sensor]]";
-        let message = "is missing: nobody knows what the columns of the recordings are".to_owned();
-        wrong.push(rig.problem("sensor", message, help).to_string());
-    }
-    refuse(wrong)?;
-    let built: Mechanism = crate::model::parts_of(&rig)?;
-    let way = Way::of(&built);
-    let by_windows = way == Way::Windows;
-    let mut wrong: Vec<String> = Vec::new();
-    if way == Way::Residuals && !rig.effects.is_empty() {
-        let message = format!("holds {} effect(s)", rig.effects.len());
-        let help =
-            "calibrate starts from what a rig's maker declares: give it the rig without [[effect]]";
-        wrong.push(rig.problem("effect", message, help).to_string());
-    }
-    if !by_windows && fits > 1 {
-        let message =
-            "--data: several runs are fitted together of machines that nothing holds alone";
-        wrong.push(format!("{message}; give this one a --data and the others as --validate"));
-    }
-    refuse(wrong)?;
-    let mut recordings = Vec::new();
-    let mut errors: Vec<LogError> = Vec::new();
-    for path in paths {
-        match Recording::read_with_time(path, &built.sensors, by_windows, rig.time_column()) {
-            Ok(recording) => {
-                let columns = rig.columns.as_ref();
-                errors.extend(columns.and_then(|named| recording.lacks(&built.sensors, named)));
-                recordings.push(recording);
-            }
-            Err(error) => errors.push(error),
-        }
-    }
-    let implausible = |recording| held::plausible::wrong(&rig, &built, recording);
-    if errors.is_empty() {
-        refuse(recordings.iter().flat_map(implausible).collect())?;
-    }
-    errors.extend(recordings.iter().filter_map(Recording::wrong));
-    for (i, one) in recordings.iter().enumerate() {
-        for other in recordings[..i].iter().filter(|other| one.is_twin_of(other)) {
-            errors.push(LogError {
-                place: one.path.clone(),
-                message: format!("holds the same samples as {}", other.path),
-                help: "validate on another run: on the one that was fitted nothing is proved"
-                    .to_owned(),
-            });
-        }
-    }
-    refuse(errors)?;
-    // Files of one name in several folders are called by their paths.
-    let names: Vec<String> = recordings.iter().map(|r: &Recording| r.name.clone()).collect();
-    for recording in &mut recordings {
-        if names.iter().filter(|name| **name == recording.name).count() > 1 {
-            recording.name.clone_from(&recording.path);
-        }
-    }
-    // One look serves all runs: it is through the sensors that all of them have.
-    let everywhere = |i: usize| recordings.iter().all(|r| r.get(i).is_some());
-    // What was added to outputs in one run alone is known of the others: nothing was.
-    let added = |i: usize| matches!(built.sensors[i].reads, Reads::Added(_));
-    let common: Vec<bool> = (0..built.sensors.len()).map(|i| added(i) || everywhere(i)).collect();
-    for recording in &mut recordings {
-        let columns = common
-            .iter()
-            .enumerate()
-            .map(|(i, common)| recording.get(i).filter(|_| *common).map(<[f64]>::to_vec));
-        *recording = recording.with(columns.collect());
-    }
-    refuse(noise::wrong(&rig, &built, &recordings))?;
-    // What the machine cannot be at a recording's first row is told before anything is written.
-    if by_windows {
-        let bench = Bench::new(&rig, recordings.clone())?;
-        refuse(plausible::wrong(&rig, &bench))?;
-    } else {
-        for recording in &recordings {
-            machine(&rig, &[], recording)?;
-        }
-    }
-    Ok(Prepared { rig, recordings, fits, way })
 }
 
 /// A finished calibration.
