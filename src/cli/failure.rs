@@ -7,6 +7,9 @@ use crate::study::sweep::SweepError;
 use crate::study::{FolderError, RunError};
 use std::process::ExitCode;
 
+/// Most problems that are told one by one: those after them mostly follow from these.
+const TOLD: usize = 50;
+
 /// A command that did not do what was asked.
 #[derive(Debug)]
 pub(super) enum Failure {
@@ -26,8 +29,11 @@ impl Failure {
             Failure::Other(message) => std::slice::from_ref(message),
             Failure::Interrupted(_) => &[],
         };
-        for message in messages {
+        for message in messages.iter().take(TOLD) {
             output::complain(&format!("error: {message}"));
+        }
+        if messages.len() > TOLD {
+            output::complain(&format!("error: … and {} more", messages.len() - TOLD));
         }
     }
 

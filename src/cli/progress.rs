@@ -1,5 +1,6 @@
 //! The progress bars: how far a command has come, and how long the rest will take.
 
+use crate::measure::shown::shown;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::sync::Once;
@@ -95,7 +96,7 @@ impl Spinner {
 
     /// What is being done now.
     pub fn tell(&self, what: &str) {
-        self.bar.set_message(what.to_owned());
+        self.bar.set_message(shown(what).into_owned());
     }
 
     /// Does something else with the terminal, and shows the line again below it.

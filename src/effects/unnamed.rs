@@ -161,11 +161,16 @@ impl Map {
 
     /// Reads the keys of an `[[effect]]` of this kind.
     pub(super) fn from_table(table: &toml::Table) -> Result<Self, Wrong> {
-        Map::deserialize(table.clone()).map_err(|error| Wrong {
+        let wrong = |message: &str| Wrong {
             key: "coefficients".to_owned(),
-            message: error.message().to_owned(),
+            message: message.to_owned(),
             help: "this effect is written by `freeplay calibrate`: copy it whole".to_owned(),
-        })
+        };
+        let map = Map::deserialize(table.clone()).map_err(|error| wrong(error.message()))?;
+        if map.reach.iter().chain(&map.lengths[1..]).any(|reach| *reach <= 0.0) {
+            return Err(wrong("stands beside a reach that is not positive"));
+        }
+        Ok(map)
     }
 }
 
@@ -204,12 +209,18 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
         return super::unnamed_history::apply(history, setting, mechanism);
     }
     let Some(map) = &setting.map else { return super::unnamed_efforts::apply(setting, mechanism) };
-    let components = map.components(mechanism.actuators.len());
-    if map.coefficients.len() != components {
+    let components = map.components(mechanism.prismatics.len());
+    let commands = vec![Command::default(); mechanism.actuators.len()];
+    let features = map.features(Motion::default(), &commands).len();
+    if map.coefficients.len() != components || map.coefficients.iter().any(|l| l.len() != features)
+    {
+        let lengths: Vec<usize> = map.coefficients.iter().map(Vec::len).collect();
         return Err(Wrong {
             key: "coefficients".to_owned(),
-            message: format!("holds {} lists", map.coefficients.len()),
-            help: format!("expected {components}: this effect is copied whole or not at all"),
+            message: format!("holds lists of {lengths:?} numbers"),
+            help: format!(
+                "expected {components} lists of {features}: this effect is copied whole or not at all"
+            ),
         });
     }
     mechanism.loads.push(Arc::new(Applied { map: Arc::clone(map) }));

@@ -1,5 +1,7 @@
 //! Recorded runs: a CSV file, one row a sample, at a constant rate.
 
+use super::bounded;
+use super::shown::shown;
 use super::spelling::nearest;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -206,6 +208,22 @@ impl Log {
 /// Places of columns: that of time, and those of channels.
 type Chosen = (usize, Vec<(usize, Channel)>);
 
+/// Most columns of a log, and most bytes of their heads: what has more was never a header.
+const WIDEST: [usize; 2] = [1000, 65_536];
+
+/// What is wrong with a header that is none, and what would be right.
+pub(crate) fn no_header(heads: &csv::StringRecord) -> Option<(String, String)> {
+    let [columns, bytes] = WIDEST;
+    (heads.len() > columns || heads.as_slice().len() > bytes).then(|| {
+        let message = format!(
+            "the header has {} columns in {} characters",
+            heads.len(),
+            heads.as_slice().chars().count()
+        );
+        (message, format!("expected at most {columns} columns in {bytes} characters"))
+    })
+}
+
 /// Reads the columns that `choose` picks by the header; its errors say what is wrong with that and what
 /// would be right.
 fn load(
@@ -219,16 +237,17 @@ fn load(
         message,
         help: help.to_owned(),
     };
-    let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|error| {
-            wrong(None, format!("cannot be read: {error}"), "is this the right file?")
-        })?;
+    let opened = bounded::open(path, bounded::TABLE).map_err(|error| {
+        wrong(None, format!("cannot be read: {error}"), "is this the right file?")
+    })?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(opened);
     let header = reader
         .headers()
         .map_err(|error| wrong(Some(1), format!("cannot be read: {error}"), expected))?
         .clone();
-    let (time, chosen) =
-        choose(&header).map_err(|(message, help)| wrong(Some(1), message, &help))?;
+    let (time, chosen) = no_header(&header)
+        .map_or_else(|| choose(&header), Err)
+        .map_err(|(message, help)| wrong(Some(1), message, &help))?;
     let mut times = Vec::new();
     let mut channels: Vec<(Channel, Vec<f64>)> =
         chosen.iter().map(|(_, channel)| (*channel, Vec::new())).collect();
@@ -262,6 +281,7 @@ fn load(
         wrong(Some(row as u64 + 2), message, help)
     })?;
     let name = path.file_name().map_or(file.clone(), |name| name.to_string_lossy().into_owned());
+    let name = shown(&name);
     Ok(Log::new(&name, times[0], interval, channels))
 }
 

@@ -1,7 +1,14 @@
 //! The word that a misspelt one was meant to be.
 
+/// Longest word in bytes that can be a misspelt one.
+const LONGEST: usize = 100;
+
 /// The nearest of the known words, or none where none is near. Capital letters do not matter.
 pub fn nearest<'a>(stranger: &str, known: &[&'a str]) -> Option<&'a str> {
+    // No word of ours is so long, and to compare is work.
+    if stranger.len() > LONGEST {
+        return None;
+    }
     // 0.8 accepts a wrong, missing or swapped letter or two and refuses unrelated words.
     let stranger = stranger.to_lowercase();
     known

@@ -23,6 +23,9 @@ const FEWEST: usize = 400;
 /// ends between two of them goes unseen.
 const READS: f64 = 1000.0;
 
+/// Most of these instants: more than three hours have fewer in a second.
+const MOST_READS: f64 = 1e7;
+
 /// What the machine without clearance goes through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrivenPath {
@@ -178,7 +181,7 @@ struct Reads<'a> {
 
 impl<'a> Reads<'a> {
     fn new(mechanism: &'a Mechanism, duration: f64) -> Self {
-        let last = (READS * duration).ceil().max(10.0 * FEWEST as f64);
+        let last = (READS * duration).ceil().clamp(10.0 * FEWEST as f64, MOST_READS);
         Self {
             mechanism,
             size: mechanism.size(),
@@ -239,8 +242,11 @@ const FINE: f64 = 1e-11;
 /// Error below which a finer table that is no better is as good as rounding lets it be.
 const ROUNDED: f64 = 1e-8;
 
-/// Most samples of a table in a second of the motion, and most in any case that is shorter than 1024 s.
-const SAMPLES: [f64; 2] = [1024.0, 1_048_576.0];
+/// Most samples of a table in a second of the motion.
+const SAMPLES: f64 = 1024.0;
+
+/// Most in any case that is shorter than 1024 s, and most of all: an hour and a little more at that rate.
+const MOST_SAMPLES: [f64; 2] = [1_048_576.0, 4_194_304.0];
 
 /// Commands that carry a target along its path for `duration` s and a little longer, and the states at the
 /// start. Samples are taken ever closer until the polynomials between them miss the exact commands by less
@@ -255,7 +261,7 @@ pub(super) fn inverse_kinematics(
     // Steps look a little beyond the end of a run.
     let until = duration * 1.001 + 1e-3;
     let drives = ideal.actuators.len();
-    let most = (SAMPLES[0] * until).max(SAMPLES[1]);
+    let most = (SAMPLES * until).clamp(MOST_SAMPLES[0], MOST_SAMPLES[1]);
     let (mut count, mut before) = (64, f64::INFINITY);
     loop {
         let mut tracker = Tracker::new(ideal.clone(), imposed.clone(), starts.clone(), 0.0)?;

@@ -1,5 +1,6 @@
 //! The shared look of all pictures, and the surface they are drawn on.
 
+use crate::measure::shown::shown;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -57,7 +58,8 @@ pub(super) fn picture(
          stroke-linejoin=\"round\" stroke-linecap=\"round\">\n\
          <style>.picture polyline[stroke=\"#222222\"]{{stroke-dasharray:60 40;stroke-linecap:butt}}\
          </style>\n\
-         <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"#FFFFFF\"/>\n{content}"
+         <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"#FFFFFF\"/>\n{}",
+        shown(content)
     ))
 }
 

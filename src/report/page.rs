@@ -1,6 +1,7 @@
 //! One self-contained HTML page: nothing is fetched, everything is inline.
 
 use super::{Fact, Picture};
+use crate::measure::shown::shown;
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
@@ -204,10 +205,10 @@ fn provenance_section(provenance: &[(String, String)]) -> String {
     )
 }
 
-/// `text` with everything that HTML would read as markup written as entities.
+/// `text` with everything that HTML would read as markup written as entities, and nothing hidden in it.
 pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in shown(text).chars() {
         match c {
             '&' => escaped += "&amp;",
             '<' => escaped += "&lt;",

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use toml::de::{DeTable, DeValue};
-use toml::{Table, Value};
+use toml::{Spanned, Table, Value};
 
 use super::problem::{Location, Problem};
+use crate::measure::shown::is_hidden;
 
 /// A TOML text after `--set` overrides, not yet given a meaning.
 pub(super) struct Document {
@@ -18,7 +19,16 @@ pub(super) struct Document {
 pub(super) struct Origins {
     source: String,
     places: BTreeMap<String, Place>,
+    /// Bytes of paths that may still be remembered.
+    room: usize,
 }
+
+/// Most bytes of paths that are remembered; what comes later is said to be where the section around it is. A long
+/// key before a long list would otherwise take their product.
+const ROOM: usize = 16 << 20;
+
+/// Most values of one text that are complained about one by one.
+const TOLD: usize = 50;
 
 #[derive(Debug, Clone)]
 enum Place {
@@ -30,10 +40,11 @@ impl Document {
     /// Parses `text`; `source` is the file's name for messages.
     pub(super) fn parse(text: &str, source: &str) -> Result<Self, Problem> {
         let table = toml::from_str(text).map_err(|error| syntax_problem(&error, text, source))?;
-        let mut origins = Origins { source: source.to_owned(), places: BTreeMap::new() };
+        let mut origins =
+            Origins { source: source.to_owned(), places: BTreeMap::new(), room: ROOM };
         // `Table` has no positions, so a second parse collects them; the first saw every error.
         let (positions, _) = DeTable::parse_recoverable(text);
-        origins.record_table("", positions.get_ref(), text);
+        origins.record_table("", positions.get_ref(), &Lines::of(text));
         Ok(Document { table, origins })
     }
 
@@ -130,12 +141,11 @@ impl Document {
         });
     }
 
-    /// The paths of all numbers that are infinite or not a number, which TOML allows.
-    pub(super) fn not_finite(&self) -> Vec<(String, f64)> {
+    /// Values that TOML allows and nothing here can use: numbers that are infinite or none, texts that act on what
+    /// shows them. The path, what is wrong and what would be right, of the first ones.
+    pub(super) fn unusable(&self) -> Vec<(String, String, &'static str)> {
         let mut found = Vec::new();
-        for (key, value) in &self.table {
-            collect_not_finite(key, value, &mut found);
-        }
+        unusable_in_table(&self.table, &mut Vec::new(), &mut found);
         found
     }
 }
@@ -169,24 +179,30 @@ impl Origins {
         Location::File { name: self.source.clone(), line, column: None }
     }
 
-    fn record_table(&mut self, prefix: &str, table: &DeTable<'_>, text: &str) {
+    fn record_table(&mut self, prefix: &str, table: &DeTable<'_>, lines: &Lines) {
         for (key, value) in table {
-            let path = join(prefix, key.get_ref());
-            let line = line_and_column(text, key.span().start).0;
-            self.places.insert(path.clone(), Place::Line(line));
-            self.record_value(&path, value.get_ref(), text);
+            self.record(prefix, key.get_ref(), lines.number(key.span().start), value, lines);
         }
     }
 
-    fn record_value(&mut self, path: &str, value: &DeValue<'_>, text: &str) {
-        match value {
-            DeValue::Table(table) => self.record_table(path, table, text),
+    fn record(
+        &mut self,
+        prefix: &str,
+        key: &str,
+        line: u32,
+        value: &Spanned<DeValue<'_>>,
+        lines: &Lines,
+    ) {
+        let Some(room) = self.room.checked_sub(prefix.len() + 1 + key.len()) else { return };
+        self.room = room;
+        let path = join(prefix, key);
+        self.places.insert(path.clone(), Place::Line(line));
+        match value.get_ref() {
+            DeValue::Table(table) => self.record_table(&path, table, lines),
             DeValue::Array(elements) => {
                 for (i, element) in elements.iter().enumerate() {
-                    let path = join(path, &i.to_string());
-                    let line = line_and_column(text, element.span().start).0;
-                    self.places.insert(path.clone(), Place::Line(line));
-                    self.record_value(&path, element.get_ref(), text);
+                    let line = lines.number(element.span().start);
+                    self.record(&path, &i.to_string(), line, element, lines);
                 }
             }
             _ => {}
@@ -260,21 +276,60 @@ fn parse_value(text: &str) -> Result<Value, String> {
     }
 }
 
-fn collect_not_finite(path: &str, value: &Value, found: &mut Vec<(String, f64)>) {
-    match value {
-        Value::Float(number) if !number.is_finite() => found.push((path.to_owned(), *number)),
-        Value::Table(table) => {
-            for (key, value) in table {
-                collect_not_finite(&join(path, key), value, found);
-            }
+/// The part of a path that leads into a table or a list.
+enum Step<'a> {
+    Key(&'a str),
+    Place(usize),
+}
+
+/// Paths, what is wrong there, and what would be right.
+type Unusable = Vec<(String, String, &'static str)>;
+
+fn unusable_in_table<'a>(table: &'a Table, way: &mut Vec<Step<'a>>, found: &mut Unusable) {
+    for (key, value) in table {
+        way.push(Step::Key(key));
+        if key.contains(is_hidden) {
+            complain_of_text(key, way, found);
         }
+        unusable_in(value, way, found);
+        way.pop();
+    }
+}
+
+fn unusable_in<'a>(value: &'a Value, way: &mut Vec<Step<'a>>, found: &mut Unusable) {
+    match value {
+        Value::Float(number) if !number.is_finite() && found.len() < TOLD => {
+            found.push((path_of(way), format!("is {number}"), "expected a finite number"));
+        }
+        Value::String(text) if text.contains(is_hidden) => complain_of_text(text, way, found),
+        Value::Table(table) => unusable_in_table(table, way, found),
         Value::Array(elements) => {
             for (i, value) in elements.iter().enumerate() {
-                collect_not_finite(&join(path, &i.to_string()), value, found);
+                way.push(Step::Place(i));
+                unusable_in(value, way, found);
+                way.pop();
             }
         }
         _ => {}
     }
+}
+
+fn complain_of_text(text: &str, way: &[Step<'_>], found: &mut Unusable) {
+    if let Some(c) = text.chars().find(|c| is_hidden(*c))
+        && found.len() < TOLD
+    {
+        let message = format!("holds the character U+{:04X}, which does not show", u32::from(c));
+        let help = "expected text in one line, without control characters";
+        found.push((path_of(way), message, help));
+    }
+}
+
+/// Only what is complained about has its path written.
+fn path_of(way: &[Step<'_>]) -> String {
+    way.iter().fold(String::new(), |path, step| match step {
+        Step::Key(key) => join(&path, key),
+        Step::Place(place) => join(&path, &place.to_string()),
+    })
 }
 
 /// Tables of which a file may have many, and their headers.
@@ -302,6 +357,20 @@ fn syntax_problem(error: &toml::de::Error, text: &str, source: &str) -> Problem 
 
 fn one_line(message: &str) -> String {
     message.trim().replace('\n', ", ")
+}
+
+/// Where the lines of a text begin: a file of many keys is not counted through once for each.
+struct Lines(Vec<usize>);
+
+impl Lines {
+    fn of(text: &str) -> Self {
+        Self(text.match_indices('\n').map(|(end, _)| end + 1).collect())
+    }
+
+    /// Line of a byte offset, counted from 1.
+    fn number(&self, offset: usize) -> u32 {
+        self.0.partition_point(|start| *start <= offset) as u32 + 1
+    }
 }
 
 /// Line and column of a byte offset, both counted from 1.

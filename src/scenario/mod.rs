@@ -30,6 +30,7 @@ pub use problem::{Location, Problem, Problems};
 pub use sections::*;
 
 use crate::effects::Setting;
+use crate::measure::bounded;
 use document::{Document, Origins};
 
 /// The text of the scenario that is used when no file is given.
@@ -64,7 +65,7 @@ impl Source {
             return Ok(Source { text, name, folder: PathBuf::new() });
         };
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| Problem {
+        let text = bounded::text(path, bounded::SCENARIO).map_err(|error| Problem {
             path: String::new(),
             message: format!("cannot be read: {error}"),
             help: "a scenario is a text file in TOML".to_owned(),

@@ -83,8 +83,24 @@ impl Many {
             reader.complain(section, "is one section, not a list".to_owned(), help);
             return Vec::new();
         }
-        std::mem::take(&mut self.tables)
+        few(reader, section, std::mem::take(&mut self.tables))
     }
+}
+
+/// Most bodies, and most of any other list: equations are solved for all bodies at once, and a hundred take some
+/// thousand times as long as ten.
+const MOST_BODIES: usize = 100;
+const MOST_OTHERS: usize = 300;
+
+/// The tables of a list, after a complaint and none of them if they are too many.
+fn few(reader: &mut Reader<'_>, section: &str, tables: Vec<Table>) -> Vec<Table> {
+    let most = if section == "body" { MOST_BODIES } else { MOST_OTHERS };
+    if tables.len() <= most {
+        return tables;
+    }
+    let message = format!("is a list of {}", tables.len());
+    reader.complain(section, message, format!("expected at most {most} of them"));
+    Vec::new()
 }
 
 impl Default for TopLevel {
@@ -118,8 +134,8 @@ impl Default for TopLevel {
 /// Gives the document its meaning.
 pub(super) fn scenario(document: Document) -> Result<Scenario, Problems> {
     let mut reader = Reader::new(&document.origins);
-    for (path, number) in document.not_finite() {
-        reader.complain(&path, format!("is {number}"), "expected a finite number".to_owned());
+    for (path, message, help) in document.unusable() {
+        reader.complain(&path, message, help.to_owned());
     }
     let mut top: TopLevel = reader.read("", document.table);
     let mechanism = mechanism(&mut reader, &mut top);
@@ -226,7 +242,7 @@ fn no_kind(reader: &mut Reader<'_>) {
 fn describe(reader: &mut Reader<'_>, top: &mut TopLevel) -> Described {
     let drives = match &top.drive {
         Some(OneOrMany::Many(tables)) => {
-            let tables = tables.clone();
+            let tables = few(reader, "drive", tables.clone());
             each(reader, "drive", tables, |reader, path, mut table| {
                 match kind(reader, path, &mut table, &JointDrive::KINDS, "drive")? {
                     "servo" => reader.required::<Servo>(path, table).map(JointDrive::Servo),
@@ -308,7 +324,7 @@ fn kind(
 
 fn effects(reader: &mut Reader<'_>, tables: Vec<Table>) -> Vec<Setting> {
     let mut effects = Vec::new();
-    for (i, mut table) in tables.into_iter().enumerate() {
+    for (i, mut table) in few(reader, "effect", tables).into_iter().enumerate() {
         let section = format!("effect.{i}");
         let Some(kind) = table.remove("kind") else {
             let help = "write kind = \"…\"; `freeplay effects` lists them".to_owned();
@@ -366,6 +382,7 @@ fn described_motion(
     let mut table = match section {
         None => return (Motion::Rest, None),
         Some(OneOrMany::Many(tables)) => {
+            let tables = few(reader, "motion", tables);
             let joints = each(reader, "motion", tables, joint_motion);
             return (Motion::Joints(joints), None);
         }

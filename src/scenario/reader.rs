@@ -8,6 +8,9 @@ use super::document::{Origins, join};
 use super::problem::Problem;
 use crate::measure::spelling::nearest;
 
+/// Problems after which the rest of a section is not looked at: a file with more of them is none of ours.
+const MOST: usize = 20;
+
 /// Reads sections one by one and keeps all their problems.
 pub(super) struct Reader<'a> {
     origins: &'a Origins,
@@ -36,7 +39,7 @@ impl<'a> Reader<'a> {
             let (message, help) = explain(&path, error.inner().message());
             self.complain(&path, message, help);
             let first = keys.split('.').next().unwrap_or_default();
-            if table.remove(first).is_none() {
+            if table.remove(first).is_none() || self.problems.len() >= MOST {
                 return T::default();
             }
         }

@@ -19,6 +19,9 @@ impl Scenario {
     }
 }
 
+/// Longest motion in s: an hour of some machines takes a day to simulate already.
+const LONGEST: f64 = 86_400.0;
+
 /// Keys and values.
 type Numbers<'a> = &'a [(&'a str, f64)];
 
@@ -240,6 +243,13 @@ impl Checks<'_> {
         let simulation = &self.scenario.simulation;
         let duration = simulation.duration;
         self.positive("simulation.duration", duration, "s");
+        if duration > LONGEST {
+            self.complain(
+                "simulation.duration",
+                format!("is {duration}"),
+                &format!("expected at most {LONGEST} s, a day"),
+            );
+        }
         self.positive("simulation.output_interval", simulation.output_interval, "s");
         if simulation.output_interval > duration && duration > 0.0 {
             self.complain(

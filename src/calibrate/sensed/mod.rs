@@ -13,6 +13,7 @@ pub mod baseline;
 pub mod basis;
 mod calm;
 pub mod candidates;
+mod cells;
 mod charts;
 pub mod errors;
 pub mod estimate;

@@ -1,7 +1,10 @@
 //! Recorded runs of any mechanism: a CSV file with a column for each sensor, one row a sample.
 
+use super::cells::Cells;
 use super::thresholds::{LATE, LATE_SHARE, LATE_STEPS, LOWEST_RATE, PLAIN_BAND, SHORTEST};
-use crate::measure::log::{LogError, Source, constant_step};
+use crate::measure::bounded;
+use crate::measure::log::{LogError, Source, constant_step, no_header};
+use crate::measure::shown::shown;
 use crate::measure::spelling::nearest;
 use crate::measure::spline::CubicSpline;
 use crate::mechanism::{Reads, Sensor};
@@ -28,7 +31,7 @@ pub struct Recording {
     /// Columns of the file that no sensor has.
     pub ignored: Vec<String>,
     /// Their cells, column by column; nothing where rows were put on a grid.
-    carried: Vec<Vec<String>>,
+    carried: Vec<Cells>,
     /// Share of the rows that came early or late and were put on a grid by splines.
     pub jitter: f64,
 }
@@ -68,16 +71,17 @@ impl Recording {
             let message = format!("cannot be read: {error}");
             wrong(line, message, "expected a CSV file with a header and numbers".to_owned())
         };
-        let mut reader =
-            csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(unread)?;
+        let opened =
+            bounded::open(path, bounded::TABLE).map_err(|error| unread(csv::Error::from(error)))?;
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(opened);
         let heads = reader.headers().map_err(unread)?.clone();
         let asked = time.as_ref().map(|time| time.column.as_str());
-        let Places { time: place_of_time, places, others } =
-            choose(&heads, sensors, efforts, asked)
-                .map_err(|(message, help)| wrong(Some(1), message, help))?;
+        let Places { time: place_of_time, places, others } = no_header(&heads)
+            .map_or_else(|| choose(&heads, sensors, efforts, asked), Err)
+            .map_err(|(message, help)| wrong(Some(1), message, help))?;
         let time = time.unwrap_or_else(|| Source::new(&heads[place_of_time], 1.0));
         let ignored = others.iter().map(|place| heads[*place].to_owned()).collect();
-        let mut carried = vec![Vec::new(); others.len()];
+        let mut carried = vec![Cells::default(); others.len()];
         let mut times = Vec::new();
         let mut columns: Vec<Option<Vec<f64>>> =
             places.iter().map(|place| place.map(|_| Vec::new())).collect();
@@ -99,7 +103,7 @@ impl Recording {
                 }
             }
             for (place, cells) in others.iter().zip(&mut carried) {
-                cells.push(record.get(*place).unwrap_or_default().to_owned());
+                cells.push(record.get(*place).unwrap_or_default());
             }
         }
         let mut jitter = 0.0;
@@ -124,7 +128,7 @@ impl Recording {
         let name = path.file_name().map_or(file.clone(), |n| n.to_string_lossy().into_owned());
         Ok(Self {
             path: file,
-            name,
+            name: shown(&name).into_owned(),
             start: times[0],
             interval,
             samples: times.len(),
@@ -180,7 +184,7 @@ impl Recording {
             start: self.start + rows.start as f64 * self.interval,
             samples: rows.len(),
             columns: self.columns.iter().map(cut).collect(),
-            carried: self.carried.iter().map(|cells| cells[rows.clone()].to_vec()).collect(),
+            carried: self.carried.iter().map(|cells| cells.part(rows.clone())).collect(),
             ..self.clone()
         }
     }
@@ -251,7 +255,7 @@ impl Recording {
                 let value = self.get(i).map_or(f64::NAN, |column| column[row] / sensors[i].factor);
                 format!("{value:.9}")
             });
-            let cells = self.carried.iter().map(|cells| cells[row].clone());
+            let cells = self.carried.iter().map(|cells| cells.get(row).to_owned());
             let _ = text.write_record([format!("{t:.6}")].into_iter().chain(read).chain(cells));
         }
         String::from_utf8(text.into_inner().unwrap_or_default()).unwrap_or_default()
@@ -401,6 +405,7 @@ mod tests {
         let again = Recording::read(&path, &sensors, false).unwrap();
         assert_eq!(again.ignored, recording.ignored);
         assert_eq!(again.carried, recording.carried);
-        assert_eq!(again.carried[0][3], "left, 3");
+        assert_eq!(again.carried[0].get(3), "left, 3");
+        assert_eq!(recording.part(1..3).carried[0].get(1), "left, 2");
     }
 }

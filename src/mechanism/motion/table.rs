@@ -1,6 +1,7 @@
 //! A motion sampled in a CSV file.
 
 use super::{Motion, PathPoint};
+use crate::measure::bounded;
 use crate::measure::spline::CubicSpline;
 use std::path::Path;
 
@@ -56,7 +57,8 @@ pub enum TableError {
 /// # Errors
 /// A file that is no such table.
 pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<CubicSpline>, TableError> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path)?;
+    let file = bounded::open_plain(path, bounded::TABLE).map_err(csv::Error::from)?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let headers = reader.headers()?.clone();
     let missing =
         |name: &&str| TableError::Column { missing: (*name).to_owned(), needed: names.join(",") };

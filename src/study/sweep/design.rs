@@ -9,7 +9,7 @@ use super::vary::Values;
 use super::{SweepError, Vary};
 
 /// Most runs of a sweep. Checking that many takes minutes, running them weeks: more is a slip.
-const MOST_RUNS: usize = 1_000_000;
+pub(super) const MOST_RUNS: usize = 1_000_000;
 
 /// All runs of a sweep, by number.
 #[derive(Debug)]

@@ -146,6 +146,10 @@ fn parse(
         if line.run >= identity.runs || !shard.holds(line.run) {
             return Err(damaged(format!("holds run {}, which is none of shard {shard}", line.run)));
         }
+        let (cells, columns) = (line.cells.len(), identity.columns.len());
+        if cells != columns {
+            return Err(damaged(format!("has {cells} cells, and the table {columns} columns")));
+        }
         if rows.get(&line.run).is_some_and(|before| *before != line.cells) {
             return Err(damaged(format!("contradicts an earlier row of run {}", line.run)));
         }

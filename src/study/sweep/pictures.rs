@@ -41,8 +41,10 @@ pub(super) fn files(identity: &Identity) -> impl Iterator<Item = String> {
     inputs.map(|(path, _)| file(path))
 }
 
+/// Keys may be named after bodies, and those as anybody likes: no folders, and no longer than file systems take.
 fn file(path: &str) -> String {
-    format!("over-{path}.svg")
+    let plain = |c: char| if matches!(c, '/' | '\\') { '-' } else { c };
+    format!("over-{}.svg", path.chars().take(60).map(plain).collect::<String>())
 }
 
 /// One picture for each varied number.

@@ -2,10 +2,12 @@
 
 use super::record::{hexadecimal, sha256};
 use super::{Design, Identity, Shard, SweepError, Vary, row};
+use crate::measure::bounded;
 use crate::scenario::{Location, Problem, Scenario, Source};
 use crate::simulate::{Machine, Provenance, Severity, assemble, findings};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
+use std::io::Read as _;
 
 /// A sweep whose every run has a scenario that makes sense by itself.
 #[derive(Debug)]
@@ -154,7 +156,9 @@ impl Plan {
         let mut assembled = assemble(&scenario);
         for file in scenario.files() {
             // A file that cannot be read is among the reasons that `assemble` finds.
-            let content = std::fs::read(scenario.resolve(&file)).unwrap_or_default();
+            let mut content = Vec::new();
+            let file = bounded::open_plain(&scenario.resolve(&file), bounded::TABLE);
+            let _unread = file.and_then(|mut file| file.read_to_end(&mut content));
             text += &sha256(&content);
         }
         let hash = sha256(text.as_bytes());

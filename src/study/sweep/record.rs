@@ -1,6 +1,7 @@
 //! `sweep.json`: what sweep a folder belongs to, and how far it has come.
 
-use super::{Shard, SweepError};
+use super::design::MOST_RUNS;
+use super::{Shard, SweepError, Vary};
 use crate::simulate::Provenance;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -102,12 +103,25 @@ impl Record {
                 "`{file}` cannot be read: {error}; expected the folder of a sweep"
             ))
         })?;
-        serde_json::from_str(&text).map_err(|error| {
+        let wrong = |what: &str| {
             SweepError::input(format!(
-                "`{file}` is no record of a sweep: {error}; it was truncated or edited. Nothing was \
+                "`{file}` is no record of a sweep: {what}; it was truncated or edited. Nothing was \
                  changed; restore it, or choose another folder with --out"
             ))
-        })
+        };
+        let record: Record =
+            serde_json::from_str(&text).map_err(|error| wrong(&error.to_string()))?;
+        let identity = &record.identity;
+        if !(1..=MOST_RUNS).contains(&identity.runs) {
+            let runs = identity.runs;
+            return Err(wrong(&format!("{runs} runs, and from 1 to {MOST_RUNS} are possible")));
+        }
+        let path = |vary: &String| Vary::parse(vary).ok().map(|vary| vary.path);
+        let varied: Option<Vec<String>> = identity.vary.iter().map(path).collect();
+        if varied.is_none_or(|varied| !identity.columns.starts_with(&varied)) {
+            return Err(wrong("its columns do not begin with what is varied"));
+        }
+        Ok(record)
     }
 
     /// Pretty JSON with a line break at the end.

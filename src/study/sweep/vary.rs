@@ -160,6 +160,8 @@ impl Range {
 /// A number as the shortest TOML that reads back as it. Whole ones without a point, which keys that
 /// want a whole number (`seed`) insist on and others do not mind.
 fn number(value: f64) -> String {
+    // −0 is 0, and reads back as that.
+    let value = value + 0.0;
     if value == value.trunc() && value.abs() < 1e15 {
         format!("{value}")
     } else {
@@ -266,5 +268,6 @@ mod tests {
         {
             assert_eq!(Vary::parse(text).expect("right").to_string(), text);
         }
+        assert_eq!(values("a=-0,-0.0"), ["0", "0"]);
     }
 }
