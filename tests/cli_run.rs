@@ -251,8 +251,9 @@ fn a_full_disk_ends_the_run_at_once() {
 #[test]
 fn what_takes_days_or_fills_the_disk_is_asked_for() {
     let place = Place::new();
-    let long = "run --duration 1e6 --set simulation.output_interval=10 --out r";
+    let long = "run --duration 8e4 --set simulation.output_interval=10 --out r";
     place.refused(long, &["of computing", "--yes", "--duration"]);
+    place.refused("run --duration 1e6 --out r", &["simulation.duration", "at most 86400 s, a day"]);
     let rows = "run --duration 1 --set simulation.output_interval=1e-7 --out r";
     place.refused(rows, &["would write about", "GB", "--yes", "simulation.output_interval"]);
     place.good("run --duration 0.02 --yes --out r --quiet");

@@ -86,7 +86,7 @@ fn the_effective_text_loads_back_to_the_same_scenario() {
         &["motion.kind=quintic", "simulation.tolerance=1e-7"],
         &["motion.kind=multisine", "sensors.force_std=0.15", "drive.mode=servo"],
         &["motion.kind=table", "motion.file=path with \"quotes\".csv"],
-        &["name=Größe\n\"x\"", "contact.clip=false", "contact.stiffness_form=conformal"],
+        &["name=Größe \\ \"x\"", "contact.clip=false", "contact.stiffness_form=conformal"],
     ];
     for list in cases {
         let first = built_in(list);
