@@ -18,8 +18,11 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// Templates, and what says how fast each moves: the key of the default, and a range of values.
-const MACHINES: [(&str, Option<(&str, [f64; 2])>); 8] = [
+/// What says how fast a template moves: the line of its default, and a range of values.
+type Speed = Option<(&'static str, [f64; 2])>;
+
+/// Templates.
+const MACHINES: [(&str, Speed); 8] = [
     ("3rpr", Some(("period = 1.0", [0.03, 3.0]))),
     ("3rrr", Some(("period = 1.0", [0.03, 3.0]))),
     ("five-bar", Some(("period = 1.0", [0.02, 3.0]))),
@@ -176,8 +179,11 @@ fn campaign(numbers: std::ops::Range<u64>) {
         let word = match fate(&place, "") {
             Ok(Fate::Ran(summary)) => {
                 let sure = summary["watched"]["doubts"].as_array().is_some_and(Vec::is_empty);
-                let checked =
-                    if sure && number % 10 == 0 { finer(&place, &summary) } else { Ok(()) };
+                let checked = if sure && number.is_multiple_of(10) {
+                    finer(&place, &summary)
+                } else {
+                    Ok(())
+                };
                 checked.map(|()| if sure { "ran" } else { "ran, with doubts" })
             }
             Ok(Fate::Halted) => Ok("halted with a reason"),
