@@ -153,3 +153,25 @@ fn texts_that_are_work_are_refused_quickly() {
         assert!(started.elapsed() < QUICK, "{name}: {:?}", started.elapsed());
     }
 }
+
+/// A record that would be counted through for ages, and a key that is no file name.
+#[test]
+fn sweeps_are_what_their_records_say() {
+    let place = Place::new();
+    let machine = MARKUP.replace("name = \"&lt;", "name = \"a/../b");
+    let joint = "a/../b</text><script>alert(4)</script>";
+    place.write("slash.toml", &machine.replace(joint, "a/b"));
+    let line = "sweep slash.toml --duration 0.02 --out s --quiet --vary joint.a/b.friction=0.1,0.2";
+    assert_eq!(place.freeplay(line).code, 0);
+    assert!(place.path("s/over-joint.a-b.friction.svg").exists());
+    let record = place.read("s/sweep.json");
+    for (right, wrong, said) in [
+        ("\"runs\": 2", "\"runs\": 10000000000000000000", "from 1 to 1000000 are possible"),
+        ("\"runs\": 2", "\"runs\": 0", "from 1 to 1000000 are possible"),
+        ("\"joint.a/b.friction=0.1,0.2\"", "\"x=1\", \"y=1\"", "do not begin with what is varied"),
+    ] {
+        assert!(record.contains(right), "{record}");
+        place.write("s/sweep.json", &record.replacen(right, wrong, 1));
+        place.refused("merge s --out t", &["`s/sweep.json` is no record of a sweep", said]);
+    }
+}

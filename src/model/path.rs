@@ -13,8 +13,18 @@ use crate::scenario::{Problem, Scenario};
 /// looked at: a toggle of a loop is broader than this.
 const STRIDE: f64 = 0.02;
 
-/// Most poses that are looked at: some half a minute, and an hour of a crank that turns once a second.
-const MOST: usize = 1_000_000;
+/// Most poses of a small machine that are looked at: some half a minute, and an hour of a crank that turns once a
+/// second.
+const MOST: f64 = 1_000_000.0;
+
+/// Bodies of a small machine. More have fewer poses and samples, for the same work: equations of all bodies are solved
+/// for each of them.
+const SMALL: f64 = 3.0;
+
+/// Share of a small machine's poses that this one gets.
+fn share(mechanism: &Mechanism) -> f64 {
+    (SMALL / mechanism.bodies.len() as f64).powi(3).min(1.0)
+}
 
 /// Fewest poses that are looked at, for motions that nothing is known of beforehand.
 const FEWEST: usize = 400;
@@ -80,6 +90,7 @@ impl DrivenPath {
         let mut worst: Vec<Option<(f64, f64, f64)>> = vec![None; drives];
         let mut last = Vec::new();
         let mut reads = Reads::new(&mechanism, duration);
+        let most = ((MOST * share(&mechanism)) as usize).max(2 * FEWEST);
         'path: while reads.advance() {
             for (i, command) in reads.commands.iter().enumerate() {
                 if mechanism.actuators[i].drive != Drive::Effort {
@@ -88,7 +99,7 @@ impl DrivenPath {
                 }
             }
             for t in reads.poses() {
-                if found.instants.len() == MOST {
+                if found.instants.len() == most {
                     found.unseen = found.instants.last().copied();
                     break 'path;
                 }
@@ -261,7 +272,7 @@ pub(super) fn inverse_kinematics(
     // Steps look a little beyond the end of a run.
     let until = duration * 1.001 + 1e-3;
     let drives = ideal.actuators.len();
-    let most = (SAMPLES * until).clamp(MOST_SAMPLES[0], MOST_SAMPLES[1]);
+    let most = (SAMPLES * until).max(MOST_SAMPLES[0] * share(mechanism)).min(MOST_SAMPLES[1]);
     let (mut count, mut before) = (64, f64::INFINITY);
     loop {
         let mut tracker = Tracker::new(ideal.clone(), imposed.clone(), starts.clone(), 0.0)?;

@@ -87,9 +87,9 @@ impl Many {
     }
 }
 
-/// Most bodies, and most of any other list: equations are solved for all bodies at once, and a hundred take some
-/// thousand times as long as ten.
-const MOST_BODIES: usize = 100;
+/// Most bodies, and most of any other list: equations are solved for all bodies at once, and to look at the motion of
+/// fifty takes some ten seconds.
+const MOST_BODIES: usize = 50;
 const MOST_OTHERS: usize = 300;
 
 /// The tables of a list, after a complaint and none of them if they are too many.
