@@ -210,9 +210,9 @@ fn extreme_machines_run_halt_or_are_refused() {
     campaign(0..48);
 }
 
-/// An hour of two cores.
+/// Half an hour of two cores.
 #[test]
 #[ignore = "a campaign"]
 fn many_extreme_machines_run_halt_or_are_refused() {
-    campaign(1000..2000);
+    campaign(1000..1500);
 }
