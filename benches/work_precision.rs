@@ -12,7 +12,7 @@ mod common;
 #[path = "../tests/minimal/mod.rs"]
 mod minimal;
 
-use common::{Case, Curve, SERVO};
+use common::{Case, SERVO};
 use freeplay::engine::{Schedule, StepControl, run};
 use freeplay::mechanism::Mechanism;
 use freeplay::report::{Curve as Line, Panel, Style, panels_svg};
@@ -30,7 +30,6 @@ const DECADES: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 struct Study {
     name: &'static str,
     case: Case,
-    curve: &'static str,
     until: f64,
 }
 
@@ -38,17 +37,12 @@ fn main() {
     let base = Case::default();
     let servo = Case { drive: SERVO, ..base };
     let down = -9.81;
-    let study = |name, case, curve, until| Study { name, case, curve, until };
+    let study = |name, case, until| Study { name, case, until };
     let studies = [
-        study("prescribed, c = 0.5 mm", base, "prescribed_c5e-4.csv", 0.05),
-        study("servo, c = 0.5 mm", servo, "servo_c5e-4.csv", 0.05),
-        study("servo, gravity", Case { gravity: down, ..servo }, "servo_c5e-4_gravity.csv", 0.06),
-        study(
-            "prescribed, gravity",
-            Case { gravity: down, ..base },
-            "prescribed_c5e-4_gravity.csv",
-            0.03,
-        ),
+        study("prescribed, c = 0.5 mm", base, 0.05),
+        study("servo, c = 0.5 mm", servo, 0.05),
+        study("servo, gravity", Case { gravity: down, ..servo }, 0.06),
+        study("prescribed, gravity", Case { gravity: down, ..base }, 0.03),
         study(
             "prescribed, c = 1e-8 m",
             Case { clearance: 1e-8, ..base },
@@ -56,20 +50,18 @@ fn main() {
             0.2,
         ),
     ];
-    println!("\nAt an error of 1e-8 m against the reference curves, default phase:");
-    println!(
-        "| case | at | tolerance | error m | steps/s | wall s/s | solver's wall s/s | ratio | its ns/evaluation |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|");
-    for study in &studies {
-        at_1e_8(study);
-    }
     let friction = Case { friction: 0.1, ..servo };
     let means: Vec<Means> = studies
         .iter()
         .map(|study| Means::new(study.name, study.case, study.until))
         .chain([Means::new("servo, friction 0.1", friction, 0.04)])
         .collect();
+    println!(
+        "\nWall seconds per simulated second at an error of 1e-8 m, means over {PHASES} starts:"
+    );
+    println!("| case | solver | rapier | direct | rapier / solver | direct / solver |");
+    println!("|---|---|---|---|---|---|");
+    means.iter().for_each(race);
     let by_tolerance: Vec<Vec<(f64, f64)>> = means
         .iter()
         .map(|means| DECADES.map(|t| means.ours(StepControl::Tolerance(t))).to_vec())
@@ -92,36 +84,38 @@ fn draw(name: &str, panels: &[Panel]) {
     }
 }
 
-/// The cheapest tolerance of a fine ladder whose error is at most 1e-8 m, for both solvers.
-fn at_1e_8(study: &Study) {
-    let curve = Curve::read(study.curve);
-    let (t, x, y) = (curve.column("t"), curve.column("x"), curve.column("y"));
-    let truth: Vec<[f64; 2]> = times(study.until)
-        .iter()
-        .filter_map(|row| t.iter().position(|t| (t - row).abs() < 1e-9))
-        .map(|k| [x[k], y[k]])
-        .collect();
-    let mechanism = study.case.mechanism();
-    let ladder = || (0..30).map(|k| 1e-4 * 10f64.powf(-k as f64 / 6.0));
-    let ours = ladder().find_map(|tolerance| {
-        let (error, wall, steps) =
-            measure(&mechanism, StepControl::Tolerance(tolerance), study.until, &truth);
-        (error <= 1e-8).then_some((tolerance, error, wall, steps))
-    });
-    let theirs = ladder().find_map(|tolerance| {
-        let (error, wall, each) = measure_minimal(&study.case, tolerance, study.until, &truth);
-        (error <= 1e-8).then_some((wall, each))
-    });
-    let (Some((tolerance, error, wall, steps)), Some((theirs, each))) = (ours, theirs) else {
-        println!("| {} | not reached |", study.name);
+/// What an error of 1e-8 m (geometric mean over the phases) costs: wall seconds per simulated second, between
+/// two tolerances of a ladder by the straight line in logarithms.
+fn cost(at: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
+    const WANTED: f64 = 1e-8;
+    let mut before: Option<(f64, f64)> = None;
+    for k in 0..14 {
+        let (wall, error) = at(1e-3 * 10f64.powf(-0.5 * f64::from(k)));
+        match before {
+            Some((earlier, coarser)) if error <= WANTED => {
+                let share = (coarser / WANTED).ln() / (coarser / error).ln();
+                return Some(earlier * (wall / earlier).powf(share));
+            }
+            _ => before = Some((wall, error)),
+        }
+    }
+    None
+}
+
+/// One row of the race at 1e-8 m.
+fn race(means: &Means) {
+    let solver = cost(|tolerance| means.theirs(tolerance));
+    let rapier = cost(|tolerance| means.ours(StepControl::Tolerance(tolerance)));
+    let direct = cost(|tolerance| means.ours(StepControl::Direct(tolerance)));
+    let (Some(solver), Some(rapier), Some(direct)) = (solver, rapier, direct) else {
+        println!("| {} | not reached |", means.name);
         return;
     };
     println!(
-        "| {} | {:.0} ms | {tolerance:.1e} | {error:.1e} | {:.1}k | {wall:.4} | {theirs:.4} | {:.1} | {each:.0} |",
-        study.name,
-        study.until * 1e3,
-        steps / 1e3,
-        wall / theirs
+        "| {} | {solver:.4} | {rapier:.4} | {direct:.4} | {:.1} | {:.2} |",
+        means.name,
+        rapier / solver,
+        direct / solver
     );
 }
 

@@ -8,7 +8,6 @@ use super::outcome::{MET, Outcome, Verdict};
 use super::rattle::Rattle;
 use super::way::name;
 use crate::effects::{DependsOn, Over, OverTime, Setting, Target};
-use crate::engine::StepControl;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use serde::{Serialize, Serializer};
@@ -265,10 +264,7 @@ impl Report {
                 replicas: case.replicas(),
             },
             without: without.iter().map(|kind| (*kind).to_owned()).collect(),
-            tolerance_m_s: match case.simulator.control {
-                StepControl::Tolerance(tolerance) => tolerance,
-                StepControl::Fixed(_) => f64::NAN,
-            },
+            tolerance_m_s: case.simulator.control.tolerance().unwrap_or(f64::NAN),
             seeds: Seeds { scenario: rig.seed, replicas: (0..case.replicas() as u64).collect() },
             simulations: outcome.simulations + rattle.logs.len(),
             wall_s: 0.0,

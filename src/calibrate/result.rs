@@ -76,7 +76,7 @@ pub fn refuse<E: ToString>(found: Vec<E>) -> Result<(), CalibrateError> {
 pub fn control(rig: &Scenario) -> StepControl {
     match rig.step_control() {
         StepControl::Fixed(_) => StepControl::Tolerance(TOLERANCE),
-        tolerance @ StepControl::Tolerance(_) => tolerance,
+        tolerance @ (StepControl::Tolerance(_) | StepControl::Direct(_)) => tolerance,
     }
 }
 

@@ -94,7 +94,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         return super::self_test::main(&test);
     };
     let without = without(&arguments.without)?;
-    let rig = Scenario::load(Some(rig), &arguments.sets.sets)?;
+    let rig = Scenario::load(Some(rig), &arguments.sets.all())?;
     warn_of_unused(&rig);
     let paths: Vec<&Path> =
         arguments.data.iter().chain(&arguments.validate).map(PathBuf::as_path).collect();

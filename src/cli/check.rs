@@ -5,7 +5,7 @@ use super::options::{PrintOptions, ScenarioOptions};
 use super::{check_text, output};
 use crate::scenario::{Problems, Scenario};
 use crate::simulate::{Machine, Severity, assemble};
-use crate::study::{self, Check};
+use crate::study::{self, Check, Engines};
 use clap::Args;
 
 /// Say everything about a scenario that can be said without simulating
@@ -19,6 +19,9 @@ use clap::Args;
 pub(super) struct Arguments {
     #[command(flatten)]
     scenario: ScenarioOptions,
+    /// Also run the first 0.2 s with the physics engine and with direct integration, and say by how much they differ
+    #[arg(long)]
+    engines: bool,
     #[command(flatten)]
     print: PrintOptions,
 }
@@ -27,11 +30,28 @@ const EXAMPLES: &str = "\
 Examples:
   freeplay check                                     the built-in machine
   freeplay check my-machine.toml --set motion.radius=0.08
+  freeplay check my-machine.toml --engines            two ways of stepping, and how far apart they end
   freeplay check my-machine.toml --json | jq .legs";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let check = match arguments.scenario.load().and_then(assembled) {
-        Ok((scenario, mut machine)) => study::check(&scenario, &mut machine),
+        Ok((scenario, mut machine)) => {
+            let mut check = study::check(&scenario, &mut machine);
+            if arguments.engines && check.ok {
+                let engines = Engines::of(&machine).ok_or_else(|| {
+                    let message = "`check --engines` compares steps under error control";
+                    scenario.problem(
+                        "simulation.step",
+                        message,
+                        "set simulation.tolerance instead, such as 1e-5",
+                    )
+                })?;
+                if let Some(machine) = &mut check.machine {
+                    machine.engines = Some(engines);
+                }
+            }
+            check
+        }
         Err(problems) => Check::unreadable(problems.0),
     };
     if arguments.print.json {

@@ -2,7 +2,7 @@
 
 use crate::report::{length, number};
 use crate::scenario::Law;
-use crate::study::CheckedMachine;
+use crate::study::{CheckedMachine, Engines};
 use std::fmt::Write as _;
 
 /// Everything about a machine, for people.
@@ -13,7 +13,34 @@ pub(super) fn text(m: &CheckedMachine) -> String {
     motion(&mut text, m);
     joints(&mut text, m);
     drives(&mut text, m);
+    if let Some(engines) = &m.engines {
+        two_engines(&mut text, engines);
+    }
     text.0
+}
+
+/// How far the two engines are apart.
+fn two_engines(text: &mut Text, engines: &Engines) {
+    let Engines { tolerance_m_s, looked_at_s, apart } = engines;
+    text.line("\nPhysics engine against direct integration");
+    text.entry("tolerance", &format!("{} m/s a step, both", number(*tolerance_m_s)));
+    let Some(apart) = apart else {
+        text.line("  one of them broke down: `freeplay run` says why");
+        return;
+    };
+    let until = if apart.to_the_end {
+        format!("all of the {} s looked at", number(*looked_at_s))
+    } else {
+        format!("until {} s, where they are more than 1 µm apart", number(apart.until_s))
+    };
+    text.entry("alike", &until);
+    text.entry("until then", &format!("{} of the output body", length(apart.position_m)));
+    let force = format!(
+        "{} of up to {} N",
+        number(apart.contact_force),
+        number(apart.largest_contact_force)
+    );
+    text.entry("  peaks of contacts", &force);
 }
 
 struct Text(String);

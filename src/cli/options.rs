@@ -26,7 +26,19 @@ pub(super) struct Sets {
     /// `joints.clearance=1e-4` (m), `drive.mode=servo`, `environment.gravity=[0,-9.81]` (m/s²),
     /// `motion.period=0.5` (s), `contact.law=native`, `simulation.output_interval=1e-4` (s).
     #[arg(long = "set", value_name = "PATH=VALUE")]
-    pub sets: Vec<String>,
+    sets: Vec<String>,
+    /// What steps the machine: the physics engine, or the equations of motion integrated directly, several
+    /// times as fast; short for --set simulation.engine=ENGINE
+    #[arg(long, value_parser = ["rapier", "direct"])]
+    engine: Option<String>,
+}
+
+impl Sets {
+    /// All of them, in their order.
+    pub fn all(&self) -> Vec<String> {
+        let engine = self.engine.as_ref().map(|engine| format!("simulation.engine={engine}"));
+        self.sets.iter().cloned().chain(engine).collect()
+    }
 }
 
 /// What is changed in a scenario.
@@ -60,7 +72,7 @@ impl Overrides {
     /// All of them, in their order.
     pub fn sets(&self) -> Vec<String> {
         let duration = self.duration.map(|s| format!("simulation.duration={s:?}"));
-        self.sets.sets.iter().cloned().chain(duration).collect()
+        self.sets.all().into_iter().chain(duration).collect()
     }
 }
 

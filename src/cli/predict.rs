@@ -62,7 +62,7 @@ Examples:
   freeplay predict rig.toml --data run-b.csv --json --quiet | jq '.errors[] | [.channel, .after]'";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
-    let model = Scenario::load(Some(&arguments.model), &arguments.sets.sets)?;
+    let model = Scenario::load(Some(&arguments.model), &arguments.sets.all())?;
     warn_of_unused(&model);
     if model.mechanism.has_sensors() {
         let asked = Asked { window: arguments.window, fit: arguments.fit, from: arguments.from };

@@ -79,7 +79,7 @@ pub(super) struct Adaptive {
 /// damps the rattle away where hits come at 1 mm/s. Below 10 µm the penetration (some µm) takes the
 /// place of the clearance, and the share stays. Found on the statistics of an independent solver:
 /// with it, one tolerance reproduces them from 1 mm to 10 nm.
-fn share(mechanism: &Mechanism) -> f64 {
+pub(super) fn share(mechanism: &Mechanism) -> f64 {
     let clearances = mechanism.revolutes.iter().filter_map(|joint| match &joint.bearing {
         Bearing::Clearance(clearance) => Some(clearance.radial()),
         Bearing::Ideal | Bearing::Native { .. } => None,

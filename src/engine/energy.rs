@@ -31,10 +31,10 @@ impl Power {
 /// Work done over a step or a run, in J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Exchange {
-    total: f64,
-    drives: f64,
+    pub total: f64,
+    pub drives: f64,
     /// `∫ |P| dt`: how much energy changed hands.
-    turned_over: f64,
+    pub turned_over: f64,
 }
 
 impl Exchange {

@@ -95,7 +95,7 @@ pub(super) fn likely_cause(mechanism: &Mechanism, control: StepControl) -> Strin
             );
         }
         (StepControl::Fixed(_), _) => "step",
-        (StepControl::Tolerance(_), _) => "tolerance",
+        (StepControl::Tolerance(_) | StepControl::Direct(_), _) => "tolerance",
     };
     format!(
         "likely hits far harder than usual, contacts too soft for them, or a machine near a \
@@ -117,7 +117,9 @@ impl Pace {
     pub fn new(control: StepControl) -> Self {
         let most = match control {
             StepControl::Fixed(_) => None,
-            StepControl::Tolerance(_) => Some((MOST_STEPS_PER_S * WINDOW) as u64),
+            StepControl::Tolerance(_) | StepControl::Direct(_) => {
+                Some((MOST_STEPS_PER_S * WINDOW) as u64)
+            }
         };
         Self { most, since: 0.0, before: 0 }
     }

@@ -9,6 +9,7 @@ mod adaptive;
 mod clearance_joints;
 mod clock;
 mod colliders;
+mod direct;
 mod dispatcher;
 mod energy;
 mod fixed;
@@ -31,7 +32,7 @@ pub use dispatcher::RingDispatcher;
 pub use energy::Energy;
 pub use halt::{Halt, MOST_STEPS_PER_S};
 pub use ring::BearingRing;
-pub use run::{Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Work, run, run_while};
+pub use run::{Engine, Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Work, run, run_while};
 pub use watch::{Peaks, Tally};
 
 use nalgebra::Vector2;

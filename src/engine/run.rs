@@ -2,6 +2,7 @@
 
 use super::adaptive::Adaptive;
 use super::clock::Clock;
+use super::direct::Direct;
 use super::energy::{Energy, Ledger, drift};
 use super::fixed::Fixed;
 use super::halt::{Halt, Pace, TOO_MANY_STEPS, impossible, likely_cause};
@@ -9,6 +10,7 @@ use super::native::Native;
 use super::stepper::Stepper;
 use super::watch::{Peaks, Tally, Watch};
 use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -21,6 +23,53 @@ pub enum StepControl {
     /// joints have 0.5 mm of clearance or more; in proportion less where they have less, down to a
     /// fiftieth at 10 µm.
     Tolerance(f64),
+    /// The same tolerance without the physics engine: the equations of motion integrated directly.
+    Direct(f64),
+}
+
+/// What steps a machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Engine {
+    /// The physics engine: every step is one of rapier's.
+    #[default]
+    Rapier,
+    /// The mechanism's own equations of motion, integrated directly.
+    Direct,
+}
+
+impl Engine {
+    /// Whether it is the one that nobody has to ask for.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl StepControl {
+    /// The fixed step in s, if it is one.
+    pub fn step(self) -> Option<f64> {
+        match self {
+            StepControl::Fixed(step) => Some(step),
+            StepControl::Tolerance(_) | StepControl::Direct(_) => None,
+        }
+    }
+
+    /// The velocity error of one step in m/s that it allows, if it looks at errors.
+    pub fn tolerance(self) -> Option<f64> {
+        match self {
+            StepControl::Fixed(_) => None,
+            StepControl::Tolerance(tolerance) | StepControl::Direct(tolerance) => Some(tolerance),
+        }
+    }
+
+    /// The same with the tolerance times `factor`; a fixed step stays.
+    pub fn with_tolerance_times(self, factor: f64) -> Self {
+        match self {
+            StepControl::Fixed(step) => StepControl::Fixed(step),
+            StepControl::Tolerance(tolerance) => StepControl::Tolerance(tolerance * factor),
+            StepControl::Direct(tolerance) => StepControl::Direct(tolerance * factor),
+        }
+    }
 }
 
 /// Speed in m/s at which journals are taken to hit where the step is checked beforehand: hits in
@@ -139,6 +188,7 @@ pub fn run_while(
         StepControl::Fixed(step) if native => Box::new(Native::new(mechanism, step)),
         StepControl::Fixed(step) => Box::new(Fixed::new(mechanism, step)),
         StepControl::Tolerance(tolerance) => Box::new(Adaptive::new(mechanism, tolerance)),
+        StepControl::Direct(tolerance) => Box::new(Direct::new(mechanism, tolerance)),
     };
     drive(&mut *stepper, mechanism, control, schedule, stop, observe)
 }
@@ -171,8 +221,8 @@ fn drive(
             if std::mem::take(&mut stepped) {
                 ledger.add(stepper.exchange());
             }
-            watch.account(&now.contacts, stepper.mean_forces());
-            watch.record(mechanism, states, now, stepper.peaks_inside());
+            watch.account(&now.contacts, stepper);
+            watch.record(mechanism, states, now, stepper);
             if t >= until {
                 break;
             }

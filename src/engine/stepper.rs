@@ -15,6 +15,15 @@ pub(super) trait Stepper {
     /// Largest normal force (N) of each joint inside the step that ended at that instant, where the
     /// way of stepping looks there.
     fn peaks_inside(&self) -> &[f64];
+    /// Joints whose journals hit and flew again inside the step, touching at neither end; none where steps
+    /// are too short for that.
+    fn brushes(&self) -> &[bool] {
+        &[]
+    }
+    /// What the normal force of each joint took in the step in J, where the way of stepping integrates it.
+    fn joint_work(&self) -> Option<&[f64]> {
+        None
+    }
     /// Lets the sampled controllers that are due compute what they hold from the instant last
     /// synchronised on.
     fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]);

@@ -1,5 +1,6 @@
 //! What happens between the rows of a run: hits, energy, largest values, whole turns.
 
+use super::stepper::Stepper;
 use crate::contact::Contact;
 use crate::mechanism::{BodyState, Evaluation, JointIndex, Mechanism, angle_near};
 use nalgebra::UnitComplex;
@@ -58,8 +59,16 @@ impl Watch {
     }
 
     /// Keeps account of energy. An impulse J between the rates a and b takes `J (a + b)/2`, exactly;
-    /// for a force that varies over the step this is the trapezoidal rule.
-    pub fn account(&mut self, contacts: &[Contact], mean_forces: bool) {
+    /// for a force that varies over the step this is the trapezoidal rule. A way of stepping that integrates the
+    /// work itself knows better.
+    pub fn account(&mut self, contacts: &[Contact], stepper: &dyn Stepper) {
+        let mean_forces = stepper.mean_forces();
+        if let Some(work) = stepper.joint_work() {
+            for (tally, work) in self.tallies.iter_mut().zip(work) {
+                tally.energy += work;
+            }
+            return;
+        }
         for ((tally, now), before) in self.tallies.iter_mut().zip(contacts).zip(&mut self.before) {
             let [was, is] = [before.normal_force, now.normal_force];
             let force = if mean_forces { is } else { 0.5 * (was + is) };
@@ -75,10 +84,13 @@ impl Watch {
         mechanism: &Mechanism,
         states: &[BodyState],
         now: &Evaluation,
-        inside: &[f64],
+        stepper: &dyn Stepper,
     ) {
-        for (tally, peak) in self.tallies.iter_mut().zip(inside) {
+        for (tally, peak) in self.tallies.iter_mut().zip(stepper.peaks_inside()) {
             tally.peak = tally.peak.max(*peak);
+        }
+        for (tally, brush) in self.tallies.iter_mut().zip(stepper.brushes()) {
+            tally.impacts += u64::from(*brush);
         }
         for (tally, contact) in self.tallies.iter_mut().zip(&now.contacts) {
             let touching = contact.normal_force > 0.0;

@@ -35,6 +35,14 @@ impl BodyState {
         }
     }
 
+    /// The same body shifted (m, m) and turned (rad), with the same twist. Its rotation is made a unit again:
+    /// rounding would add up over steps.
+    pub fn displaced(&self, by: Vector3<f64>) -> Self {
+        let mut rotation = self.rotation * turn(by.z);
+        rotation.renormalize_fast();
+        Self { position: self.position + by.xy(), rotation, twist: self.twist }
+    }
+
     /// The state of a point of the body, given in the body's own axes from its centre of mass (m).
     pub fn at(&self, local: Vector2<f64>) -> Self {
         let frame = self.frame(local);

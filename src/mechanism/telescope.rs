@@ -31,14 +31,20 @@ impl Prismatic {
     /// How far the slider has come off the axis, in m, and what the angle between the two makes over the
     /// joint's length.
     pub fn drift(&self, states: &[BodyState]) -> f64 {
-        let state = self.telescope(states);
+        let [across, turned] = self.come_off(states);
+        across.abs() + turned.abs() * self.length(states).abs()
+    }
+
+    /// How far the slider has come off the axis, in m along its normal, and turned against the base, in rad (its
+    /// sine).
+    pub(super) fn come_off(&self, states: &[BodyState]) -> [f64; 2] {
         let [base, slider] = self.points();
-        let across = (state.offset[1] + slider.y - base.y).abs();
+        let across = self.telescope(states).offset[1] + slider.y - base.y;
         let rotation =
             |body: Option<usize>, axis| body.map_or(axis, |i: usize| states[i].rotation * axis);
         let [base, slider] =
             [rotation(self.base.body, self.axes[0]), rotation(self.slider.body, self.axes[1])];
-        across + (base.re * slider.im - base.im * slider.re).abs() * state.length.abs()
+        [across, base.re * slider.im - base.im * slider.re]
     }
 
     pub(super) fn telescope(&self, states: &[BodyState]) -> Telescope {

@@ -1,6 +1,7 @@
 //! Values that are surely wrong by themselves. What is merely unusual passes.
 
 use super::{Mechanism, Motion, PerJoint, Problem, Problems, Scenario};
+use crate::engine::Engine;
 
 impl Scenario {
     /// All values that cannot be right.
@@ -273,6 +274,14 @@ impl Checks<'_> {
         }
         if let Some(step) = simulation.step {
             self.positive("simulation.step", step, "s");
+            if simulation.engine == Engine::Direct {
+                self.complain(
+                    "simulation.step",
+                    "does not go with simulation.engine = \"direct\", which controls its error"
+                        .into(),
+                    "expected simulation.tolerance, such as 1e-5",
+                );
+            }
         }
         if let Some(tolerance) = simulation.tolerance {
             self.positive("simulation.tolerance", tolerance, "");

@@ -283,6 +283,12 @@ fn step(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
     let has = |of: fn(&Bearing) -> bool| machine.mechanism.revolutes.iter().any(|j| of(&j.bearing));
     let native = has(|bearing| matches!(bearing, Bearing::Native { .. }));
     match machine.control {
+        StepControl::Direct(_) if native => Some(Finding::error(scenario.problem(
+            "simulation.engine",
+            "\"direct\" does not go with contact.law = \"native\": those are the physics engine's own \
+             contacts",
+            "leave simulation.engine out, and set simulation.step, such as 1e-5",
+        ))),
         StepControl::Tolerance(_) if native => Some(Finding::error(scenario.problem(
             "simulation.tolerance",
             "does not go with contact.law = \"native\": the physics engine's own contacts have no \

@@ -1,6 +1,6 @@
 //! Where a result comes from.
 
-use crate::engine::RAPIER_VERSION;
+use crate::engine::{Engine, RAPIER_VERSION};
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +13,9 @@ pub struct Provenance {
     pub version: String,
     /// Version of the physics engine underneath.
     pub rapier_version: String,
+    /// What stepped the machine, where it was not the physics engine.
+    #[serde(default, skip_serializing_if = "Engine::is_default")]
+    pub engine: Engine,
     /// Name of the scenario.
     pub scenario_name: String,
     /// SHA-256 of the effective scenario, overrides included.
@@ -26,6 +29,7 @@ impl Provenance {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             rapier_version: RAPIER_VERSION.to_owned(),
+            engine: scenario.simulation.engine,
             scenario_name: scenario.name.clone(),
             scenario_hash: scenario.hash(),
         }
@@ -39,17 +43,20 @@ impl Provenance {
         beside: Option<&str>,
         more: [(&str, String); N],
     ) -> Vec<(String, String)> {
-        let Self { program, version, rapier_version, scenario_name, scenario_hash } = self;
+        let Self { program, version, rapier_version, engine, scenario_name, scenario_hash } = self;
+        let stepped = match engine {
+            Engine::Rapier => format!("on rapier2d-f64 {rapier_version}"),
+            Engine::Direct => {
+                "its equations of motion integrated directly, without the physics engine".to_owned()
+            }
+        };
         let (first, rest) = what.split_at(1);
         let name = beside.map_or_else(
             || scenario_name.clone(),
             |file| format!("{scenario_name} ({file} beside this page)"),
         );
         let lines = [
-            (
-                "Program".to_owned(),
-                format!("{program} {version}, on rapier2d-f64 {rapier_version}"),
-            ),
+            ("Program".to_owned(), format!("{program} {version}, {stepped}")),
             (first.to_uppercase() + rest, name),
             (format!("SHA-256 of the {what}"), scenario_hash.clone()),
         ];

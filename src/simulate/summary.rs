@@ -2,7 +2,7 @@
 
 use super::provenance::Provenance;
 use super::watched::Watched;
-use crate::engine::{Instant, StepControl, Work};
+use crate::engine::{Instant, Work};
 use crate::mechanism::{JointIndex, Mechanism};
 use crate::model::{IdealInstant, Machine, radial_clearance};
 use crate::scenario::{Law, Scenario};
@@ -279,17 +279,13 @@ impl Recorder {
         let penetration = |joint: &JointRecord| Some(joint.max_eccentricity - joint.clearance?);
         let mut actuators = machine.mechanism.actuators.iter();
         let torques = actuators.any(|a| matches!(a.joint, JointIndex::Revolute(_)));
-        let (step_s, tolerance_m_s) = match machine.control {
-            StepControl::Fixed(step) => (Some(step), None),
-            StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
-        };
         Summary {
             provenance: Provenance::of(scenario),
             seed: scenario.seed,
             law: scenario.contact.law,
             drive: machine.drives,
-            step_s,
-            tolerance_m_s,
+            step_s: machine.control.step(),
+            tolerance_m_s: machine.control.tolerance(),
             halted,
             interrupted: work.stopped,
             simulated_s: work.reached,

@@ -171,10 +171,30 @@ pub fn own_error(
     }
     let finer = match control {
         StepControl::Fixed(step) => StepControl::Fixed(0.5 * step),
-        StepControl::Tolerance(tolerance) => StepControl::Tolerance(0.1 * tolerance),
+        other => other.with_tolerance_times(0.1),
     };
     let schedule = Schedule { duration: schedule.duration.min(WINDOW), ..schedule };
     let track = track(mechanism, finer, schedule, stop)?;
+    Some(apart(&track, rows, schedule))
+}
+
+/// How far a run of the physics engine is from one of the equations of motion integrated directly, both at this
+/// `tolerance` (m/s), as long as that is less than [`HORIZON_ERROR`] and at most over [`WINDOW`]. `None` where one
+/// of them breaks down.
+pub fn engines_apart(
+    mechanism: &Mechanism,
+    tolerance: f64,
+    schedule: Schedule,
+) -> Option<OwnError> {
+    let schedule = Schedule { duration: schedule.duration.min(WINDOW), ..schedule };
+    let controls = [StepControl::Direct(tolerance), StepControl::Tolerance(tolerance)];
+    let [direct, rapier] =
+        controls.map(|control| track(mechanism, control, schedule, &AtomicBool::new(false)));
+    Some(apart(&direct?, &rapier?, schedule))
+}
+
+/// How far `rows` of a run are from those of another, as long as that is less than [`HORIZON_ERROR`].
+fn apart(track: &[Look], rows: &[Look], schedule: Schedule) -> OwnError {
     // A window that ends between two rows of the run has a row of its own there, which is left out.
     let pairs: Vec<_> = track.iter().zip(rows).take(schedule.intervals()).collect();
     let apart = pairs.iter().position(|(p, q)| p.distance(q) > HORIZON_ERROR);
@@ -182,14 +202,14 @@ pub fn own_error(
     let [finer, own] = [peaks(good.iter().map(|(p, _)| *p)), peaks(good.iter().map(|(_, q)| *q))];
     let differences = finer.iter().zip(&own).map(|(a, b)| (a - b).abs());
     let end = apart.or(pairs.len().checked_sub(1));
-    Some(OwnError {
+    OwnError {
         until_s: end.map_or(0.0, |row| pairs[row].1.t),
         to_the_end: apart.is_none(),
         position_m: good.iter().map(|(p, q)| p.distance(q)).fold(0.0, f64::max),
         contact_force: differences.fold(0.0, f64::max),
         largest_contact_force: own.iter().copied().fold(0.0, f64::max),
         hits: good.last().map_or(0, |(_, q)| q.hits),
-    })
+    }
 }
 
 fn has_law(mechanism: &Mechanism) -> bool {

@@ -1,10 +1,11 @@
 //! Everything that can be said of a scenario without simulating it.
 
-use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
+use super::chaos::{WINDOW, engines_apart};
+use crate::engine::TYPICAL_IMPACT_SPEED;
 use crate::mechanism::{Actuator, BodyState, Drive, JointIndex, Loop, Mechanism};
 use crate::model::DrivenPath;
 use crate::scenario::{self, Law, Problem, Scenario};
-use crate::simulate::{Finding, Machine, Severity, findings, leg_use, radial_clearance};
+use crate::simulate::{Finding, Machine, OwnError, Severity, findings, leg_use, radial_clearance};
 use serde::Serialize;
 
 /// Fewest instants at which the ideal machine's forces are looked at.
@@ -106,6 +107,32 @@ pub struct CheckedMachine {
     pub servo_damping: Option<f64>,
     /// What the machine without clearance needs; none at a singularity.
     pub ideal: Option<Ideal>,
+    /// How far the physics engine and the equations of motion integrated directly are apart; absent where nobody
+    /// asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub engines: Option<Engines>,
+}
+
+/// The same machine stepped by the physics engine, and by direct integration.
+#[derive(Clone, Debug, Serialize)]
+pub struct Engines {
+    /// Velocity error allowed for one step in m/s, of both.
+    pub tolerance_m_s: f64,
+    /// Time that was looked at in s.
+    pub looked_at_s: f64,
+    /// How far they are apart; none where one of them breaks down.
+    pub apart: Option<OwnError>,
+}
+
+impl Engines {
+    /// Runs both over what can be predicted of a machine, at most as long as its scenario says. `None` where it
+    /// steps without error control: contacts of the physics engine's own are nobody else's.
+    pub fn of(machine: &Machine) -> Option<Self> {
+        let tolerance_m_s = machine.control.tolerance()?;
+        let looked_at_s = machine.schedule.duration.min(WINDOW);
+        let apart = engines_apart(&machine.mechanism, tolerance_m_s, machine.schedule);
+        Some(Self { tolerance_m_s, looked_at_s, apart })
+    }
 }
 
 /// One body.
@@ -246,10 +273,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         Drive::Servo { stiffness, damping } => Some([stiffness, damping]),
         _ => None,
     });
-    let (step_s, tolerance_m_s) = match machine.control {
-        StepControl::Fixed(step) => (Some(step), None),
-        StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
-    };
+    let (step_s, tolerance_m_s) = (machine.control.step(), machine.control.tolerance());
     let machine = CheckedMachine {
         scenario_name: scenario.name.clone(),
         scenario_hash: scenario.hash(),
@@ -280,6 +304,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         servo_stiffness: gains.map(|[stiffness, _]| stiffness),
         servo_damping: gains.map(|[_, damping]| damping),
         ideal,
+        engines: None,
     };
     Check { ok, findings: findings.into_iter().map(found).collect(), machine: Some(machine) }
 }

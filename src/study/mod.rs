@@ -15,7 +15,7 @@ mod run_page;
 pub mod sweep;
 
 pub use check::{
-    Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Found, Ideal, check,
+    Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Engines, Found, Ideal, check,
 };
 pub use folder::{Folder, FolderError, abandon, default_name};
 pub use forecast::Forecast;

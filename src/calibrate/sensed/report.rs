@@ -23,7 +23,6 @@ use crate::calibrate::report::{
 use crate::calibrate::result::{
     CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, to_json,
 };
-use crate::engine::StepControl;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError};
 use serde::Serialize;
@@ -147,10 +146,7 @@ pub fn into_folder(
             replicas: problem.replicas,
         },
         without: without.iter().map(|kind| (*kind).to_owned()).collect(),
-        tolerance_m_s: match control {
-            StepControl::Tolerance(tolerance) => tolerance,
-            StepControl::Fixed(_) => f64::NAN,
-        },
+        tolerance_m_s: control.tolerance().unwrap_or(f64::NAN),
         seeds: Seeds {
             scenario: problem.rig.seed,
             replicas: (0..problem.replicas as u64).collect(),

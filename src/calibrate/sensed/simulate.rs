@@ -35,12 +35,7 @@ pub fn record(
     like: &Recording,
     replica: u64,
 ) -> Result<Recording, Halt> {
-    let control = match control {
-        StepControl::Tolerance(tolerance) => {
-            StepControl::Tolerance(tolerance * FINER.powi(replica as i32))
-        }
-        StepControl::Fixed(step) => StepControl::Fixed(step),
-    };
+    let control = control.with_tolerance_times(FINER.powi(replica as i32));
     let mut machine = machine.clone();
     let mut random = ChaCha8Rng::seed_from_u64(replica);
     let direction: Vector2<f64> = Vector2::from_fn(|_, _| StandardNormal.sample(&mut random));

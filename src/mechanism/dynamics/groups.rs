@@ -24,6 +24,11 @@ impl Group {
         Self { joints, rank: 0, weakest: 0.0 }
     }
 
+    /// The farthest that its rows were from a lower rank.
+    pub fn weakest(&self) -> f64 {
+        self.weakest
+    }
+
     /// Whether rows of this rank, so far from a lower one, are nearly singular.
     fn nearly_singular(&mut self, rank: usize, weakest: f64) -> bool {
         self.rank = self.rank.max(rank);

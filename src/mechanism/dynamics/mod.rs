@@ -6,6 +6,7 @@
 
 mod drives;
 mod groups;
+mod projection;
 
 use self::groups::Group;
 use super::constraints::{Constraints, Rigid, groups};
@@ -30,6 +31,8 @@ pub struct Dynamics {
     /// Whether a group was nearly singular since that was last forgotten.
     singular: bool,
     coupled: bool,
+    /// Whether any drive prescribes its coordinate.
+    prescribes: bool,
     /// Each prismatic joint at the state last asked for.
     prismatics: Vec<Telescope>,
     /// The drive that prescribes each prismatic joint's length.
@@ -87,6 +90,7 @@ impl Dynamics {
         });
         Self {
             coupled: !others.is_empty() || mechanism.prismatics.iter().any(beside),
+            prescribes: mechanism.actuators.iter().any(|a| a.drive == Drive::Prescribed),
             inverse_masses: bodies.iter().map(|b| inverse(b.mass, b.inertia)).collect(),
             masses: bodies.iter().map(|b| Vector3::new(b.mass, b.mass, b.inertia)).collect(),
             weights: mechanism

@@ -1,12 +1,12 @@
 //! `[simulation]`: how long, how finely, how exactly.
 
-use crate::engine::StepControl;
+use crate::engine::{Engine, StepControl};
 use serde::{Deserialize, Serialize};
 
 /// How a scenario steps that asks for nothing: 1e-5 m/s of velocity error a step. It follows the
 /// default machine to 4e-8 m over 50 ms, and reproduces the statistics of an independent solver for
 /// clearances from 1 mm to 10 nm; ten times looser does not.
-const DEFAULT_CONTROL: StepControl = StepControl::Tolerance(1e-5);
+const DEFAULT_TOLERANCE: f64 = 1e-5;
 
 /// Default of `settle`, s: the largest hits of the centred start come within 40 ms.
 const DEFAULT_SETTLE: f64 = 0.2;
@@ -22,6 +22,9 @@ pub struct Simulation {
     /// Start left out of peaks, rms and fractions, s; see [`Simulation::settle`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settle: Option<f64>,
+    /// What steps the machine. Default: the physics engine.
+    #[serde(skip_serializing_if = "Engine::is_default")]
+    pub engine: Engine,
     /// Fixed step, s; see [`Simulation::step_control`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<f64>,
@@ -37,6 +40,7 @@ impl Default for Simulation {
             duration: 1.0,
             output_interval: 5e-4,
             settle: None,
+            engine: Engine::Rapier,
             step: None,
             tolerance: None,
         }
@@ -53,17 +57,15 @@ impl Simulation {
     /// The fixed step or the tolerance that was given (never both: loading refuses that), or the
     /// default, a tolerance of 1e-5 m/s.
     pub fn step_control(&self) -> StepControl {
-        match (self.step, self.tolerance) {
+        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        match (self.step, self.engine) {
             (Some(step), _) => StepControl::Fixed(step),
-            (None, Some(tolerance)) => StepControl::Tolerance(tolerance),
-            (None, None) => DEFAULT_CONTROL,
+            (None, Engine::Rapier) => StepControl::Tolerance(tolerance),
+            (None, Engine::Direct) => StepControl::Direct(tolerance),
         }
     }
 
     pub(in crate::scenario) fn set_step_control(&mut self, control: StepControl) {
-        (self.step, self.tolerance) = match control {
-            StepControl::Fixed(step) => (Some(step), None),
-            StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
-        };
+        (self.step, self.tolerance) = (control.step(), control.tolerance());
     }
 }

@@ -56,16 +56,16 @@ pub struct FirstHit {
 /// # Errors
 /// A motion table that cannot be read.
 pub fn first_hits(scenario: &Scenario, plan: &Plan) -> Result<Option<FirstHits>, Problem> {
-    let rows: Vec<&Row> =
-        plan.rows.iter().filter(|row| row.law != Law::Ideal && row.step().is_some()).collect();
+    let rows: Vec<&Row> = plan
+        .rows
+        .iter()
+        .filter(|row| row.law != Law::Ideal && row.control.step().is_some())
+        .collect();
     let mut times = Vec::new();
     let mut exact = Vec::new();
     let mut peaks = vec![Vec::new(); rows.len()];
     for start in 0..plan.starts {
-        let fine = match tolerance(scenario) {
-            StepControl::Tolerance(tolerance) => StepControl::Tolerance(EXACT * tolerance),
-            fixed @ StepControl::Fixed(_) => fixed,
-        };
+        let fine = tolerance(scenario).with_tolerance_times(EXACT);
         let law = machine(scenario, Law::HertzStep, fine, start, plan.starts)?.mechanism;
         let patience = PATIENCE.min(scenario.simulation.duration);
         let Some(begin) = peak(&law, fine, patience).0 else { continue };
@@ -88,7 +88,7 @@ pub fn first_hits(scenario: &Scenario, plan: &Plan) -> Result<Option<FirstHits>,
             let squares = Mean::of(peaks.iter().zip(&exact).map(error)).mean;
             Some(FirstHit {
                 law: row.law,
-                step_s: row.step()?,
+                step_s: row.control.step()?,
                 resolved: row.resolved,
                 peak: Mean::of(peaks.iter().copied()),
                 relative_error: squares.sqrt(),

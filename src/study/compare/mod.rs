@@ -23,7 +23,7 @@ pub use verdict::{Use, Verdict, in_words};
 use super::chaos::{self, Chaos, Look};
 use super::folder::Folder;
 use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused};
-use crate::engine::{self, StepControl};
+use crate::engine;
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
 use plan::{Plan, machine, plan, tolerance};
@@ -217,11 +217,8 @@ fn row_result(row: &plan::Row, runs: &[Measured]) -> RowResult {
     let mean = |f: &dyn Fn(&Measured) -> f64| Mean::of(good().map(f));
     RowResult {
         law: row.law,
-        step_s: row.step(),
-        tolerance_m_s: match row.control {
-            StepControl::Tolerance(tolerance) => Some(tolerance),
-            StepControl::Fixed(_) => None,
-        },
+        step_s: row.control.step(),
+        tolerance_m_s: row.control.tolerance(),
         resolved: row.resolved,
         starts: row.starts,
         halted: runs.len() - good().count(),

@@ -5,7 +5,7 @@ use super::probe::Measured;
 use super::quantities::index;
 use super::result::{Comparison, RowResult};
 use super::{CompareError, law_key};
-use crate::engine::{self, Schedule, StepControl};
+use crate::engine::{self, Schedule};
 use crate::report::{Curve, Panel, Picture, ReportError, Style, number, panels_svg};
 use crate::scenario::{Law, Scenario};
 use crate::study::chaos::{self, Chaos};
@@ -139,10 +139,10 @@ fn beginnings(scenario: &Scenario, plan: &Plan) -> Result<Vec<Beginning>, Compar
                 curves[2].push((instant.t, force));
             }
         });
-        let step = match row.control {
-            StepControl::Fixed(step) => format!(", step {} s", number(step)),
-            StepControl::Tolerance(_) => String::new(),
-        };
+        let step = row
+            .control
+            .step()
+            .map_or_else(String::new, |step| format!(", step {} s", number(step)));
         let style = if law == Law::Ideal { Style::Reference } else { Style::Solid };
         beginnings.push(Beginning { name: law_key(law).to_owned() + &step, style, curves });
     }

@@ -1,7 +1,7 @@
 //! What is simulated for a comparison: laws, steps, starts.
 
 use super::SAMPLE_INTERVAL;
-use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
+use crate::engine::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::scenario::{Law, Mechanism, Motion, Problem, Scenario};
 use crate::simulate::{Machine, assemble, radial_clearance};
 use crate::study::chaos::DISPLACEMENT;
@@ -34,16 +34,6 @@ pub struct Row {
     pub starts: usize,
 }
 
-impl Row {
-    /// The fixed step in s, if it is one.
-    pub fn step(&self) -> Option<f64> {
-        match self.control {
-            StepControl::Fixed(step) => Some(step),
-            StepControl::Tolerance(_) => None,
-        }
-    }
-}
-
 /// Everything that is run.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -70,6 +60,10 @@ impl Plan {
 /// # Errors
 /// A motion table that cannot be read, a machine without joints to compare.
 pub fn plan(scenario: &Scenario, options: &Options) -> Result<Plan, Problem> {
+    if scenario.simulation.engine == Engine::Direct {
+        let message = "\"direct\" has no contacts of the physics engine's own to compare";
+        return Err(scenario.problem("simulation.engine", message, "leave simulation.engine out"));
+    }
     let law = machine(scenario, Law::HertzStep, tolerance(scenario), 0, 1)?;
     if law.mechanism.revolutes.iter().all(|joint| radial_clearance(&joint.bearing).is_none()) {
         let message = "has no joint with clearance: there are no contacts to compare";

@@ -16,7 +16,6 @@ use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::report::{Calibrated, Report};
 use crate::calibrate::sensed::thresholds::MET;
 use crate::effects::Setting;
-use crate::engine::StepControl;
 use crate::report::{Picture, Style};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -103,10 +102,7 @@ pub fn into_folder(
             replicas: 1,
         },
         without: without.iter().map(|kind| (*kind).to_owned()).collect(),
-        tolerance_m_s: match control {
-            StepControl::Tolerance(tolerance) => tolerance,
-            StepControl::Fixed(_) => f64::NAN,
-        },
+        tolerance_m_s: control.tolerance().unwrap_or(f64::NAN),
         seeds: Seeds { scenario: rig.seed, replicas: vec![0] },
         simulations: bench.simulations(),
         wall_s: started.elapsed().as_secs_f64(),

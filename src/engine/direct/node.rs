@@ -1,0 +1,100 @@
+//! An instant of the path, and what has been exchanged until then.
+
+use super::super::energy::Exchange;
+use super::tsitouras::between;
+use crate::mechanism::{BodyState, Dynamics, Evaluation, Mechanism};
+use nalgebra::Vector3;
+
+/// Where among the amounts those of the whole machine are: work of everything, of the drives, and how much
+/// changed hands. Behind them comes what the normal force took in each joint.
+const TOTAL: usize = 0;
+const DRIVES: usize = 1;
+const TURNED_OVER: usize = 2;
+const JOINTS: usize = 3;
+
+/// An instant of the path: states, what acts there, and what has been exchanged until then.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Time in s.
+    pub t: f64,
+    /// State of each body.
+    pub states: Vec<BodyState>,
+    /// Forces and accelerations there.
+    pub evaluation: Evaluation,
+    /// Energies exchanged since the start in J, and their rates in W.
+    pub amounts: Vec<f64>,
+    pub flows: Vec<f64>,
+}
+
+impl Node {
+    /// The start of a run; nothing is evaluated yet.
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let amounts = vec![0.0; JOINTS + mechanism.revolutes.len()];
+        Self {
+            t: 0.0,
+            states: mechanism.bodies.iter().map(|body| body.start).collect(),
+            evaluation: Evaluation::new(mechanism),
+            flows: amounts.clone(),
+            amounts,
+        }
+    }
+
+    /// Places the bodies, from where they were by `shifts` (m, m, rad each), with these rates.
+    pub fn place(&mut self, from: &[BodyState], shifts: &[f64], rates: &[f64]) {
+        let moves = shifts.chunks_exact(3).zip(rates.chunks_exact(3));
+        for ((state, from), (by, rate)) in self.states.iter_mut().zip(from).zip(moves) {
+            let twist = Vector3::new(rate[0], rate[1], rate[2]);
+            *state = BodyState { twist, ..from.displaced(Vector3::new(by[0], by[1], by[2])) };
+        }
+    }
+
+    /// Finds what acts at the states that it has.
+    pub fn evaluate(&mut self, dynamics: &mut Dynamics, mechanism: &Mechanism) {
+        dynamics.forces(mechanism, self.t, &self.states, &mut self.evaluation);
+        dynamics.accelerations(mechanism, &self.states, &mut self.evaluation);
+        let [total, drives] = dynamics.power(mechanism, &self.states, &self.evaluation);
+        (self.flows[TOTAL], self.flows[DRIVES]) = (total, drives);
+        self.flows[TURNED_OVER] = total.abs();
+        for (flow, contact) in self.flows[JOINTS..].iter_mut().zip(&self.evaluation.contacts) {
+            *flow = contact.normal_force * contact.rate;
+        }
+    }
+
+    /// Makes it the instant `t` (s) between two others; `shifts` is the way from one to the other.
+    pub fn interpolate(&mut self, [from, to]: [&Node; 2], shifts: &[f64], t: f64) {
+        let h = to.t - from.t;
+        let s = (t - from.t) / h;
+        self.t = t;
+        for (i, state) in self.states.iter_mut().enumerate() {
+            let (a, b) = (&from.states[i], &to.states[i]);
+            let [start, end] = [from, to].map(|node| node.evaluation.accelerations[i]);
+            let (mut by, mut twist) = (Vector3::zeros(), Vector3::zeros());
+            for k in 0..3 {
+                (by[k], twist[k]) =
+                    between(h, s, [a.twist[k], b.twist[k]], [start[k], end[k]], shifts[3 * i + k]);
+            }
+            *state = BodyState { twist, ..a.displaced(by) };
+        }
+        // The cubic through amounts and flows at both ends.
+        let ends = from.amounts.iter().zip(&to.amounts).zip(from.flows.iter().zip(&to.flows));
+        for (amount, ((a, b), (from, to))) in self.amounts.iter_mut().zip(ends) {
+            let (from, to, way) = (h * from, h * to, b - a);
+            let (c2, c3) = (3.0 * way - 2.0 * from - to, from + to - 2.0 * way);
+            *amount = a + s * (from + s * (c2 + s * c3));
+        }
+    }
+
+    /// What has been exchanged since the amounts were those.
+    pub fn exchange(&self, since: &[f64]) -> Exchange {
+        let of = |k: usize| self.amounts[k] - since[k];
+        Exchange { total: of(TOTAL), drives: of(DRIVES), turned_over: of(TURNED_OVER) }
+    }
+
+    /// What the normal force of each joint has taken since then.
+    pub fn joint_work(&self, since: &[f64], work: &mut [f64]) {
+        let pairs = self.amounts[JOINTS..].iter().zip(&since[JOINTS..]);
+        for (work, (now, then)) in work.iter_mut().zip(pairs) {
+            *work = now - then;
+        }
+    }
+}

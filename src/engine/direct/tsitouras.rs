@@ -1,0 +1,182 @@
+//! The explicit Runge–Kutta pair of orders 5(4) by Tsitouras, first same as last, for `q̈ = a(t, q, q̇)`.
+//!
+//! Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column simplifying assumption*,
+//! Computers & Mathematics with Applications 62 (2011) 770–775. Put into one another, the stages' velocities
+//! leave accelerations only to be kept:
+//!
+//! `v_i = v + h Σ_j A_ij a_j`, `q_i − q = h c_i v + h² Σ_j (A²)_ij a_j`.
+
+/// Stages, the first one the last of the step before.
+pub const STAGES: usize = 7;
+
+/// The coefficients as published; the last row is also the weights of order 5.
+const A: [[f64; STAGES]; STAGES] = [
+    [0.0; STAGES],
+    [0.161, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [-0.008_480_655_492_356_989, 0.335_480_655_492_357, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [2.897_153_057_105_493_5, -6.359_448_489_975_075, 4.362_295_432_869_581_5, 0.0, 0.0, 0.0, 0.0],
+    [
+        5.325_864_828_439_257,
+        -11.748_883_564_062_828,
+        7.495_539_342_889_836,
+        -0.092_495_066_361_755_25,
+        0.0,
+        0.0,
+        0.0,
+    ],
+    [
+        5.861_455_442_946_42,
+        -12.920_969_317_847_11,
+        8.159_367_898_576_159,
+        -0.071_584_973_281_401,
+        -0.028_269_050_394_068_383,
+        0.0,
+        0.0,
+    ],
+    [
+        0.096_460_766_818_065_23,
+        0.01,
+        0.479_889_650_414_499_6,
+        1.379_008_574_103_742,
+        -3.290_069_515_436_081,
+        2.324_710_524_099_774,
+        0.0,
+    ],
+];
+
+/// Weights of order 5 less those of order 4.
+const ERROR: [f64; STAGES] = [
+    -0.001_780_011_052_225_777,
+    -0.000_816_434_459_656_746_9,
+    0.007_880_878_010_261_995,
+    -0.144_711_007_173_262_9,
+    0.582_357_165_452_555_2,
+    -0.458_082_105_929_186_97,
+    1.0 / 66.0,
+];
+
+/// Where in the step each stage is, as a share of it: `c_i = Σ_j A_ij`.
+pub const C: [f64; STAGES] = {
+    let mut c = [0.0; STAGES];
+    let mut k = 0;
+    while k < STAGES * STAGES {
+        c[k / STAGES] += A[k / STAGES][k % STAGES];
+        k += 1;
+    }
+    // Without the last row's rounding.
+    c[STAGES - 1] = 1.0;
+    c
+};
+
+/// Weights of order 5 of each stage.
+pub const WEIGHTS: [f64; STAGES] = A[STAGES - 1];
+
+const A_SQUARED: [[f64; STAGES]; STAGES] = {
+    let mut square = [[0.0; STAGES]; STAGES];
+    let mut k = 0;
+    while k < STAGES * STAGES * STAGES {
+        let (i, j, l) = (k / STAGES / STAGES, k / STAGES % STAGES, k % STAGES);
+        square[i][j] += A[i][l] * A[l][j];
+        k += 1;
+    }
+    square
+};
+
+/// Accelerations of each stage, coordinate by coordinate.
+pub type Accelerations = [Vec<f64>; STAGES];
+
+/// How far the coordinates have come at stage `I` of a step of `h` s, and their rates there, from the
+/// rates at the step's start and the accelerations of the stages before.
+pub fn stage<const I: usize>(
+    h: f64,
+    start: &[f64],
+    accelerations: &Accelerations,
+    shifts: &mut [f64],
+    rates: &mut [f64],
+) {
+    let n = start.len();
+    let a: [&[f64]; STAGES] = std::array::from_fn(|j| &accelerations[j][..n]);
+    let (shifts, rates) = (&mut shifts[..n], &mut rates[..n]);
+    for k in 0..n {
+        let (mut once, mut twice) = (0.0, 0.0);
+        // The bound is a constant: unrolled, and nothing is left of coefficients that are zero.
+        for j in 0..I {
+            once += A[I][j] * a[j][k];
+            twice += A_SQUARED[I][j] * a[j][k];
+        }
+        rates[k] = start[k] + h * once;
+        shifts[k] = h * (C[I] * start[k] + h * twice);
+    }
+}
+
+/// Estimated errors of the rates at the end of a step of `h` s.
+pub fn errors(h: f64, accelerations: &Accelerations, errors: &mut [f64]) {
+    let n = errors.len();
+    let a: [&[f64]; STAGES] = std::array::from_fn(|j| &accelerations[j][..n]);
+    for (k, error) in errors.iter_mut().enumerate() {
+        *error = h * (0..STAGES).map(|j| ERROR[j] * a[j][k]).sum::<f64>();
+    }
+}
+
+/// How far a coordinate has come at the share `s` of a step of `h` s, and its rate there: the quintic through
+/// rates `v`, accelerations `a` and the whole way `shift`. It errs by h⁶, less than the step itself.
+pub fn between(h: f64, s: f64, v: [f64; 2], a: [f64; 2], shift: f64) -> (f64, f64) {
+    let (hv, hha) = (h * v[0], h * h * a[0]);
+    // What the parabola from the start misses at the end: place, slope, curvature.
+    let place = shift - hv - 0.5 * hha;
+    let slope = h * v[1] - hv - hha;
+    let curvature = h * h * a[1] - hha;
+    let c3 = 10.0 * place - 4.0 * slope + 0.5 * curvature;
+    let c4 = -15.0 * place + 7.0 * slope - curvature;
+    let c5 = 6.0 * place - 3.0 * slope + 0.5 * curvature;
+    let way = s * (hv + s * (0.5 * hha + s * (c3 + s * (c4 + s * c5))));
+    (way, (hv + s * (hha + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / h)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One step of `q̈ = a(t, q)` from q = 1 and q̇ = 0.3: place and rate at its end, and the accelerations.
+    fn step(h: f64, a: impl Fn(f64, f64) -> f64) -> ([f64; 2], Accelerations) {
+        let start = [1.0, 0.3];
+        let mut k: Accelerations = std::array::from_fn(|_| vec![0.0]);
+        k[0][0] = a(0.0, start[0]);
+        let (mut shift, mut rate) = ([0.0], [0.0]);
+        macro_rules! at {
+            ($i:literal) => {
+                stage::<$i>(h, &start[1..], &k, &mut shift, &mut rate);
+                k[$i][0] = a(C[$i] * h, start[0] + shift[0]);
+            };
+        }
+        at!(1);
+        at!(2);
+        at!(3);
+        at!(4);
+        at!(5);
+        at!(6);
+        ([start[0] + shift[0], rate[0]], k)
+    }
+
+    /// On the oscillator `q̈ = −q`, whose solution is known: a step's error falls with h⁶, its estimate
+    /// with h⁵, and the quintic between its ends is as good as they are.
+    #[test]
+    fn a_step_has_the_orders_it_claims() {
+        let exact = |t: f64| [t.cos() + 0.3 * t.sin(), -t.sin() + 0.3 * t.cos()];
+        let [coarse, fine] = [0.4, 0.2].map(|h| {
+            let ([q, v], k) = step(h, |_, q| -q);
+            let error = (q - exact(h)[0]).abs().max((v - exact(h)[1]).abs());
+            let mut estimate = [0.0];
+            errors(h, &k, &mut estimate);
+            let (way, rate) = between(h, 0.4, [0.3, v], [-1.0, -q], q - 1.0);
+            let [place, speed] = exact(0.4 * h);
+            let inside = (1.0 + way - place).abs().max((rate - speed).abs());
+            [error, estimate[0].abs(), inside]
+        });
+        let order = |k: usize| (coarse[k] / fine[k]).log2();
+        assert!(order(0) > 5.5, "step: {}", order(0));
+        assert!((order(1) - 5.0).abs() < 0.5, "estimate: {}", order(1));
+        assert!(order(2) > 4.5, "between: {}", order(2));
+        assert!(coarse[0] < coarse[1], "the estimate is that of the lower order");
+    }
+}
