@@ -43,12 +43,7 @@ fn main() {
         study("servo, c = 0.5 mm", servo, 0.05),
         study("servo, gravity", Case { gravity: down, ..servo }, 0.06),
         study("prescribed, gravity", Case { gravity: down, ..base }, 0.03),
-        study(
-            "prescribed, c = 1e-8 m",
-            Case { clearance: 1e-8, ..base },
-            "prescribed_c1e-8.csv",
-            0.2,
-        ),
+        study("prescribed, c = 1e-8 m", Case { clearance: 1e-8, ..base }, 0.2),
     ];
     let friction = Case { friction: 0.1, ..servo };
     let means: Vec<Means> = studies

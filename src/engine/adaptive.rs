@@ -131,7 +131,7 @@ impl Adaptive {
         for (i, point) in self.path_states.iter_mut().enumerate() {
             *point = self.states[i].moved(self.now.accelerations[i], self.jerks[i], tau);
         }
-        self.dynamics.forces(mechanism, t + tau, &self.path_states, &mut self.path);
+        self.dynamics.forces_on_path(mechanism, t + tau, &self.path_states, &mut self.path);
         if self.coupled {
             self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
             self.dynamics.replace_wrenches(&mut self.path);

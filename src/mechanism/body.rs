@@ -35,11 +35,10 @@ impl BodyState {
         }
     }
 
-    /// The same body shifted (m, m) and turned (rad), with the same twist. Its rotation is made a unit again:
-    /// rounding would add up over steps.
+    /// The same body shifted (m, m) and turned (rad), with the same twist.
+    #[inline]
     pub fn displaced(&self, by: Vector3<f64>) -> Self {
-        let mut rotation = self.rotation * turn(by.z);
-        rotation.renormalize_fast();
+        let rotation = self.rotation * turn(by.z);
         Self { position: self.position + by.xy(), rotation, twist: self.twist }
     }
 
@@ -127,6 +126,11 @@ impl Attachment {
     /// Angular velocity in rad/s of the body that carries the point.
     pub fn spin(&self, states: &[BodyState]) -> f64 {
         self.body.map_or(0.0, |i| states[i].twist.z)
+    }
+
+    /// Where the point is, given the states of all bodies.
+    pub fn centre(&self, states: &[BodyState]) -> Vector2<f64> {
+        self.body.map_or(self.point, |i| states[i].position + states[i].rotation * self.point)
     }
 
     /// Where the point is and how it moves, given the states of all bodies.

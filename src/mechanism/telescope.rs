@@ -1,7 +1,7 @@
 //! A prismatic joint at one state, and the motion of the two bodies that it alone connects.
 
 use super::{BodyState, Prismatic};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{UnitComplex, Vector2, Vector3};
 
 /// Geometry of a prismatic joint. With u the joint's axis, n = u turned by +90°, ω the angular
 /// velocity that both bodies share (`u̇ = ω n`, `ṅ = −ω u`), d from the base's centre of mass to
@@ -52,21 +52,41 @@ impl Prismatic {
     }
 }
 
+/// What of a prismatic joint does not depend on the state.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slideway {
+    bodies: [Option<usize>; 2],
+    axis: UnitComplex<f64>,
+    /// Points of base and slider from their centres of mass, along and across the axis, in m.
+    pub points: [Vector2<f64>; 2],
+}
+
+impl Slideway {
+    pub fn new(joint: &Prismatic) -> Self {
+        Self { bodies: joint.bodies(), axis: joint.axes[0], points: joint.points() }
+    }
+}
+
 impl Telescope {
     pub fn new(joint: &Prismatic, states: &[BodyState]) -> Self {
+        Self::on(&Slideway::new(joint), states)
+    }
+
+    #[inline]
+    pub fn on(way: &Slideway, states: &[BodyState]) -> Self {
         let place = |body: Option<usize>| {
             body.map_or((Vector2::zeros(), Vector2::zeros()), |i| {
                 (states[i].position, states[i].twist.xy())
             })
         };
-        let (axis, spin) = joint.base.body.map_or((joint.axes[0], 0.0), |i| {
-            (states[i].rotation * joint.axes[0], states[i].twist.z)
-        });
+        let [base, slider] = way.bodies;
+        let (axis, spin) =
+            base.map_or((way.axis, 0.0), |i| (states[i].rotation * way.axis, states[i].twist.z));
         let (u, n) = (Vector2::new(axis.re, axis.im), Vector2::new(-axis.im, axis.re));
-        let (from, to) = (place(joint.base.body), place(joint.slider.body));
+        let (from, to) = (place(base), place(slider));
         let (d, rate) = (to.0 - from.0, to.1 - from.1);
         let offset = [d.dot(&u), d.dot(&n)];
-        let [base, slider] = joint.points();
+        let [base, slider] = way.points;
         Self {
             u,
             n,

@@ -16,11 +16,12 @@ mod tsitouras;
 
 use self::node::Node;
 use self::onset::next_onset;
-use self::tsitouras::{Accelerations, C, STAGES, WEIGHTS, errors, stage};
+use self::tsitouras::{Accelerations, C, STAGES, WEIGHTS, error, stage};
 use super::adaptive::share;
 use super::energy::Exchange;
 use super::stepper::Stepper;
 use crate::mechanism::{Body, BodyState, Drive, Dynamics, Evaluation, Mechanism, Situation};
+use nalgebra::Vector3;
 
 /// First step in s, before anything is known of the error.
 const FIRST_STEP: f64 = 1e-5;
@@ -87,12 +88,10 @@ pub(super) struct Direct {
 
 /// The way from a step's start to its end.
 struct Path {
-    /// How far each coordinate has come, its rates at the start and at a stage, and their errors at the end.
-    shifts: Vec<f64>,
-    start: Vec<f64>,
-    rates: Vec<f64>,
-    errors: Vec<f64>,
-    accelerations: Accelerations,
+    /// How far each body has come (m, m, rad).
+    shifts: Vec<Vector3<f64>>,
+    /// Accelerations of each body at each stage.
+    accelerations: Vec<Accelerations>,
     /// Normal force of each joint at each stage, N.
     pressed: [Vec<f64>; STAGES],
 }
@@ -126,7 +125,7 @@ impl Direct {
     /// are tight.
     pub fn new(mechanism: &Mechanism, tolerance: f64) -> Self {
         let joints = mechanism.revolutes.len();
-        let zeros = vec![0.0; 3 * mechanism.bodies.len()];
+        let zeros = vec![Vector3::zeros(); mechanism.bodies.len()];
         let node = Node::new(mechanism);
         Self {
             tolerance: step_tolerance(tolerance) * share(mechanism),
@@ -135,10 +134,7 @@ impl Direct {
             beyond: !mechanism.actuators.iter().any(|a| matches!(a.drive, Drive::Sampled(_))),
             path: Path {
                 shifts: zeros.clone(),
-                start: zeros.clone(),
-                rates: zeros.clone(),
-                errors: zeros.clone(),
-                accelerations: std::array::from_fn(|_| zeros.clone()),
+                accelerations: vec![[Vector3::zeros(); STAGES]; zeros.len()],
                 pressed: std::array::from_fn(|_| vec![0.0; joints]),
             },
             since: Since {
@@ -194,7 +190,7 @@ impl Direct {
     fn step(&mut self, mechanism: &Mechanism, until: f64) {
         self.dynamics.remember(mechanism, self.end.t, &self.end.states);
         std::mem::swap(&mut self.start, &mut self.end);
-        self.path.begin(&self.start);
+        self.path.keep(0, &self.start);
         self.forced = false;
         let [mut h, after_onset] = self.bounds(mechanism);
         loop {
@@ -212,7 +208,7 @@ impl Direct {
             self.dynamics.forget_singular();
             self.go(mechanism, h);
             self.end.t = reached;
-            self.step_error = self.error();
+            self.step_error = self.error(h);
             let ratio = self.step_error / self.tolerance;
             // Shorter steps do not help against the errors of a nearly singular pose.
             self.forced = self.dynamics.was_singular() && h <= SINGULAR_STEP && ratio > 1.0;
@@ -242,21 +238,29 @@ impl Direct {
         self.stage::<4>(mechanism, h);
         self.stage::<5>(mechanism, h);
         self.stage::<6>(mechanism, h);
-        errors(h, &self.path.accelerations, &mut self.path.errors);
     }
 
     fn stage<const I: usize>(&mut self, mechanism: &Mechanism, h: f64) {
-        let Path { shifts, start, rates, accelerations, pressed, .. } = &mut self.path;
-        stage::<I>(h, start, accelerations, shifts, rates);
+        let Path { shifts, accelerations, .. } = &mut self.path;
         let end = &mut self.end;
         end.t = self.start.t + C[I] * h;
-        end.place(&self.start.states, shifts, rates);
+        let bodies = self.start.states.iter().zip(&mut end.states);
+        for ((from, state), (shift, a)) in bodies.zip(shifts.iter_mut().zip(accelerations)) {
+            let (by, twist) = stage::<I>(h, from.twist, a);
+            *state = BodyState { twist, ..from.displaced(by) };
+            *shift = by;
+        }
         if I + 1 == STAGES {
+            for state in &mut end.states {
+                state.rotation.renormalize_fast();
+            }
             let Node { t, states, evaluation, .. } = end;
             self.dynamics.project(mechanism, *t, states, shifts, evaluation);
+            end.evaluate(&mut self.dynamics, mechanism);
+        } else {
+            end.evaluate_on_path(&mut self.dynamics, mechanism);
         }
-        end.evaluate(&mut self.dynamics, mechanism);
-        Path::keep(&mut accelerations[I], &mut pressed[I], end);
+        self.path.keep(I, end);
         if WEIGHTS[I] != 0.0 {
             for (amount, flow) in end.amounts.iter_mut().zip(&end.flows) {
                 *amount += h * WEIGHTS[I] * flow;
@@ -264,12 +268,13 @@ impl Direct {
         }
     }
 
-    /// Estimated error of the last step in m/s; an angular speed counts with the radius of gyration.
-    fn error(&self) -> f64 {
+    /// Estimated error of the last step of `h` s in m/s; an angular speed counts with the radius of gyration.
+    fn error(&self, h: f64) -> f64 {
         let mut worst = 0.0;
-        for (error, radius) in self.path.errors.chunks_exact(3).zip(&self.radii) {
-            let turn = error[2] * radius;
-            let square = error[0] * error[0] + error[1] * error[1] + turn * turn;
+        for (a, radius) in self.path.accelerations.iter().zip(&self.radii) {
+            let error = error(h, a);
+            let turn = error.z * radius;
+            let square = error.x * error.x + error.y * error.y + turn * turn;
             // What is no number stays.
             if square.is_nan() || square > worst {
                 worst = square;
@@ -306,20 +311,12 @@ impl Direct {
 }
 
 impl Path {
-    /// Starts at a node.
-    fn begin(&mut self, from: &Node) {
-        for (rates, state) in self.start.chunks_exact_mut(3).zip(&from.states) {
-            rates.copy_from_slice(state.twist.as_slice());
+    /// Keeps what acts at a stage.
+    fn keep(&mut self, stage: usize, node: &Node) {
+        for (a, now) in self.accelerations.iter_mut().zip(&node.evaluation.accelerations) {
+            a[stage] = *now;
         }
-        Self::keep(&mut self.accelerations[0], &mut self.pressed[0], from);
-    }
-
-    fn keep(accelerations: &mut [f64], pressed: &mut [f64], node: &Node) {
-        let Evaluation { accelerations: found, contacts, .. } = &node.evaluation;
-        for (a, found) in accelerations.chunks_exact_mut(3).zip(found) {
-            a.copy_from_slice(found.as_slice());
-        }
-        for (force, contact) in pressed.iter_mut().zip(contacts) {
+        for (force, contact) in self.pressed[stage].iter_mut().zip(&node.evaluation.contacts) {
             *force = contact.normal_force;
         }
     }

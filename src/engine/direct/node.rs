@@ -39,18 +39,19 @@ impl Node {
         }
     }
 
-    /// Places the bodies, from where they were by `shifts` (m, m, rad each), with these rates.
-    pub fn place(&mut self, from: &[BodyState], shifts: &[f64], rates: &[f64]) {
-        let moves = shifts.chunks_exact(3).zip(rates.chunks_exact(3));
-        for ((state, from), (by, rate)) in self.states.iter_mut().zip(from).zip(moves) {
-            let twist = Vector3::new(rate[0], rate[1], rate[2]);
-            *state = BodyState { twist, ..from.displaced(Vector3::new(by[0], by[1], by[2])) };
-        }
-    }
-
     /// Finds what acts at the states that it has.
     pub fn evaluate(&mut self, dynamics: &mut Dynamics, mechanism: &Mechanism) {
         dynamics.forces(mechanism, self.t, &self.states, &mut self.evaluation);
+        self.accelerate(dynamics, mechanism);
+    }
+
+    /// The same where contacts in flight need not be described.
+    pub fn evaluate_on_path(&mut self, dynamics: &mut Dynamics, mechanism: &Mechanism) {
+        dynamics.forces_on_path(mechanism, self.t, &self.states, &mut self.evaluation);
+        self.accelerate(dynamics, mechanism);
+    }
+
+    fn accelerate(&mut self, dynamics: &mut Dynamics, mechanism: &Mechanism) {
         dynamics.accelerations(mechanism, &self.states, &mut self.evaluation);
         let [total, drives] = dynamics.power(mechanism, &self.states, &self.evaluation);
         (self.flows[TOTAL], self.flows[DRIVES]) = (total, drives);
@@ -61,7 +62,7 @@ impl Node {
     }
 
     /// Makes it the instant `t` (s) between two others; `shifts` is the way from one to the other.
-    pub fn interpolate(&mut self, [from, to]: [&Node; 2], shifts: &[f64], t: f64) {
+    pub fn interpolate(&mut self, [from, to]: [&Node; 2], shifts: &[Vector3<f64>], t: f64) {
         let h = to.t - from.t;
         let s = (t - from.t) / h;
         self.t = t;
@@ -71,7 +72,7 @@ impl Node {
             let (mut by, mut twist) = (Vector3::zeros(), Vector3::zeros());
             for k in 0..3 {
                 (by[k], twist[k]) =
-                    between(h, s, [a.twist[k], b.twist[k]], [start[k], end[k]], shifts[3 * i + k]);
+                    between(h, s, [a.twist[k], b.twist[k]], [start[k], end[k]], shifts[i][k]);
             }
             *state = BodyState { twist, ..a.displaced(by) };
         }

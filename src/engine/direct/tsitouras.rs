@@ -6,6 +6,8 @@
 //!
 //! `v_i = v + h Σ_j A_ij a_j`, `q_i − q = h c_i v + h² Σ_j (A²)_ij a_j`.
 
+use nalgebra::Vector3;
+
 /// Stages, the first one the last of the step before.
 pub const STAGES: usize = 7;
 
@@ -82,40 +84,36 @@ const A_SQUARED: [[f64; STAGES]; STAGES] = {
     square
 };
 
-/// Accelerations of each stage, coordinate by coordinate.
-pub type Accelerations = [Vec<f64>; STAGES];
+/// Accelerations of a body (m/s², m/s², rad/s²) at each stage.
+pub type Accelerations = [Vector3<f64>; STAGES];
 
-/// How far the coordinates have come at stage `I` of a step of `h` s, and their rates there, from the
-/// rates at the step's start and the accelerations of the stages before.
+/// How far a body has come at stage `I` of a step of `h` s, and its twist there, from its twist at the step's
+/// start and its accelerations at the stages before.
+#[inline]
 pub fn stage<const I: usize>(
     h: f64,
-    start: &[f64],
-    accelerations: &Accelerations,
-    shifts: &mut [f64],
-    rates: &mut [f64],
-) {
-    let n = start.len();
-    let a: [&[f64]; STAGES] = std::array::from_fn(|j| &accelerations[j][..n]);
-    let (shifts, rates) = (&mut shifts[..n], &mut rates[..n]);
-    for k in 0..n {
-        let (mut once, mut twice) = (0.0, 0.0);
-        // The bound is a constant: unrolled, and nothing is left of coefficients that are zero.
-        for j in 0..I {
-            once += A[I][j] * a[j][k];
-            twice += A_SQUARED[I][j] * a[j][k];
+    start: Vector3<f64>,
+    a: &Accelerations,
+) -> (Vector3<f64>, Vector3<f64>) {
+    let (mut once, mut twice) = (Vector3::zeros(), Vector3::zeros());
+    // The bound is a constant: unrolled, and nothing is left of coefficients that are zero.
+    for j in 0..I {
+        once += a[j] * A[I][j];
+        if A_SQUARED[I][j] != 0.0 {
+            twice += a[j] * A_SQUARED[I][j];
         }
-        rates[k] = start[k] + h * once;
-        shifts[k] = h * (C[I] * start[k] + h * twice);
     }
+    (start * (C[I] * h) + twice * (h * h), start + once * h)
 }
 
-/// Estimated errors of the rates at the end of a step of `h` s.
-pub fn errors(h: f64, accelerations: &Accelerations, errors: &mut [f64]) {
-    let n = errors.len();
-    let a: [&[f64]; STAGES] = std::array::from_fn(|j| &accelerations[j][..n]);
-    for (k, error) in errors.iter_mut().enumerate() {
-        *error = h * (0..STAGES).map(|j| ERROR[j] * a[j][k]).sum::<f64>();
+/// Estimated error of a body's twist at the end of a step of `h` s.
+#[inline]
+pub fn error(h: f64, a: &Accelerations) -> Vector3<f64> {
+    let mut sum = Vector3::zeros();
+    for (j, weight) in ERROR.iter().enumerate() {
+        sum += a[j] * *weight;
     }
+    sum * h
 }
 
 /// How far a coordinate has come at the share `s` of a step of `h` s, and its rate there: the quintic through
@@ -137,16 +135,16 @@ pub fn between(h: f64, s: f64, v: [f64; 2], a: [f64; 2], shift: f64) -> (f64, f6
 mod tests {
     use super::*;
 
-    /// One step of `q̈ = a(t, q)` from q = 1 and q̇ = 0.3: place and rate at its end, and the accelerations.
-    fn step(h: f64, a: impl Fn(f64, f64) -> f64) -> ([f64; 2], Accelerations) {
+    /// One step of `q̈ = a(t, q)` from q = 1 and q̇ = 0.3: place and rate at its end, and the estimate of its error.
+    fn step(h: f64, a: impl Fn(f64, f64) -> f64) -> [f64; 3] {
         let start = [1.0, 0.3];
-        let mut k: Accelerations = std::array::from_fn(|_| vec![0.0]);
-        k[0][0] = a(0.0, start[0]);
-        let (mut shift, mut rate) = ([0.0], [0.0]);
+        let mut k = [Vector3::zeros(); STAGES];
+        k[0].x = a(0.0, start[0]);
+        let (mut shift, mut rate) = (Vector3::zeros(), Vector3::zeros());
         macro_rules! at {
             ($i:literal) => {
-                stage::<$i>(h, &start[1..], &k, &mut shift, &mut rate);
-                k[$i][0] = a(C[$i] * h, start[0] + shift[0]);
+                (shift, rate) = stage::<$i>(h, Vector3::x() * start[1], &k);
+                k[$i].x = a(C[$i] * h, start[0] + shift.x);
             };
         }
         at!(1);
@@ -155,7 +153,7 @@ mod tests {
         at!(4);
         at!(5);
         at!(6);
-        ([start[0] + shift[0], rate[0]], k)
+        [start[0] + shift.x, rate.x, error(h, &k).x]
     }
 
     /// On the oscillator `q̈ = −q`, whose solution is known: a step's error falls with h⁶, its estimate
@@ -164,14 +162,12 @@ mod tests {
     fn a_step_has_the_orders_it_claims() {
         let exact = |t: f64| [t.cos() + 0.3 * t.sin(), -t.sin() + 0.3 * t.cos()];
         let [coarse, fine] = [0.4, 0.2].map(|h| {
-            let ([q, v], k) = step(h, |_, q| -q);
+            let [q, v, estimate] = step(h, |_, q| -q);
             let error = (q - exact(h)[0]).abs().max((v - exact(h)[1]).abs());
-            let mut estimate = [0.0];
-            errors(h, &k, &mut estimate);
             let (way, rate) = between(h, 0.4, [0.3, v], [-1.0, -q], q - 1.0);
             let [place, speed] = exact(0.4 * h);
             let inside = (1.0 + way - place).abs().max((rate - speed).abs());
-            [error, estimate[0].abs(), inside]
+            [error, estimate.abs(), inside]
         });
         let order = |k: usize| (coarse[k] / fine[k]).log2();
         assert!(order(0) > 5.5, "step: {}", order(0));

@@ -18,7 +18,7 @@ impl Dynamics {
         match mechanism.actuators[index].joint {
             JointIndex::Prismatic(i) => {
                 let state = &mut self.prismatics[i];
-                *state = Telescope::new(&mechanism.prismatics[i], states);
+                *state = Telescope::on(&self.ways[i], states);
                 [state.length, state.length_rate]
             }
             JointIndex::Revolute(i) => {

@@ -10,12 +10,12 @@ mod projection;
 
 use self::groups::Group;
 use super::constraints::{Constraints, Rigid, groups};
-use super::telescope::Telescope;
+use super::telescope::{Slideway, Telescope};
 use super::{
     Bearing, BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic,
     Situation, angle_near,
 };
-use crate::contact::circle_in_ring;
+use crate::contact::{Contact, circle_in_ring};
 use nalgebra::{Vector2, Vector3};
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
@@ -33,6 +33,8 @@ pub struct Dynamics {
     coupled: bool,
     /// Whether any drive prescribes its coordinate.
     prescribes: bool,
+    /// What of each prismatic joint stays.
+    ways: Vec<Slideway>,
     /// Each prismatic joint at the state last asked for.
     prismatics: Vec<Telescope>,
     /// The drive that prescribes each prismatic joint's length.
@@ -101,6 +103,7 @@ impl Dynamics {
             telescopes,
             groups: others,
             singular: false,
+            ways: mechanism.prismatics.iter().map(Slideway::new).collect(),
             prismatics: mechanism
                 .prismatics
                 .iter()
@@ -159,33 +162,39 @@ impl Dynamics {
     ) {
         out.t = t;
         out.wrenches.copy_from_slice(&self.weights);
+        for i in 0..mechanism.revolutes.len() {
+            contact(i, mechanism, states, out);
+        }
+        self.push(mechanism, t, states, out);
+    }
+
+    /// The same at a point of a step's path, where nobody asks where journals in flight are: contacts without
+    /// a force are not described.
+    pub fn forces_on_path(
+        &mut self,
+        mechanism: &Mechanism,
+        t: f64,
+        states: &[BodyState],
+        out: &mut Evaluation,
+    ) {
+        out.t = t;
+        out.wrenches.copy_from_slice(&self.weights);
         for (i, joint) in mechanism.revolutes.iter().enumerate() {
-            let contact = &mut out.contacts[i];
-            let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
-            if let Bearing::Clearance(clearance) = &joint.bearing {
-                let (state, forces) = match &joint.out_of_round {
-                    None => clearance.forces(&ring, &journal),
-                    Some(shape) => {
-                        shape.forces(clearance, joint.ring.rotation(states), &ring, &journal)
-                    }
-                };
-                *contact = state;
+            let Bearing::Clearance(clearance) = &joint.bearing else { continue };
+            let eccentricity = joint.journal.centre(states) - joint.ring.centre(states);
+            let flies = eccentricity.norm() - clearance.radial() <= 0.0;
+            if flies && joint.out_of_round.is_none() {
+                out.contacts[i] = Contact::default();
                 out.reactions[i] = Vector2::zeros();
-                if let Some([on_bearing, on_journal]) = forces {
-                    out.reactions[i] = on_journal.xy();
-                    add(&mut out.wrenches, joint.ring.body, on_bearing);
-                    add(&mut out.wrenches, joint.journal.body, on_journal);
-                }
             } else {
-                contact.eccentricity = journal.centre - ring.centre;
-                if let Bearing::Native { bearing_radius, journal_radius, .. } = joint.bearing {
-                    let clearance = bearing_radius - journal_radius;
-                    let (penetration, normal) = circle_in_ring(contact.eccentricity, clearance);
-                    contact.penetration = penetration;
-                    contact.rate = (journal.velocity - ring.velocity).dot(&normal);
-                }
+                contact(i, mechanism, states, out);
             }
         }
+        self.push(mechanism, t, states, out);
+    }
+
+    /// Adds what drives and loads do.
+    fn push(&mut self, mechanism: &Mechanism, t: f64, states: &[BodyState], out: &mut Evaluation) {
         self.drive(mechanism, t, states, out);
         let at = Situation { t: mechanism.epoch + t, mechanism, states };
         for (load, memory) in mechanism.loads.iter().zip(&self.memories) {
@@ -220,7 +229,7 @@ impl Dynamics {
             *a = w.component_mul(m);
         }
         for &i in &self.passive {
-            self.prismatics[i] = Telescope::new(&mechanism.prismatics[i], states);
+            self.prismatics[i] = Telescope::on(&self.ways[i], states);
         }
         for (length, state) in out.lengths.iter_mut().zip(&self.prismatics) {
             *length = state.length;
@@ -274,6 +283,34 @@ impl Dynamics {
         for ((w, a), m) in out.wrenches.iter_mut().zip(&out.accelerations).zip(&self.masses) {
             *w = a.component_mul(m);
         }
+    }
+}
+
+/// Describes revolute joint `i`, and adds what its contact does.
+fn contact(i: usize, mechanism: &Mechanism, states: &[BodyState], out: &mut Evaluation) {
+    let joint = &mechanism.revolutes[i];
+    let contact = &mut out.contacts[i];
+    let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
+    let Bearing::Clearance(clearance) = &joint.bearing else {
+        contact.eccentricity = journal.centre - ring.centre;
+        if let Bearing::Native { bearing_radius, journal_radius, .. } = joint.bearing {
+            let clearance = bearing_radius - journal_radius;
+            let (penetration, normal) = circle_in_ring(contact.eccentricity, clearance);
+            contact.penetration = penetration;
+            contact.rate = (journal.velocity - ring.velocity).dot(&normal);
+        }
+        return;
+    };
+    let (state, forces) = match &joint.out_of_round {
+        None => clearance.forces(&ring, &journal),
+        Some(shape) => shape.forces(clearance, joint.ring.rotation(states), &ring, &journal),
+    };
+    *contact = state;
+    out.reactions[i] = Vector2::zeros();
+    if let Some([on_bearing, on_journal]) = forces {
+        out.reactions[i] = on_journal.xy();
+        add(&mut out.wrenches, joint.ring.body, on_bearing);
+        add(&mut out.wrenches, joint.journal.body, on_journal);
     }
 }
 

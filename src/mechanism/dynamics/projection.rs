@@ -24,7 +24,7 @@ impl Dynamics {
         mechanism: &Mechanism,
         t: f64,
         states: &mut [BodyState],
-        shifts: &mut [f64],
+        shifts: &mut [Vector3<f64>],
         out: &mut Evaluation,
     ) {
         out.t = t;
@@ -32,7 +32,7 @@ impl Dynamics {
             out.command(mechanism);
         }
         for k in 0..self.telescopes.len() {
-            self.project_telescope(k, mechanism, states, shifts, &out.commands);
+            self.project_telescope(k, states, shifts, &out.commands);
         }
         for g in 0..self.groups.len() {
             self.project_group(g, mechanism, states, shifts, &out.commands);
@@ -42,17 +42,15 @@ impl Dynamics {
     /// Two bodies on one axis: `d·n = w` and `ḋ·n = ω d·u`, and of a prescribed length the same along u; both
     /// bodies' common centre of mass stays. (Both turn with one angular acceleration.)
     fn project_telescope(
-        &mut self,
+        &self,
         k: usize,
-        mechanism: &Mechanism,
         states: &mut [BodyState],
-        shifts: &mut [f64],
+        shifts: &mut [Vector3<f64>],
         commands: &[Command],
     ) {
         let (i, bodies) = self.telescopes[k];
-        let joint = &mechanism.prismatics[i];
-        let state = Telescope::new(joint, states);
-        let [base, slider] = joint.points();
+        let state = Telescope::on(&self.ways[i], states);
+        let [base, slider] = self.ways[i].points;
         let Telescope { u, n, offset: [length, side], rate, spin, .. } = state;
         let mut missed = n * (side + slider.y - base.y);
         let mut missed_rate = n * (rate.dot(&n) - spin * length);
@@ -66,8 +64,7 @@ impl Dynamics {
             let (by, faster) = (missed * share, missed_rate * share);
             states[body].position += by;
             states[body].twist += faster.push(0.0);
-            shifts[3 * body] += by.x;
-            shifts[3 * body + 1] += by.y;
+            shifts[body] += by.push(0.0);
         }
     }
 
@@ -76,7 +73,7 @@ impl Dynamics {
         g: usize,
         mechanism: &Mechanism,
         states: &mut [BodyState],
-        shifts: &mut [f64],
+        shifts: &mut [Vector3<f64>],
         commands: &[Command],
     ) {
         let conditions = self.conditions(g, mechanism, states, commands);
@@ -90,13 +87,11 @@ impl Dynamics {
             changed
         };
         let by = change(self, &|c| c.missed, vec![Vector3::zeros(); states.len()]);
-        let twists = states.iter().map(|state| state.twist).collect();
+        let twists: Vec<_> = states.iter().map(|state| state.twist).collect();
         let twists = change(self, &|c| -c.rate, twists);
-        for (i, (state, (by, twist))) in states.iter_mut().zip(by.iter().zip(twists)).enumerate() {
-            *state = BodyState { twist, ..state.displaced(*by) };
-            for (shift, by) in shifts[3 * i..3 * i + 3].iter_mut().zip(by.iter()) {
-                *shift += by;
-            }
+        for (i, state) in states.iter_mut().enumerate() {
+            *state = BodyState { twist: twists[i], ..state.displaced(by[i]) };
+            shifts[i] += by[i];
         }
     }
 
