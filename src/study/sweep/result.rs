@@ -98,6 +98,8 @@ pub(super) fn put(place: &Path, name: &str, content: impl AsRef<[u8]>) -> Result
     fs::write(&unfinished, content)
         .and_then(|()| sync::file(&unfinished))
         .and_then(|()| fs::rename(&unfinished, place.join(name)))
+        // On a disk that is full the half of it is in the way. The error is that of the writing.
+        .inspect_err(|_| drop(fs::remove_file(&unfinished)))
         .map_err(refused(name))?;
     sync::names(place);
     Ok(())
