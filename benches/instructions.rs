@@ -7,14 +7,22 @@
 mod common;
 
 use common::{Case, SERVO};
-use freeplay::engine::{Schedule, StepControl, run};
+use freeplay::engine::{Schedule, StepControl, run, run_balanced};
+use std::ops::ControlFlow::Continue;
 use std::process::Command;
+use std::sync::atomic::AtomicBool;
 
-const CASES: [(&str, StepControl, bool); 4] = [
-    ("fixed 1e-5 s, prescribed", StepControl::Fixed(1e-5), false),
-    ("tolerance 1e-5 m/s, prescribed", StepControl::Tolerance(1e-5), false),
-    ("tolerance 1e-5 m/s, servo", StepControl::Tolerance(1e-5), true),
-    ("tolerance 1e-4 m/s, prescribed", StepControl::Tolerance(1e-4), false),
+/// What is run: its name, the control of the step, whether servos drive it, whether its energy is balanced.
+type Counted = (&'static str, StepControl, bool, bool);
+
+const CASES: [Counted; 7] = [
+    ("fixed 1e-5 s, prescribed", StepControl::Fixed(1e-5), false, false),
+    ("the same, energy balanced", StepControl::Fixed(1e-5), false, true),
+    ("tolerance 1e-5 m/s, prescribed", StepControl::Tolerance(1e-5), false, false),
+    ("the same, energy balanced", StepControl::Tolerance(1e-5), false, true),
+    ("tolerance 1e-5 m/s, servo", StepControl::Tolerance(1e-5), true, false),
+    ("the same, energy balanced", StepControl::Tolerance(1e-5), true, true),
+    ("tolerance 1e-4 m/s, prescribed", StepControl::Tolerance(1e-4), false, false),
 ];
 
 /// Simulated time of the shorter and of the longer run, in s; their difference is what counts.
@@ -44,10 +52,17 @@ fn main() {
     }
 }
 
-fn simulate((_, control, servo): (&str, StepControl, bool), duration: f64) -> u64 {
+fn simulate((_, control, servo, balanced): Counted, duration: f64) -> u64 {
     let case = if servo { Case { drive: SERVO, ..Case::default() } } else { Case::default() };
     let schedule = Schedule { duration, interval: 5e-4 };
-    run(&case.mechanism(), control, schedule, &mut |_| {}).map_or(0, |work| work.steps)
+    let mechanism = case.mechanism();
+    let never = AtomicBool::new(false);
+    let work = if balanced {
+        run_balanced(&mechanism, control, schedule, &never, &mut |_| Continue(()))
+    } else {
+        run(&mechanism, control, schedule, &mut |_| {})
+    };
+    work.map_or(0, |work| work.steps)
 }
 
 /// Instructions and steps of a run in a process of its own.

@@ -51,8 +51,8 @@ fn a_comparison_writes_everything_that_was_promised() {
     let csv = place.read("freeplay-compare-default/compare.csv");
     assert_eq!(csv.lines().count(), 9);
     let columns = csv.lines().map(|line| line.split(',').count());
-    assert!(columns.eq([37; 9]), "{csv}");
-    assert!(csv.starts_with("law,step_s,tolerance_m_s,resolved,starts,halted,steps_per_s,"));
+    assert!(columns.eq([38; 9]), "{csv}");
+    assert!(csv.starts_with("law,step_s,tolerance_m_s,resolved,starts,halted,faulty,steps_per_s,"));
 
     let page = place.read("freeplay-compare-default/index.html");
     let answer = page.find("<section id=\"answer\">").unwrap();
@@ -137,6 +137,23 @@ fn a_pendulum_with_clearance_is_compared() {
     assert_eq!(law["law"], "hertz-step");
     let peak = &law["quantities"]["rms_acceleration_deviation_m_s2"];
     assert!(peak["sem"].as_f64().unwrap() > 0.0, "{peak}");
+}
+
+/// A tolerance that resolves no hit: its figures stood in the table like any others, with exit code 0.
+#[test]
+fn a_comparison_whose_runs_do_not_balance_says_so() {
+    let place = Place::new();
+    let sets = "--set simulation.tolerance=0.1 --set simulation.settle=0.05";
+    let line = format!("compare --duration 0.15 --steps 1e-4 --starts 2 --out c {sets}");
+    let done = place.freeplay(&line);
+    assert_eq!(done.code, 1, "{}", done.out);
+    assert!(done.err.contains("error: hertz-step at the tolerance: "), "{}", done.err);
+    assert!(done.err.contains("of 2 runs: the energy is off by "), "{}", done.err);
+    let json: Value = serde_json::from_str(&place.read("c/compare.json")).unwrap();
+    let mut rows = json["rows"].as_array().unwrap().iter();
+    let loose = rows.find(|row| row["law"] == "hertz-step" && row["resolved"] == true).unwrap();
+    assert_eq!((&loose["tolerance_m_s"], &loose["faulty"]), (&0.1.into(), &2.into()));
+    assert!(place.read("c/index.html").contains("2 with faults)"));
 }
 
 #[test]

@@ -260,3 +260,74 @@ fn a_reader_that_goes_away_is_no_error() {
         assert_eq!(place.read("code"), "0\n", "{line}");
     }
 }
+
+/// A file system of 1 MB at `disk` in a place, as long as this lives.
+#[cfg(target_os = "linux")]
+struct Disk(std::path::PathBuf);
+
+#[cfg(target_os = "linux")]
+impl Disk {
+    fn new(place: &Place) -> Self {
+        let path = place.path("disk");
+        std::fs::create_dir(&path).unwrap();
+        let mount = "-t tmpfs -o size=1m tmpfs".split(' ');
+        let done = Command::new("mount").args(mount).arg(&path).status().unwrap();
+        assert!(done.success(), "only root may mount");
+        Self(path)
+    }
+
+    /// Fills it up to so many free bytes.
+    fn leave(&self, free: usize) {
+        let fill = self.0.join("fill");
+        let _ = std::fs::write(&fill, vec![0; 1 << 20]);
+        let file = std::fs::OpenOptions::new().write(true).open(&fill).unwrap();
+        let taken = file.metadata().unwrap().len();
+        file.set_len(taken.saturating_sub(free as u64)).unwrap();
+    }
+}
+
+#[cfg(target_os = "linux")]
+impl Drop for Disk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(&self.0).status();
+    }
+}
+
+/// Wherever the disk gets full: an earlier result stands, nothing else is left, and finished rows of a sweep are kept.
+#[cfg(target_os = "linux")]
+#[test]
+#[ignore = "mounts a file system of 1 MB, which takes root"]
+fn a_full_disk_leaves_nothing_half_done() {
+    let place = Place::new();
+    let disk = Disk::new(&place);
+    place.good("run --duration 0.03 --out disk/old --quiet");
+    let sweep = "sweep --vary motion.phase=0..1:9 --duration 0.02 --quiet";
+    for free in [0, 8, 20, 50, 100, 200] {
+        disk.leave(1024 * free);
+        for command in [
+            "run --duration 0.02 --out disk/old --force",
+            "run --duration 0.02 --out disk/new",
+            "run --duration 5 --set simulation.tolerance=1e-3 --out disk/new",
+            "compare --duration 0.06 --steps 1e-4 --starts 2 --out disk/new",
+        ] {
+            let old = place.read("disk/old/timeseries.csv");
+            let done = place.freeplay(&format!("{command} --quiet"));
+            if done.code == 0 {
+                // It fitted after all.
+                let _ = std::fs::remove_dir_all(place.path("disk/new"));
+                continue;
+            }
+            assert!(matches!(done.code, 1 | 2), "{free} kB, {command}: {}", done.code);
+            assert!(done.err.contains("No space left"), "{free} kB, {command}: {}", done.err);
+            assert_eq!(names(&disk.0), ["fill", "old"], "{free} kB, {command}");
+            assert_eq!(place.read("disk/old/timeseries.csv"), old, "{free} kB, {command}");
+            assert!(whole(&place.path("disk/old"), "summary.json").is_some());
+        }
+        let done = place.freeplay(&format!("{sweep} --out disk/rows"));
+        assert!(done.code == 0 || done.err.contains("No space left"), "{}", done.err);
+        assert!(!place.path("disk/rows/unfinished.tmp").exists());
+        disk.leave(1 << 20);
+        place.good(&format!("{sweep} --out disk/rows"));
+        std::fs::remove_dir_all(place.path("disk/rows")).unwrap();
+    }
+}

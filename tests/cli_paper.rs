@@ -150,3 +150,19 @@ fn wrong_input_is_refused() {
     assert_eq!(place.freeplay("paper --phases 1").code, 2);
     assert_eq!(place.freeplay("paper scenario.toml").code, 2);
 }
+
+/// A tolerance that resolves no hit: claims were judged by such runs, with exit code 0.
+#[test]
+fn a_study_whose_runs_do_not_balance_says_so() {
+    let place = Place::new();
+    let sets = "--set simulation.tolerance=0.1 --set simulation.settle=0.05";
+    let done = place.freeplay(&format!("paper --duration 0.1 --phases 2 --out p {sets}"));
+    assert_eq!(done.code, 1, "{}", done.out);
+    assert!(done.err.contains("error: assumed at 5e-4 m of clearance: "), "{}", done.err);
+    assert!(done.err.contains("of 2 runs: the energy is off by "), "{}", done.err);
+    let json: Value = serde_json::from_str(&place.read("p/paper.json")).unwrap();
+    let cases = json["variants"][0]["cases"].as_array().unwrap();
+    let faulty: u64 = cases.iter().map(|case| case["faulty"].as_u64().unwrap()).sum();
+    assert!(faulty > 0, "{cases:?}");
+    assert!(place.read("p/index.html").contains("runs with faults"));
+}

@@ -170,7 +170,8 @@ fn finer(place: &Place, summary: &Value) -> Result<(), String> {
     if off <= 2e-6 { Ok(()) } else { Err(format!("is off by {off:e} m before {until} s: {own}")) }
 }
 
-/// Tries machines, every tenth of those that ran once more with a hundredth of the tolerance; prints what became of them.
+/// Tries machines, every tenth of those that ran once more with a hundredth of the tolerance; prints what became of each
+/// at once (a campaign may be stopped), and of all.
 fn campaign(numbers: std::ops::Range<u64>) {
     let tried = |number: u64| -> (&'static str, Result<&'static str, String>) {
         let (kind, text) = machine(number);
@@ -190,6 +191,7 @@ fn campaign(numbers: std::ops::Range<u64>) {
             Ok(Fate::Refused) => Ok("refused"),
             Err(wrong) => Err(wrong),
         };
+        println!("{number} {kind}: {}", word.as_ref().map_or("WRONG", |word| word));
         (kind, word.map_err(|wrong| format!("{number} ({kind}): {wrong}")))
     };
     let all: Vec<_> = numbers.into_par_iter().map(tried).collect();

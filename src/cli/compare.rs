@@ -1,6 +1,6 @@
 //! `freeplay compare`: one motion under several contact models.
 
-use super::failure::{Failure, refuse_errors};
+use super::failure::{Failure, refuse_errors, refuse_faults};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::progress::Progress;
 use crate::report::number;
@@ -73,7 +73,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     progress.clear();
     let compared = compared?;
     arguments.print.result(&compared.json, || text(&compared))?;
-    Ok(())
+    refuse_faults(&compared.comparison.faults())
 }
 
 impl From<CompareError> for Failure {
@@ -140,10 +140,12 @@ fn text(compared: &Compared) -> String {
             number(row.wall_s_per_simulated_s),
             if row.halted > 0 {
                 "  broke down"
-            } else if row.resolved {
-                ""
-            } else {
+            } else if !row.resolved {
                 "  step too long"
+            } else if row.faulty > 0 {
+                "  has faults"
+            } else {
+                ""
             }
         );
     }

@@ -10,6 +10,9 @@ use std::process::ExitCode;
 /// Most problems that are told one by one: those after them mostly follow from these.
 const TOLD: usize = 50;
 
+/// Most faults of a result that are told: a study has hundreds of runs, and what ails one ails others.
+const FAULTS: usize = 5;
+
 /// A command that did not do what was asked.
 #[derive(Debug)]
 pub(super) enum Failure {
@@ -113,4 +116,16 @@ pub(super) fn refuse_errors(findings: Vec<Finding>) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Input(errors.iter().map(|error| error.problem.to_string()).collect()))
+}
+
+/// Fails if runs of a result, which is written, saw faults of their own.
+pub(super) fn refuse_faults(faults: &[String]) -> Result<(), Failure> {
+    if faults.is_empty() {
+        return Ok(());
+    }
+    let mut message = faults.iter().take(FAULTS).map(String::as_str).collect::<Vec<_>>().join("; ");
+    if faults.len() > FAULTS {
+        message += &format!("; … and {} more, in the result", faults.len() - FAULTS);
+    }
+    Err(Failure::Other(message))
 }

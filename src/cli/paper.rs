@@ -1,6 +1,6 @@
 //! `freeplay paper`: the paper's study.
 
-use super::failure::Failure;
+use super::failure::{Failure, refuse_faults};
 use super::options::{FolderOptions, Overrides, PrintOptions};
 use super::progress::Progress;
 use crate::report::number;
@@ -50,7 +50,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     progress.clear();
     let studied = studied?;
     arguments.print.result(&studied.json, || text(&studied))?;
-    Ok(())
+    refuse_faults(&studied.paper.faults())
 }
 
 impl From<PaperError> for Failure {

@@ -1,6 +1,6 @@
 //! `freeplay run`: simulate a scenario.
 
-use super::failure::{Failure, refuse_errors};
+use super::failure::{Failure, refuse_errors, refuse_faults};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::output;
 use super::progress::Progress;
@@ -74,8 +74,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     }
     match outcome.summary.halted {
         None if outcome.summary.interrupted => Err(signals::interrupted()),
-        None if !watched.faults.is_empty() => Err(Failure::Other(watched.faults.join("; "))),
-        None => Ok(()),
+        None => refuse_faults(&watched.faults),
         Some(reason) => Err(Failure::Other(reason)),
     }
 }

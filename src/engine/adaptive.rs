@@ -11,7 +11,7 @@
 //! the forward half of the last average got wrong is made good in the next, where the path is known
 //! better: `kick = ∫F over the past step − forward part given before + forward part`.
 
-use super::energy::{Exchange, Power};
+use super::energy::{Books, Exchange, Power};
 use super::stepper::Stepper;
 use super::world::{Target, World, joint_advance};
 use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism, Situation};
@@ -58,10 +58,8 @@ pub(super) struct Adaptive {
     step_error: f64,
     /// Whether the last step was taken although its error exceeds the tolerance.
     forced: bool,
-    /// Power now and where the last step began, and what that exchanged.
-    power: Power,
-    previous_power: Power,
-    exchange: Exchange,
+    /// Kept only where somebody asked for the balance.
+    books: Option<Books>,
     /// Work space: a point of the predicted path.
     path_states: Vec<BodyState>,
     path: Evaluation,
@@ -89,8 +87,8 @@ pub(super) fn share(mechanism: &Mechanism) -> f64 {
 
 impl Adaptive {
     /// Steps with a velocity error of about `tolerance` m/s each, less where joints are tight (see
-    /// [`share`]).
-    pub fn new(mechanism: &Mechanism, tolerance: f64) -> Self {
+    /// [`share`]); with `books` it keeps what a balance of energy needs.
+    pub fn new(mechanism: &Mechanism, tolerance: f64, books: Option<Books>) -> Self {
         let bodies = mechanism.bodies.len();
         let zeros = vec![Vector3::zeros(); bodies];
         let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
@@ -115,9 +113,7 @@ impl Adaptive {
             next_step: FIRST_STEP,
             step_error: 0.0,
             forced: false,
-            power: Power::default(),
-            previous_power: Power::default(),
-            exchange: Exchange::default(),
+            books,
             ends: zeros.clone(),
             sums: zeros.clone(),
             turns: vec![0.0; bodies],
@@ -138,7 +134,24 @@ impl Adaptive {
         }
     }
 
-    /// The past step once more, on the corrected path: the sum of its forces, their peaks and their work.
+    /// Enters the present power in the books.
+    fn book(&mut self, mechanism: &Mechanism) {
+        if let Some(books) = &mut self.books {
+            books.now = Power::of(&self.dynamics, mechanism, &self.states, &self.now);
+        }
+    }
+
+    /// Power at the point of the path that was looked at last, a share `s` into the past step.
+    fn power_inside(&mut self, mechanism: &Mechanism, s: f64) -> Power {
+        if !self.coupled {
+            self.path.command_between(&self.previous_commands, &self.now.commands, s);
+            self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
+        }
+        Power::of(&self.dynamics, mechanism, &self.path_states, &self.path)
+    }
+
+    /// The past step once more, on the corrected path: the sum of its forces, their peaks and, where books are
+    /// kept, their work.
     fn look_back(&mut self, mechanism: &Mechanism, t: f64) {
         let hp = self.previous_step;
         self.peaks.fill(0.0);
@@ -151,11 +164,9 @@ impl Adaptive {
             let mut inside = [Power::default(); 2];
             for (power, s) in inside.iter_mut().zip(NODES) {
                 self.look(mechanism, t, -hp * (1.0 - s));
-                if !self.coupled {
-                    self.path.command_between(&self.previous_commands, &self.now.commands, s);
-                    self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
+                if self.books.is_some() {
+                    *power = self.power_inside(mechanism, s);
                 }
-                *power = Power::of(&self.dynamics, mechanism, &self.path_states, &self.path);
                 for (sum, w) in self.sums.iter_mut().zip(&self.path.wrenches) {
                     *sum += w * 5.0;
                 }
@@ -163,16 +174,13 @@ impl Adaptive {
                     *peak = peak.max(contact.normal_force);
                 }
             }
-            let [outer, inner] = [1.0 / 12.0, 5.0 / 12.0];
-            self.exchange = Exchange::over(
-                hp,
-                [
-                    (outer, self.previous_power),
-                    (inner, inside[0]),
-                    (inner, inside[1]),
-                    (outer, self.power),
-                ],
-            );
+            if let Some(books) = &mut self.books {
+                let [outer, inner] = [1.0 / 12.0, 5.0 / 12.0];
+                let [first, second] = inside;
+                let rule =
+                    [(outer, books.before), (inner, first), (inner, second), (outer, books.now)];
+                books.exchange = Exchange::over(hp, rule);
+            }
         }
     }
 
@@ -218,7 +226,7 @@ impl Stepper for Adaptive {
             self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
             self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
         }
-        self.power = Power::of(&self.dynamics, mechanism, &self.states, &self.now);
+        self.book(mechanism);
         if self.coupled {
             self.dynamics.replace_wrenches(&mut self.now);
         }
@@ -247,7 +255,7 @@ impl Stepper for Adaptive {
     }
 
     fn exchange(&self) -> Option<Exchange> {
-        Some(self.exchange)
+        self.books.map(|books| books.exchange)
     }
 
     fn forced(&self) -> bool {
@@ -259,7 +267,7 @@ impl Stepper for Adaptive {
         self.dynamics.sample(mechanism, t, &self.states, due);
         self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
         self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
-        self.power = Power::of(&self.dynamics, mechanism, &self.states, &self.now);
+        self.book(mechanism);
         if self.coupled {
             self.dynamics.replace_wrenches(&mut self.now);
         }
@@ -267,7 +275,9 @@ impl Stepper for Adaptive {
 
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         self.dynamics.remember(mechanism, t, &self.states);
-        self.previous_power = self.power;
+        if let Some(books) = &mut self.books {
+            books.before = books.now;
+        }
         self.forced = false;
         let hp = self.previous_step;
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {

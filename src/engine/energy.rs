@@ -48,6 +48,15 @@ impl Exchange {
     }
 }
 
+/// What a way of stepping keeps for the balance: powers now and where the last step began, in W, and what that
+/// step exchanged.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Books {
+    pub now: Power,
+    pub before: Power,
+    pub exchange: Exchange,
+}
+
 /// Where the energy of a run went, in J since its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
@@ -86,10 +95,11 @@ pub(super) struct Ledger {
 }
 
 impl Ledger {
-    pub fn new(mechanism: &Mechanism) -> Self {
+    /// Of a way of stepping that says `exchanged` before its first step: nothing if it keeps no books.
+    pub fn new(mechanism: &Mechanism, exchanged: Option<Exchange>) -> Self {
         let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
         let start = [kinetic(mechanism, &states), potential(mechanism, &states)];
-        Self { start, done: Some(Exchange::default()), energy: Energy::default() }
+        Self { start, done: exchanged, energy: Energy::default() }
     }
 
     /// Takes what a step exchanged, if that is known: otherwise there is no balance.
@@ -103,10 +113,10 @@ impl Ledger {
 
     /// Draws the balance of a row.
     pub fn row(&mut self, mechanism: &Mechanism, states: &[BodyState]) -> Option<Energy> {
+        let Exchange { total, drives, turned_over } = self.done?;
         let now = kinetic(mechanism, states);
         let gained = now - self.start[0];
         let gravity = potential(mechanism, states) - self.start[1];
-        let Exchange { total, drives, turned_over } = self.done?;
         let Energy { most_kinetic, imbalance, .. } = self.energy;
         self.energy = Energy {
             put_in: drives,
@@ -150,16 +160,22 @@ pub(super) fn drift(mechanism: &Mechanism, states: &[BodyState]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::engine::{Energy, Schedule, run};
+    use crate::engine::{Energy, Instant, Schedule, run, run_balanced};
     use crate::model::assemble;
     use crate::scenario::Scenario;
+    use std::ops::ControlFlow::Continue;
+    use std::sync::atomic::AtomicBool;
 
     fn energy(sets: &[&str], duration: f64) -> Energy {
         let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
         let scenario = Scenario::load(None, &sets).expect("right");
         let machine = assemble(&scenario).expect("put together");
         let schedule = Schedule { duration, interval: 1e-3 };
-        let ended = run(&machine.mechanism, machine.control, schedule, &mut |_| {});
+        let never = AtomicBool::new(false);
+        let ended =
+            run_balanced(&machine.mechanism, machine.control, schedule, &never, &mut |_| {
+                Continue(())
+            });
         ended.unwrap_or_else(|halt| *halt.work).energy.expect("under a law")
     }
 
@@ -190,5 +206,33 @@ mod tests {
     fn energy_from_nowhere_is_seen() {
         let energy = energy(&["contact.c_max=1e6"], 0.3);
         assert!(energy.share() > 0.05, "{energy:?}");
+    }
+
+    /// Keeping the balance costs evaluations that nobody else needs, and must not move anything.
+    #[test]
+    fn the_balance_is_kept_only_where_it_is_asked_for_and_moves_nothing() {
+        for (kind, set) in [
+            ("3rpr", "drive.mode=servo"),
+            ("3rpr", "simulation.step=1e-5"),
+            ("four-bar", "simulation.tolerance=1e-5"),
+            ("four-bar", "simulation.step=1e-5"),
+        ] {
+            let text = format!("mechanism.kind = '{kind}'\n");
+            let scenario = Scenario::from_text(&text, "t", &[set.to_owned()]).expect("right");
+            let machine = assemble(&scenario).expect("put together");
+            let schedule = Schedule { duration: 0.05, interval: 1e-3 };
+            let (mechanism, control) = (&machine.mechanism, machine.control);
+            let [mut without, mut with] = [Vec::new(), Vec::new()];
+            let bits = |instant: &Instant| format!("{:?}{:?}", instant.states, instant.tallies);
+            let plain = run(mechanism, control, schedule, &mut |i| without.push(bits(i)));
+            let never = AtomicBool::new(false);
+            let balanced = run_balanced(mechanism, control, schedule, &never, &mut |instant| {
+                with.push(bits(instant));
+                Continue(())
+            });
+            let [plain, balanced] = [plain, balanced].map(|work| work.expect("runs to its end"));
+            assert!(plain.energy.is_none() && balanced.energy.is_some(), "{kind}, {set}");
+            assert!(without == with, "{kind}, {set}: the balance moved the machine");
+        }
     }
 }

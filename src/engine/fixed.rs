@@ -9,8 +9,8 @@
 //! That is the velocity-Verlet scheme, symmetric in time: on the reference curves its error is a
 //! seventh of the extrapolation's, and a tenth in the rebound of one hit.
 
-use super::energy::{Exchange, Power};
-use super::stepper::{Stepper, equal_step};
+use super::energy::{Books, Exchange, Power};
+use super::stepper::{Stepper, even_step, meant};
 use super::world::{Target, World, joint_advance};
 use crate::mechanism::{BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
@@ -43,15 +43,13 @@ pub(super) struct Fixed {
     inside: Evaluation,
     touched: bool,
     peaks: Vec<f64>,
-    /// Power now and where the last step began, and what that exchanged.
-    power: Power,
-    previous_power: Power,
-    exchange: Exchange,
+    /// Kept only where somebody asked for the balance.
+    books: Option<Books>,
 }
 
 impl Fixed {
-    /// Steps of at most `step` s.
-    pub fn new(mechanism: &Mechanism, step: f64) -> Self {
+    /// Steps of at most `step` s; with `books` it keeps what a balance of energy needs.
+    pub fn new(mechanism: &Mechanism, step: f64, books: Option<Books>) -> Self {
         let zeros = vec![Vector3::zeros(); mechanism.bodies.len()];
         let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
         let dynamics = Dynamics::new(mechanism);
@@ -72,16 +70,16 @@ impl Fixed {
             inside: Evaluation::new(mechanism),
             touched: false,
             peaks: vec![0.0; mechanism.revolutes.len()],
-            power: Power::default(),
-            previous_power: Power::default(),
-            exchange: Exchange::default(),
+            books,
         }
     }
 
     fn evaluate(&mut self, mechanism: &Mechanism, t: f64) {
         self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
         self.dynamics.accelerations(mechanism, &self.states, &mut self.now);
-        self.power = Power::of(&self.dynamics, mechanism, &self.states, &self.now);
+        if let Some(books) = &mut self.books {
+            books.now = Power::of(&self.dynamics, mechanism, &self.states, &self.now);
+        }
     }
 
     /// Largest contact forces inside the step that ends at `t`.
@@ -127,14 +125,20 @@ impl Stepper for Fixed {
             self.dynamics.replace_wrenches(&mut self.now);
         }
         if h > 0.0 {
-            // The trapezoidal rule is of the stepping's own order.
-            self.exchange = Exchange::over(h, [(0.5, self.previous_power), (0.5, self.power)]);
+            if let Some(books) = &mut self.books {
+                // The trapezoidal rule is of the stepping's own order.
+                books.exchange = Exchange::over(h, [(0.5, books.before), (0.5, books.now)]);
+            }
             self.look_inside(mechanism, t);
         }
     }
 
     fn states(&self) -> &[BodyState] {
         &self.states
+    }
+
+    fn instant(&self, t: f64) -> f64 {
+        meant(t)
     }
 
     fn evaluation(&self) -> &Evaluation {
@@ -146,7 +150,7 @@ impl Stepper for Fixed {
     }
 
     fn exchange(&self) -> Option<Exchange> {
-        Some(self.exchange)
+        self.books.map(|books| books.exchange)
     }
 
     // The kick of a full step is centred here: half of it belongs to the forces of before.
@@ -166,8 +170,10 @@ impl Stepper for Fixed {
 
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         self.dynamics.remember(mechanism, t, &self.states);
-        self.previous_power = self.power;
-        let (dt, reached) = equal_step(self.step, t, until);
+        if let Some(books) = &mut self.books {
+            books.before = books.now;
+        }
+        let (dt, reached) = even_step(self.step, t, until);
         // The first step is a half kick: v_½ = v_0 + (h/2) a_0.
         let first = self.previous_step == 0.0;
         let kick = if first { 0.5 } else { 1.0 };

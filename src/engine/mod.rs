@@ -32,7 +32,10 @@ pub use dispatcher::RingDispatcher;
 pub use energy::Energy;
 pub use halt::{Halt, MOST_STEPS_PER_S};
 pub use ring::BearingRing;
-pub use run::{Engine, Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Work, run, run_while};
+pub use run::{
+    Engine, Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Work, run, run_balanced,
+    run_while,
+};
 pub use watch::{Peaks, Tally};
 
 use nalgebra::Vector2;

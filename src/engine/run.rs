@@ -3,7 +3,7 @@
 use super::adaptive::Adaptive;
 use super::clock::Clock;
 use super::direct::Direct;
-use super::energy::{Energy, Ledger, drift};
+use super::energy::{Books, Energy, Ledger, drift};
 use super::fixed::Fixed;
 use super::halt::{Halt, Pace, TOO_MANY_STEPS, impossible, likely_cause};
 use super::native::Native;
@@ -136,8 +136,8 @@ pub struct Work {
     pub forced_steps: u64,
     /// How far rigid joints had come apart in a row, in m.
     pub drift: f64,
-    /// Where the energy went, up to the last row; none of native contacts, whose forces are known as
-    /// impulses only.
+    /// Where the energy went, up to the last row; none where nobody asked ([`run_balanced`]), and of native contacts,
+    /// whose forces are known as impulses only.
     pub energy: Option<Energy>,
 }
 
@@ -183,14 +183,35 @@ pub fn run_while(
     stop: &AtomicBool,
     observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
-    let native = mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Native { .. }));
-    let mut stepper: Box<dyn Stepper> = match control {
-        StepControl::Fixed(step) if native => Box::new(Native::new(mechanism, step)),
-        StepControl::Fixed(step) => Box::new(Fixed::new(mechanism, step)),
-        StepControl::Tolerance(tolerance) => Box::new(Adaptive::new(mechanism, tolerance)),
-        StepControl::Direct(tolerance) => Box::new(Direct::new(mechanism, tolerance)),
-    };
+    drive(&mut *stepper(mechanism, control, None), mechanism, control, schedule, stop, observe)
+}
+
+/// [`run_while`] that also keeps the balance of energy ([`Work::energy`]). That takes up to 7 % more instructions.
+///
+/// # Errors
+/// [`Halt`] when a state turns impossible or steps too short; the rows handed out before stand.
+pub fn run_balanced(
+    mechanism: &Mechanism,
+    control: StepControl,
+    schedule: Schedule,
+    stop: &AtomicBool,
+    observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
+) -> Result<Work, Halt> {
+    let mut stepper = stepper(mechanism, control, Some(Books::default()));
     drive(&mut *stepper, mechanism, control, schedule, stop, observe)
+}
+
+/// The way of stepping that a mechanism and its control ask for.
+fn stepper(mechanism: &Mechanism, control: StepControl, books: Option<Books>) -> Box<dyn Stepper> {
+    let native = mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Native { .. }));
+    match control {
+        StepControl::Fixed(step) if native => Box::new(Native::new(mechanism, step)),
+        StepControl::Fixed(step) => Box::new(Fixed::new(mechanism, step, books)),
+        StepControl::Tolerance(tolerance) => Box::new(Adaptive::new(mechanism, tolerance, books)),
+        StepControl::Direct(tolerance) => {
+            Box::new(Direct::new(mechanism, tolerance, books.is_some()))
+        }
+    }
 }
 
 fn drive(
@@ -206,10 +227,10 @@ fn drive(
     let mut t = 0.0;
     let mut clock = Clock::new(mechanism);
     let mut pace = Pace::new(control);
-    let mut ledger = Ledger::new(mechanism);
+    let mut ledger = Ledger::new(mechanism, stepper.exchange());
     let mut stepped = false;
     for row in 0..=schedule.intervals() {
-        let until = schedule.time(row);
+        let until = stepper.instant(schedule.time(row));
         loop {
             stepper.synchronise(mechanism, t);
             let (states, now) = (stepper.states(), stepper.evaluation());
@@ -233,7 +254,8 @@ fn drive(
             if clock.due(t) {
                 stepper.sample(mechanism, t, &clock.due);
             }
-            let reached = stepper.advance(mechanism, t, clock.end(until));
+            let end = stepper.instant(clock.end(until));
+            let reached = stepper.advance(mechanism, t, end);
             let dt = reached - t;
             stepped = true;
             watch.elapse(dt);

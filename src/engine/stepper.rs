@@ -30,6 +30,11 @@ pub(super) trait Stepper {
     /// Makes one step from `t` of at most `until − t` s; returns the time reached, exactly `until`
     /// if it got there.
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
+    /// The instant at which steps end where `t` (s), the time of a row or a sample, is asked for: where its steps are
+    /// on a grid, that of the grid, which differs by rounding at most.
+    fn instant(&self, t: f64) -> f64 {
+        t
+    }
     /// Estimated velocity error of the last step in m/s, if there is an estimate.
     fn step_error(&self) -> Option<f64> {
         None
@@ -58,4 +63,20 @@ pub(super) fn equal_step(step: f64, t: f64, until: f64) -> (f64, f64) {
     let count = (span / step * (1.0 - 1e-9)).ceil().max(1.0);
     let dt = span / count;
     (dt, if count == 1.0 { until } else { t + dt })
+}
+
+/// [`equal_step`] on a grid that does not depend on where rows are: steps that mean `step` have exactly that length,
+/// and times that mean a decimal are it ([`meant`]).
+pub(super) fn even_step(step: f64, t: f64, until: f64) -> (f64, f64) {
+    let (dt, reached) = equal_step(step, t, until);
+    let dt = if (dt - step).abs() <= 1e-9 * step { step } else { dt };
+    (dt, if reached == until { until } else { meant(reached) })
+}
+
+/// 0.3 for 0.30000000000000004: the decimal of at most 12 places (1 ps) that a time in s differs from by rounding only,
+/// so that the same instant is the same number however it was reached.
+pub(super) fn meant(t: f64) -> f64 {
+    const PLACES: f64 = 1e12;
+    let decimal = (t * PLACES).round() / PLACES;
+    if (decimal - t).abs() <= 8.0 * f64::EPSILON * t.abs() { decimal } else { t }
 }

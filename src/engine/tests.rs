@@ -36,13 +36,13 @@ fn colliders_do_not_show_in_the_trajectory() {
         let crowded = || World::new(&mechanism, true);
         assert!((0..6).all(|joint| crowded().colliders.pair(joint).is_some()));
 
-        let mut fixed = [(); 2].map(|()| Fixed::new(&mechanism, 1e-5));
+        let mut fixed = [(); 2].map(|()| Fixed::new(&mechanism, 1e-5, None));
         fixed[1].world = crowded();
         let [without, with] = fixed.each_mut().map(|stepper| go(stepper, &mechanism));
         assert!(without.2 > 1000, "{drive:?}: contact in {} steps only", without.2);
         assert_eq!(without, with, "{drive:?}, fixed step");
 
-        let mut adaptive = [(); 2].map(|()| Adaptive::new(&mechanism, 1e-5));
+        let mut adaptive = [(); 2].map(|()| Adaptive::new(&mechanism, 1e-5, None));
         adaptive[1].world = crowded();
         let [without, with] = adaptive.each_mut().map(|stepper| go(stepper, &mechanism));
         assert!(without.2 > 100, "{drive:?}: contact in {} steps only", without.2);

@@ -6,6 +6,7 @@
 //! by one and in constant memory.
 
 mod checks;
+mod measured;
 mod provenance;
 mod summary;
 mod three_rpr;
@@ -17,6 +18,7 @@ pub use crate::model::{
     radial_clearance,
 };
 pub use checks::{Finding, Severity, findings};
+pub use measured::measured;
 pub use provenance::Provenance;
 pub use summary::{JointSummary, Recorder, Summary};
 pub use timeseries::TimeSeries;

@@ -127,7 +127,7 @@ fn run_into(
     let mut looks = Vec::new();
     let ideal = &mut machine.ideal;
     let (control, schedule, stop) = (machine.control, machine.schedule, terms.stop);
-    let ended = engine::run_while(mechanism, control, schedule, stop, &mut |instant| {
+    let ended = engine::run_balanced(mechanism, control, schedule, stop, &mut |instant| {
         let ideal = ideal.at(instant.t);
         recorder.row(mechanism, instant, &ideal);
         gallery.row(mechanism, instant, &ideal);

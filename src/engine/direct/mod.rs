@@ -106,7 +106,7 @@ struct Since {
     peaks: Vec<f64>,
     work: Vec<f64>,
     brushes: Vec<bool>,
-    exchange: Exchange,
+    exchange: Option<Exchange>,
 }
 
 /// Velocity error in m/s that a step of the pair may make for a run to be as good as one of the physics engine
@@ -122,11 +122,11 @@ fn step_tolerance(tolerance: f64) -> f64 {
 
 impl Direct {
     /// Steps that make a run about as exact as the physics engine's with `tolerance` (m/s), less where joints
-    /// are tight.
-    pub fn new(mechanism: &Mechanism, tolerance: f64) -> Self {
+    /// are tight; `balanced` ones keep what a balance of energy needs.
+    pub fn new(mechanism: &Mechanism, tolerance: f64, balanced: bool) -> Self {
         let joints = mechanism.revolutes.len();
         let zeros = vec![Vector3::zeros(); mechanism.bodies.len()];
-        let node = Node::new(mechanism);
+        let node = Node::new(mechanism, balanced);
         Self {
             tolerance: step_tolerance(tolerance) * share(mechanism),
             dynamics: Dynamics::new(mechanism),
@@ -144,7 +144,7 @@ impl Direct {
                 peaks: vec![0.0; joints],
                 work: vec![0.0; joints],
                 brushes: vec![false; joints],
-                exchange: Exchange::default(),
+                exchange: None,
             },
             start: node.clone(),
             inside: node.clone(),
@@ -364,7 +364,7 @@ impl Stepper for Direct {
     }
 
     fn exchange(&self) -> Option<Exchange> {
-        Some(self.since.exchange)
+        self.since.exchange
     }
 
     fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]) {

@@ -24,11 +24,13 @@ pub struct Node {
     /// Energies exchanged since the start in J, and their rates in W.
     pub amounts: Vec<f64>,
     pub flows: Vec<f64>,
+    /// Whether those of the whole machine are kept.
+    balanced: bool,
 }
 
 impl Node {
     /// The start of a run; nothing is evaluated yet.
-    pub fn new(mechanism: &Mechanism) -> Self {
+    pub fn new(mechanism: &Mechanism, balanced: bool) -> Self {
         let amounts = vec![0.0; JOINTS + mechanism.revolutes.len()];
         Self {
             t: 0.0,
@@ -36,6 +38,7 @@ impl Node {
             evaluation: Evaluation::new(mechanism),
             flows: amounts.clone(),
             amounts,
+            balanced,
         }
     }
 
@@ -53,9 +56,11 @@ impl Node {
 
     fn accelerate(&mut self, dynamics: &mut Dynamics, mechanism: &Mechanism) {
         dynamics.accelerations(mechanism, &self.states, &mut self.evaluation);
-        let [total, drives] = dynamics.power(mechanism, &self.states, &self.evaluation);
-        (self.flows[TOTAL], self.flows[DRIVES]) = (total, drives);
-        self.flows[TURNED_OVER] = total.abs();
+        if self.balanced {
+            let [total, drives] = dynamics.power(mechanism, &self.states, &self.evaluation);
+            (self.flows[TOTAL], self.flows[DRIVES]) = (total, drives);
+            self.flows[TURNED_OVER] = total.abs();
+        }
         for (flow, contact) in self.flows[JOINTS..].iter_mut().zip(&self.evaluation.contacts) {
             *flow = contact.normal_force * contact.rate;
         }
@@ -85,10 +90,14 @@ impl Node {
         }
     }
 
-    /// What has been exchanged since the amounts were those.
-    pub fn exchange(&self, since: &[f64]) -> Exchange {
+    /// What has been exchanged since the amounts were those, where that is kept.
+    pub fn exchange(&self, since: &[f64]) -> Option<Exchange> {
         let of = |k: usize| self.amounts[k] - since[k];
-        Exchange { total: of(TOTAL), drives: of(DRIVES), turned_over: of(TURNED_OVER) }
+        self.balanced.then(|| Exchange {
+            total: of(TOTAL),
+            drives: of(DRIVES),
+            turned_over: of(TURNED_OVER),
+        })
     }
 
     /// What the normal force of each joint has taken since then.

@@ -14,7 +14,7 @@ mod verdict;
 
 pub use first_hit::{FirstHit, FirstHits};
 pub use plan::Options;
-pub(in crate::study) use probe::quantile;
+pub(in crate::study) use probe::{Forces, quantile};
 pub use quantities::{QUANTITIES, Quantity};
 pub use result::{ChaosResult, Comparison, NativeResult, RowResult, TrendResult};
 pub use statistics::{Behaviour, Mean, Trend};
@@ -214,6 +214,7 @@ fn chaos_result(looks: &[Chaos]) -> Option<ChaosResult> {
 
 fn row_result(row: &plan::Row, runs: &[Measured]) -> RowResult {
     let good = || runs.iter().filter(|run| run.halted.is_none());
+    let faulty = || good().filter(|run| !run.faults.is_empty());
     let mean = |f: &dyn Fn(&Measured) -> f64| Mean::of(good().map(f));
     RowResult {
         law: row.law,
@@ -222,6 +223,8 @@ fn row_result(row: &plan::Row, runs: &[Measured]) -> RowResult {
         resolved: row.resolved,
         starts: row.starts,
         halted: runs.len() - good().count(),
+        faulty: faulty().count(),
+        faults: faulty().next().map_or(Vec::new(), |run| run.faults.clone()),
         steps_per_s: mean(&|run| run.steps_per_s).mean,
         wall_s_per_simulated_s: mean(&|run| run.cost).mean,
         quantities: (0..quantities::COUNT).map(|i| mean(&|run| run.values[i])).collect(),

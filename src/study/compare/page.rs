@@ -119,10 +119,11 @@ fn row_name(row: &RowResult) -> String {
         (None, Some(tolerance)) => format!("tolerance {}", number(tolerance)),
         (None, None) => String::new(),
     };
-    let remark = match (row.resolved, row.halted) {
-        (_, halted) if halted > 0 => format!(" ({halted} broke down)"),
-        (false, _) => " (too long)".to_owned(),
-        (true, _) => String::new(),
+    let remark = match (row.resolved, row.halted, row.faulty) {
+        (_, halted, _) if halted > 0 => format!(" ({halted} broke down)"),
+        (false, ..) => " (too long)".to_owned(),
+        (true, _, faulty) if faulty > 0 => format!(" ({faulty} with faults)"),
+        (true, ..) => String::new(),
     };
     format!("{}, {how}{remark}", law_key(row.law))
 }
@@ -151,7 +152,9 @@ fn law_over_steps(c: &Comparison) -> Table {
     Table {
         id: "law-steps",
         title: "The law at its steps".into(),
-        note: "\"Too long\": the step does not resolve the law's hits, or a servo.".into(),
+        note: "\"Too long\": the step does not resolve the law's hits, or a servo. \"With faults\": runs whose \
+               energy does not balance, or whose rigid joints came apart."
+            .into(),
         ..columns_table(&columns)
     }
 }

@@ -2,12 +2,11 @@
 
 use super::SAMPLE_INTERVAL;
 use super::quantities::COUNT;
-use crate::engine::{self, Instant, Work};
+use crate::engine::Instant;
 use crate::mechanism::JointIndex;
 use crate::scenario::Scenario;
-use crate::simulate::{Machine, Recorder};
+use crate::simulate::{Machine, Summary, measured};
 use nalgebra::Vector2;
-use std::time::Instant as Clock;
 
 /// Rows in a mean of the acceleration: 10 ms, long against a hit and short against a motion.
 const SMOOTHING: usize = 100;
@@ -23,7 +22,9 @@ pub struct Measured {
     pub cost: f64,
     /// Why it stopped early, if it did.
     pub halted: Option<String>,
-    /// Contact forces in N of all joints that touch, at the rows after the start that is left out.
+    /// What it saw of its own faults, in words.
+    pub faults: Vec<String>,
+    /// Contact forces in N of all joints that touch, at rows after the start that is left out ([`Forces`]).
     pub forces: Vec<f64>,
 }
 
@@ -34,16 +35,10 @@ pub fn measure(
     machine: &mut Machine,
     progress: &mut dyn FnMut(f64),
 ) -> Measured {
-    let started = Clock::now();
     let settle = scenario.simulation.settle();
-    let mechanism = &machine.mechanism;
-    let mut recorder = Recorder::new(mechanism, settle);
     let mut probe = Probe::default();
-    let ideal = &mut machine.ideal;
     let mut told = 0.0;
-    let ended = engine::run(mechanism, machine.control, machine.schedule, &mut |instant| {
-        let ideal = ideal.at(instant.t);
-        recorder.row(mechanism, instant, &ideal);
+    let summary = measured(scenario, machine, &mut |mechanism, instant, ideal| {
         if instant.t >= settle {
             let platform = mechanism.output_state(instant.states).twist.xy();
             probe.row(instant, platform - ideal.velocity);
@@ -54,11 +49,7 @@ pub fn measure(
         }
     });
     progress(machine.schedule.duration - told);
-    let (work, halted) = match ended {
-        Ok(work) => (work, None),
-        Err(halt) => (*halt.work, Some(halt.to_string())),
-    };
-    probe.finish(recorder, scenario, machine, work, started.elapsed().as_secs_f64(), halted)
+    probe.finish(summary, machine)
 }
 
 /// What a summary does not gather.
@@ -71,7 +62,7 @@ struct Probe {
     smooth: (f64, usize),
     /// Energy taken by the contacts up to the first and the last row, J.
     energy: [f64; 2],
-    forces: Vec<f64>,
+    forces: Forces,
 }
 
 impl Probe {
@@ -90,21 +81,11 @@ impl Probe {
             self.velocity = velocity;
         }
         self.rows += 1;
-        let forces = instant.evaluation.contacts.iter().map(|contact| contact.normal_force);
-        self.forces.extend(forces.filter(|force| *force > 0.0));
+        self.forces.row(instant.evaluation.contacts.iter().map(|contact| contact.normal_force));
     }
 
-    fn finish(
-        mut self,
-        recorder: Recorder,
-        scenario: &Scenario,
-        machine: &Machine,
-        work: Work,
-        wall: f64,
-        halted: Option<String>,
-    ) -> Measured {
-        let s = recorder.finish(scenario, machine, work, wall, halted, Vec::new());
-        self.forces.sort_by(f64::total_cmp);
+    fn finish(self, s: Summary, machine: &Machine) -> Measured {
+        let forces = self.forces.sorted();
         let clearance = s.joints.iter().any(|joint| joint.clearance_m.is_some());
         // An ideal joint transmits forces, but nothing in it touches or gives way.
         let contact = |value: f64| if clearance { value } else { f64::NAN };
@@ -120,9 +101,9 @@ impl Probe {
             s.peak_platform_acceleration_m_s2,
             force(s.rms_actuator_force_deviation),
             force(s.peak_actuator_force),
-            contact(quantile(&self.forces, 0.5)),
-            contact(quantile(&self.forces, 0.95)),
-            contact(quantile(&self.forces, 0.99)),
+            contact(quantile(&forces, 0.5)),
+            contact(quantile(&forces, 0.95)),
+            contact(quantile(&forces, 0.99)),
             contact(s.peak_contact_force),
             contact(s.largest_penetration_m),
             contact(s.contact_fraction),
@@ -131,7 +112,51 @@ impl Probe {
         ];
         let steps_per_s = s.steps as f64 / s.simulated_s;
         let cost = s.wall_s_per_simulated_s;
-        Measured { values, steps_per_s, cost, halted: s.halted, forces: self.forces }
+        let (halted, faults) = (s.halted, s.watched.faults);
+        Measured { values, steps_per_s, cost, halted, faults, forces }
+    }
+}
+
+/// Contact forces of all joints that touch, row by row, as many as fit: of every row until [`MOST_FORCES`] are
+/// there, then of every 2nd row, every 4th, …
+#[derive(Debug)]
+pub struct Forces {
+    /// Each with its row.
+    kept: Vec<(usize, f64)>,
+    /// One row in so many is kept.
+    stride: usize,
+    rows: usize,
+}
+
+/// Most contact forces kept of a run, 2 MB while it lasts and 1 MB after it: those of the paper's machine for 1.5 s at
+/// least. Their 99 % quantile then has a thousand above it.
+const MOST_FORCES: usize = 1 << 17;
+
+impl Default for Forces {
+    fn default() -> Self {
+        Self { kept: Vec::new(), stride: 1, rows: 0 }
+    }
+}
+
+impl Forces {
+    /// Takes the forces of the joints at the next row, in N.
+    pub fn row(&mut self, forces: impl Iterator<Item = f64>) {
+        let row = self.rows;
+        if row.is_multiple_of(self.stride) {
+            self.kept.extend(forces.filter(|force| *force > 0.0).map(|force| (row, force)));
+        }
+        while self.kept.len() > MOST_FORCES {
+            self.stride *= 2;
+            self.kept.retain(|(row, _)| row.is_multiple_of(self.stride));
+        }
+        self.rows += 1;
+    }
+
+    /// The forces kept, in N, smallest first.
+    pub fn sorted(self) -> Vec<f64> {
+        let mut forces: Vec<f64> = self.kept.into_iter().map(|(_, force)| force).collect();
+        forces.sort_by(f64::total_cmp);
+        forces
     }
 }
 
@@ -139,4 +164,26 @@ impl Probe {
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let last = sorted.len().saturating_sub(1);
     sorted.get((share * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// They were all kept: half a megabyte for each simulated second of each run.
+    #[test]
+    fn forces_of_a_long_run_are_thinned_row_by_row() {
+        let mut forces = Forces::default();
+        let rows = 3 * MOST_FORCES;
+        for row in 0..rows {
+            // Two joints that touch, one at ten times the force of the other, and one that does not.
+            let share = row as f64 / rows as f64;
+            forces.row([1.0 + share, 0.0, 10.0 + share].into_iter());
+        }
+        let sorted = forces.sorted();
+        assert!(sorted.len() <= MOST_FORCES && 2 * sorted.len() > MOST_FORCES, "{}", sorted.len());
+        for (share, expected) in [(0.25, 1.5), (0.75, 10.5), (0.99, 10.98)] {
+            assert!((quantile(&sorted, share) - expected).abs() < 1e-3, "{share}");
+        }
+    }
 }

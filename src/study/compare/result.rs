@@ -1,6 +1,7 @@
 //! `compare.json`: what a comparison came to.
 
 use super::first_hit::FirstHits;
+use super::law_key;
 use super::statistics::{Mean, Trend};
 use super::verdict::Verdict;
 use crate::scenario::{DriveMode, Law};
@@ -77,6 +78,10 @@ pub struct RowResult {
     pub starts: usize,
     /// Runs that broke down, and are left out.
     pub halted: usize,
+    /// Runs with faults (energy that does not balance, rigid joints that came apart); they count like the others.
+    pub faulty: usize,
+    /// What the first of those says, in words.
+    pub faults: Vec<String>,
     /// Steps per simulated second.
     pub steps_per_s: f64,
     /// Time of computing in s per simulated second, on one of the cores in use.
@@ -132,6 +137,22 @@ impl Comparison {
     /// The rows of a law.
     pub fn rows_of(&self, law: Law) -> impl Iterator<Item = &RowResult> {
         self.rows.iter().filter(move |row| row.law == law)
+    }
+
+    /// Rows that should be without faults and are not, in words: those of the law and of ideal joints, at steps that resolve
+    /// them. (Steps that are too long are there to be seen, and the engine's own contacts are judged by the law.)
+    pub fn faults(&self) -> Vec<String> {
+        let faulty = |row: &&RowResult| row.law != Law::Native && row.resolved && row.faulty > 0;
+        let rows = self.rows.iter().filter(faulty);
+        rows.map(|row| {
+            let how = match row.step_s {
+                Some(step) => format!("a step of {step:e} s"),
+                None => "the tolerance".to_owned(),
+            };
+            let (law, faults) = (law_key(row.law), row.faults.join("; "));
+            format!("{law} at {how}: {} of {} runs: {faults}", row.faulty, row.starts)
+        })
+        .collect()
     }
 
     /// The row of a law that is trusted most: the tolerance's, or the shortest step's.

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 /// `compare.csv`: a row per law and step. Times of computing are in `compare.json` alone: the same
 /// comparison gives the same table.
 pub fn csv(comparison: &Comparison) -> String {
-    let mut table = "law,step_s,tolerance_m_s,resolved,starts,halted,steps_per_s".to_owned();
+    let mut table = "law,step_s,tolerance_m_s,resolved,starts,halted,faulty,steps_per_s".to_owned();
     for quantity in &QUANTITIES {
         // Writing to a string cannot fail, here and below.
         let _ = write!(table, ",{},{}_sem", quantity.key, quantity.key);
@@ -23,7 +23,7 @@ pub fn csv(comparison: &Comparison) -> String {
         let (law, resolved) = (law_key(row.law), row.resolved);
         let [step, tolerance] = [row.step_s, row.tolerance_m_s]
             .map(|v| v.map_or_else(String::new, |v| format!("{v:e}")));
-        let runs = format!("{},{}", row.starts, row.halted);
+        let runs = format!("{},{},{}", row.starts, row.halted, row.faulty);
         let _ = write!(table, "{law},{step},{tolerance},{resolved},{runs}");
         let _ = write!(table, ",{}", number(row.steps_per_s));
         for mean in &row.quantities {

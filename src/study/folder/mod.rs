@@ -10,6 +10,7 @@
 mod claim;
 mod making;
 mod swap;
+pub(in crate::study) mod sync;
 
 pub use making::abandon;
 
@@ -158,20 +159,26 @@ impl Folder {
         self.absolute.join(self.marker).exists()
     }
 
-    /// Gives the folder its name, in one step.
+    /// Gives the folder its name, in one step, when the disk has all of its files: a power cut too leaves the
+    /// earlier result or the new one.
     ///
     /// # Errors
     /// If the file system refuses, or if files turned up there meanwhile.
     pub fn finish(mut self) -> Result<PathBuf, FolderError> {
         may_replace(&self.target, self.marker, self.force)?;
+        let failed = |source| FolderError::Name { folder: self.target.clone(), source };
+        sync::files(self.path()).map_err(failed)?;
         // Nobody abandons this between its two names.
         let mut making = making::hold();
-        let named = self.claim.unmark().and_then(|()| swap::name(self.path(), &self.absolute));
+        let named = self.claim.unmark().and_then(|()| {
+            sync::names(self.path());
+            swap::name(self.path(), &self.absolute)
+        });
         if named.is_ok() {
             self.claim.let_go(&mut making);
         }
         drop(making);
-        named.map_err(|source| FolderError::Name { folder: self.target.clone(), source })?;
+        named.map_err(failed)?;
         Ok(self.target.clone())
     }
 }

@@ -1,7 +1,7 @@
 //! How a finished folder gets its name, also where an earlier result has it.
 
 use super::claim::{beside, keep_locked, remove};
-use super::files_of_result;
+use super::{files_of_result, sync};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -16,12 +16,17 @@ pub(super) fn aside(absolute: &Path) -> PathBuf {
 /// # Errors
 /// If the file system refuses; the earlier result stands then.
 pub(super) fn name(made: &Path, absolute: &Path) -> io::Result<()> {
+    let parent = absolute.parent().unwrap_or(absolute);
     if !absolute.exists() {
-        return fs::rename(made, absolute);
+        fs::rename(made, absolute)?;
+        sync::names(parent);
+        return Ok(());
     }
     // The earlier result gets the name of one in the making, where nobody else may find it unlocked.
     let earlier = keep_locked(absolute);
     exchange(made, absolute).or_else(|_| in_two_steps(made, absolute))?;
+    // The earlier result goes when the disk has the new one's name.
+    sync::names(parent);
     // A failure to tidy up is no news: the new result stands, and the next start tries again.
     let _ = remove(made);
     drop(earlier);
@@ -49,6 +54,7 @@ fn in_two_steps(made: &Path, absolute: &Path) -> io::Result<()> {
         fs::rename(&aside, absolute)?;
         return Err(error);
     }
+    sync::names(absolute.parent().unwrap_or(absolute));
     let _ = remove(&aside);
     Ok(())
 }

@@ -164,6 +164,7 @@ fn power(cases: &[CaseResult], item: Item, [from, to]: [f64; 2]) -> (Estimate, S
 mod tests {
     use super::super::claims::{CLAIMS, SENSITIVE, Test};
     use super::super::items::COUNT;
+    use super::super::probe::Measured;
     use super::super::variants::CLEARANCES;
     use super::Item::PathError;
     use super::*;
@@ -173,7 +174,8 @@ mod tests {
         let case = |c: f64| {
             let runs: Vec<Option<_>> = (0..8)
                 .map(|k| if k % 2 == 0 { 1.0 + spread } else { 1.0 - spread })
-                .map(|factor| Some([factor * value(c); COUNT]))
+                .map(|factor| [factor * value(c); COUNT])
+                .map(|values| Some(Measured { values, faults: Vec::new() }))
                 .collect();
             CaseResult::new(c, &runs)
         };

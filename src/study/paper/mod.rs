@@ -167,17 +167,17 @@ pub fn case(
         .into_par_iter()
         .map(|start| {
             let mut machine = machine(scenario, clearance, start, phases)?;
-            let mut values = probe::measure(scenario, &mut machine, progress);
+            let mut measured = probe::measure(scenario, &mut machine, progress);
             // Chaos is claimed of the paper's machine.
             if clearance == LARGE
-                && let Some(values) = &mut values
+                && let Some(run) = &mut measured
             {
                 let window = scenario.simulation.duration.min(chaos::WINDOW);
                 let direction = start as f64 / phases as f64;
                 let exponent = chaos::exponent(&machine.mechanism, window, direction);
-                values[Item::Lyapunov as usize] = exponent.unwrap_or(f64::NAN);
+                run.values[Item::Lyapunov as usize] = exponent.unwrap_or(f64::NAN);
             }
-            Ok(values)
+            Ok(measured)
         })
         .collect::<Result<Vec<_>, Problem>>()?;
     Ok(CaseResult::new(clearance, &runs))

@@ -188,22 +188,32 @@ fn not_given(p: &Paper) -> Vec<String> {
 fn variants(p: &Paper) -> Table {
     let rows = p.variants.iter().map(|variant| {
         let halted: usize = variant.cases.iter().map(|case| case.halted).sum();
+        let faulty: usize = variant.cases.iter().map(|case| case.faulty).sum();
         let sets: Vec<String> = variant.sets.iter().map(|set| format!("--set {set}")).collect();
         vec![
             variant.key.to_owned(),
             variant.label.to_owned(),
             if sets.is_empty() { "–".to_owned() } else { sets.join(" ") },
             halted.to_string(),
+            faulty.to_string(),
         ]
     });
     Table {
         id: "variants",
         title: "The sets of assumptions".into(),
-        header: ["key", "what is changed", "as options of freeplay run", "runs that broke down"]
-            .map(str::to_owned)
-            .into(),
+        header: [
+            "key",
+            "what is changed",
+            "as options of freeplay run",
+            "runs that broke down",
+            "runs with faults",
+        ]
+        .map(str::to_owned)
+        .into(),
         rows: rows.collect(),
-        note: "Runs that break down are left out of all means.".into(),
+        note: "Runs that break down are left out of all means; those with faults (energy that does not balance, \
+               rigid joints that came apart) are not, and end the study with exit code 1."
+            .into(),
     }
 }
 

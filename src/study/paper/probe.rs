@@ -1,10 +1,10 @@
 //! One run of the study, boiled down to numbers.
 
 use super::items::{COUNT, Item, JUMP};
-use crate::engine::{self, Instant};
+use crate::engine::Instant;
 use crate::scenario::Scenario;
-use crate::simulate::{IdealInstant, Machine, Recorder};
-use crate::study::compare::{SAMPLE_INTERVAL, quantile};
+use crate::simulate::{IdealInstant, Machine, measured};
+use crate::study::compare::{Forces, SAMPLE_INTERVAL, quantile};
 use nalgebra::Vector3;
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -20,24 +20,28 @@ const LINEAR: Range<usize> = 0..2;
 const ANGULAR: Range<usize> = 2..3;
 const FORCES: usize = 3;
 
+/// What a run came to.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// The measured quantities.
+    pub values: Values,
+    /// What it saw of its own faults, in words.
+    pub faults: Vec<String>,
+}
+
 /// Runs a machine and measures it. `progress` is told how much time was simulated since it was told
 /// last, in s. `None` if the run broke down.
 pub fn measure(
     scenario: &Scenario,
     machine: &mut Machine,
     progress: &(dyn Fn(f64) + Sync),
-) -> Option<Values> {
+) -> Option<Measured> {
     let settle = scenario.simulation.settle();
-    let mechanism = &machine.mechanism;
-    let mut recorder = Recorder::new(mechanism, settle);
     let mut probe = Probe::default();
-    let ideal = &mut machine.ideal;
     let mut told = 0.0;
-    let ended = engine::run(mechanism, machine.control, machine.schedule, &mut |instant| {
-        let ideal = ideal.at(instant.t);
-        recorder.row(mechanism, instant, &ideal);
+    let s = measured(scenario, machine, &mut |mechanism, instant, ideal| {
         if instant.t >= settle {
-            probe.row(instant, mechanism.output, &ideal);
+            probe.row(instant, mechanism.output, ideal);
         }
         if instant.t - told > 0.02 {
             progress(instant.t - told);
@@ -45,11 +49,13 @@ pub fn measure(
         }
     });
     progress(machine.schedule.duration - told);
-    let s = recorder.finish(scenario, machine, ended.ok()?, 0.0, None, Vec::new());
+    if s.halted.is_some() {
+        return None;
+    }
 
     let mut values = [f64::NAN; COUNT];
     let force_share = |deviation: f64| deviation / probe.ideal.rms(FORCES..probe.ideal.count());
-    probe.contact_forces.sort_by(f64::total_cmp);
+    let contact_forces = probe.contact_forces.sorted();
     for (item, value) in [
         (Item::PeakAcceleration, s.peak_platform_acceleration_m_s2),
         (Item::AccelerationDeviation, s.rms_acceleration_deviation_m_s2),
@@ -57,7 +63,7 @@ pub fn measure(
         (Item::PeakActuatorForce, s.peak_actuator_force),
         (Item::ActuatorDeviation, s.rms_actuator_force_deviation),
         (Item::PeakContactForce, s.peak_contact_force),
-        (Item::ContactForce99, quantile(&probe.contact_forces, 0.99)),
+        (Item::ContactForce99, quantile(&contact_forces, 0.99)),
         (Item::ContactFraction, s.contact_fraction),
         (Item::Impacts, s.impacts_per_s),
         (Item::PathError, s.rms_path_error_m),
@@ -72,7 +78,7 @@ pub fn measure(
     ] {
         values[item as usize] = value;
     }
-    Some(values)
+    Some(Measured { values, faults: s.watched.faults })
 }
 
 /// What a summary does not gather.
@@ -82,8 +88,7 @@ struct Probe {
     ideal: Signals,
     angular_squares: f64,
     smooth: Smooth,
-    /// Normal forces in N of the joints that touch, row by row.
-    contact_forces: Vec<f64>,
+    contact_forces: Forces,
 }
 
 impl Probe {
@@ -95,8 +100,7 @@ impl Probe {
         self.ideal.push(channels(&ideal.acceleration, ideal.drive_forces));
         let deviations = now.drive_forces.iter().zip(ideal.drive_forces);
         self.smooth.push(deviations.map(|(force, ideal)| force - ideal).collect());
-        let forces = now.contacts.iter().map(|contact| contact.normal_force);
-        self.contact_forces.extend(forces.filter(|force| *force > 0.0));
+        self.contact_forces.row(now.contacts.iter().map(|contact| contact.normal_force));
     }
 }
 

@@ -4,7 +4,7 @@ use super::estimate::RunMean;
 use super::items::{COUNT, Item, QUANTITIES};
 use super::judgement::{Judged, Verdict};
 use super::parameters::Parameter;
-use super::probe::Values;
+use super::probe::Measured;
 use crate::simulate::Provenance;
 use crate::study::compare::Quantity;
 use serde::{Serialize, Serializer};
@@ -35,6 +35,23 @@ pub struct Paper {
     pub wall_s: f64,
     /// What stands beside this file.
     pub files: Vec<String>,
+}
+
+impl Paper {
+    /// Variants with runs that have faults, in words.
+    pub fn faults(&self) -> Vec<String> {
+        let cases = self.variants.iter().flat_map(|variant| {
+            let faulty = variant.cases.iter().filter(|case| case.faulty > 0);
+            faulty.map(move |case| (variant.key, case))
+        });
+        cases
+            .map(|(key, case)| {
+                let (clearance, faults) = (case.clearance_m, case.faults.join("; "));
+                let (faulty, all) = (case.faulty, self.phases);
+                format!("{key} at {clearance:e} m of clearance: {faulty} of {all} runs: {faults}")
+            })
+            .collect()
+    }
 }
 
 /// One claim.
@@ -117,6 +134,10 @@ pub struct CaseResult {
     pub clearance_m: f64,
     /// Runs that broke down, and are left out.
     pub halted: usize,
+    /// Runs with faults (energy that does not balance, rigid joints that came apart); they count like the others.
+    pub faulty: usize,
+    /// What the first of those says, in words.
+    pub faults: Vec<String>,
     /// The measured quantities, as {key: {mean, sem, ci95, runs}}.
     #[serde(serialize_with = "by_key")]
     quantities: Vec<RunMean>,
@@ -124,11 +145,14 @@ pub struct CaseResult {
 
 impl CaseResult {
     /// Of the runs at one clearance in m; a run that broke down has no values.
-    pub(super) fn new(clearance_m: f64, runs: &[Option<Values>]) -> Self {
-        let mean = |i: usize| RunMean::of(runs.iter().flatten().map(|values| values[i]));
+    pub(super) fn new(clearance_m: f64, runs: &[Option<Measured>]) -> Self {
+        let mean = |i: usize| RunMean::of(runs.iter().flatten().map(|run| run.values[i]));
+        let faulty = || runs.iter().flatten().filter(|run| !run.faults.is_empty());
         Self {
             clearance_m,
             halted: runs.iter().filter(|run| run.is_none()).count(),
+            faulty: faulty().count(),
+            faults: faulty().next().map_or(Vec::new(), |run| run.faults.clone()),
             quantities: (0..COUNT).map(mean).collect(),
         }
     }

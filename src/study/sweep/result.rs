@@ -4,6 +4,7 @@ use super::journal::{JOURNAL_FILE, Rows};
 use super::record::sha256;
 use super::row::{Status, status};
 use super::{Identity, RECORD_FILE, Record, Shard, SweepError, page, pictures};
+use crate::study::folder::sync;
 use crate::study::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused};
 use std::fs;
 use std::io;
@@ -91,12 +92,17 @@ pub(super) fn write(
     Ok(Outcome { record, json, folder: folder.to_owned() })
 }
 
-/// Writes a file that is never seen half written.
+/// Writes a file that is never seen half written, not even after a power cut.
 pub(super) fn put(place: &Path, name: &str, content: impl AsRef<[u8]>) -> Result<(), RunError> {
     let unfinished = place.join(UNFINISHED_FILE);
     fs::write(&unfinished, content)
+        .and_then(|()| sync::file(&unfinished))
         .and_then(|()| fs::rename(&unfinished, place.join(name)))
-        .map_err(refused(name))
+        // On a disk that is full the half of it is in the way. The error is that of the writing.
+        .inspect_err(|_| drop(fs::remove_file(&unfinished)))
+        .map_err(refused(name))?;
+    sync::names(place);
+    Ok(())
 }
 
 /// Refuses a folder whose table is not as it was written: somebody's work may be in it.

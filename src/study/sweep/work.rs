@@ -4,9 +4,7 @@ use super::journal::{JOURNAL_FILE, Journal, Rows, lock};
 use super::result::{Outcome, PARQUET_FILE, TABLE_FILE, put, refuse_edited_table, write};
 use super::row;
 use super::{Plan, RECORD_FILE, Record, SweepError};
-use crate::engine;
-use crate::scenario::Scenario;
-use crate::simulate::{Machine, Recorder, Summary};
+use crate::simulate::measured;
 use crate::study::folder::Folder;
 use crate::study::run::{RunError, SCENARIO_FILE, refused};
 use rayon::prelude::*;
@@ -122,25 +120,10 @@ fn create(plan: &Plan, target: &Path, force: bool) -> Result<(), SweepError> {
 /// Makes run `run`.
 fn row_of(plan: &Plan, run: usize) -> Vec<String> {
     match plan.machine(run) {
-        Ok((scenario, machine)) => {
-            row::of_summary(plan.values(run), &summary(&scenario, machine), plan.more())
+        Ok((scenario, mut machine)) => {
+            let summary = measured(&scenario, &mut machine, &mut |_, _, _| {});
+            row::of_summary(plan.values(run), &summary, plan.more())
         }
         Err(reason) => row::refused(plan.values(run), &reason, plan.more()),
     }
-}
-
-/// Simulates a machine for its figures alone.
-fn summary(scenario: &Scenario, mut machine: Machine) -> Summary {
-    let mechanism = &machine.mechanism;
-    let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
-    let ideal = &mut machine.ideal;
-    let ended = engine::run(mechanism, machine.control, machine.schedule, &mut |instant| {
-        recorder.row(mechanism, instant, &ideal.at(instant.t));
-    });
-    let (work, halted) = match ended {
-        Ok(work) => (work, None),
-        Err(halt) => (*halt.work, Some(halt.to_string())),
-    };
-    // No wall time: what a row says must not depend on the day.
-    recorder.finish(scenario, &machine, work, f64::NAN, halted, Vec::new())
 }

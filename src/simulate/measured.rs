@@ -1,0 +1,36 @@
+//! A machine simulated for its figures.
+
+use super::summary::{Recorder, Summary};
+use crate::engine::{self, Instant};
+use crate::mechanism::Mechanism;
+use crate::model::{IdealInstant, Machine};
+use crate::scenario::Scenario;
+use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant as Clock;
+
+/// Simulates a machine for its figures, its energy balanced, and writes nothing. `observe` is shown the
+/// machine and each row, beside the same instant without clearance.
+pub fn measured(
+    scenario: &Scenario,
+    machine: &mut Machine,
+    observe: &mut dyn FnMut(&Mechanism, &Instant, &IdealInstant),
+) -> Summary {
+    let started = Clock::now();
+    let mechanism = &machine.mechanism;
+    let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
+    let ideal = &mut machine.ideal;
+    let (control, schedule, never) = (machine.control, machine.schedule, AtomicBool::new(false));
+    let ended = engine::run_balanced(mechanism, control, schedule, &never, &mut |instant| {
+        let ideal = ideal.at(instant.t);
+        recorder.row(mechanism, instant, &ideal);
+        observe(mechanism, instant, &ideal);
+        ControlFlow::Continue(())
+    });
+    let (work, halted) = match ended {
+        Ok(work) => (work, None),
+        Err(halt) => (*halt.work, Some(halt.to_string())),
+    };
+    let wall = started.elapsed().as_secs_f64();
+    recorder.finish(scenario, machine, work, wall, halted, Vec::new())
+}
