@@ -181,6 +181,11 @@ fn all_clearances_at_the_default_tolerance() {
 }
 
 #[test]
+fn all_clearances_by_direct_integration() {
+    check(StepControl::Direct(1e-5), |_| true);
+}
+
+#[test]
 #[ignore = "minutes: the whole table at a fixed step"]
 fn all_clearances_at_a_fixed_step() {
     check(StepControl::Fixed(1e-5), |_| true);
