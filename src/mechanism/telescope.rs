@@ -1,6 +1,6 @@
 //! A prismatic joint at one state, and the motion of the two bodies that it alone connects.
 
-use super::{BodyState, Prismatic};
+use super::{Body, BodyState, Prismatic};
 use nalgebra::{UnitComplex, Vector2, Vector3};
 
 /// Geometry of a prismatic joint. With u the joint's axis, n = u turned by +90°, ω the angular
@@ -61,6 +61,31 @@ pub(super) struct Slideway {
     pub points: [Vector2<f64>; 2],
 }
 
+/// What of the masses of two bodies on one axis their accelerations depend on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PairMasses {
+    /// 1/m of base and slider, 1/kg.
+    inverse: [f64; 2],
+    /// μ = m₁m₂/(m₁ + m₂) in kg.
+    reduced: f64,
+    /// I₁ + I₂ in kg m².
+    inertia: f64,
+}
+
+impl PairMasses {
+    pub fn new(bodies: [&Body; 2]) -> Self {
+        let [m1, m2] = bodies.map(|body| body.mass);
+        let inertia = bodies[0].inertia + bodies[1].inertia;
+        Self { inverse: [1.0 / m1, 1.0 / m2], reduced: m1 * m2 / (m1 + m2), inertia }
+    }
+
+    /// Shares of a distance between the two that base and slider take so that their common centre of mass
+    /// stays, with the signs of the base's way towards the slider.
+    pub fn shares(&self) -> [f64; 2] {
+        [self.inverse[0] * self.reduced, -self.inverse[1] * self.reduced]
+    }
+}
+
 impl Slideway {
     pub fn new(joint: &Prismatic) -> Self {
         Self { bodies: joint.bodies(), axis: joint.axes[0], points: joint.points() }
@@ -117,17 +142,16 @@ impl Telescope {
     /// free along the axis, R has no part along u, and L² stands for L² + w².
     pub fn accelerations(
         &self,
-        masses: [Vector3<f64>; 2],
+        masses: &PairMasses,
         wrenches: [Vector3<f64>; 2],
         extension: Option<f64>,
     ) -> ([Vector3<f64>; 2], f64) {
         let Self { u, n, offset: [length, side], spin, .. } = *self;
-        let (m1, m2) = (masses[0].x, masses[1].x);
-        let reduced = m1 * m2 / (m1 + m2);
-        let free = wrenches[1].xy() / m2 - wrenches[0].xy() / m1;
+        let PairMasses { inverse: [base, slider], reduced, inertia } = *masses;
+        let free = wrenches[1].xy() * slider - wrenches[0].xy() * base;
         let (free_u, free_n) = (free.dot(&u), free.dot(&n));
         let b_n = 2.0 * self.length_rate * spin - spin * spin * side;
-        let inertia = masses[0].z + masses[1].z + reduced * length * length;
+        let inertia = inertia + reduced * length * length;
         let torque = wrenches[0].z + wrenches[1].z - reduced * length * (b_n - free_n);
         let (alpha, force) = match extension {
             Some(extension) => {
@@ -139,8 +163,8 @@ impl Telescope {
             None => (torque / inertia, 0.0),
         };
         let reaction = u * force + n * (reduced * (b_n + alpha * length - free_n));
-        let a1 = (wrenches[0].xy() - reaction) / m1;
-        let a2 = (wrenches[1].xy() + reaction) / m2;
+        let a1 = (wrenches[0].xy() - reaction) * base;
+        let a2 = (wrenches[1].xy() + reaction) * slider;
         ([Vector3::new(a1.x, a1.y, alpha), Vector3::new(a2.x, a2.y, alpha)], force)
     }
 }

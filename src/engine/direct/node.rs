@@ -45,17 +45,19 @@ impl Node {
     /// Finds what acts at the states that it has.
     pub fn evaluate(&mut self, dynamics: &mut Dynamics, mechanism: &Mechanism) {
         dynamics.forces(mechanism, self.t, &self.states, &mut self.evaluation);
-        self.accelerate(dynamics, mechanism);
+        dynamics.accelerations(mechanism, &self.states, &mut self.evaluation);
+        self.count(dynamics, mechanism);
     }
 
     /// The same where contacts in flight need not be described.
     pub fn evaluate_on_path(&mut self, dynamics: &mut Dynamics, mechanism: &Mechanism) {
         dynamics.forces_on_path(mechanism, self.t, &self.states, &mut self.evaluation);
-        self.accelerate(dynamics, mechanism);
+        dynamics.accelerations_on_path(mechanism, &self.states, &mut self.evaluation);
+        self.count(dynamics, mechanism);
     }
 
-    fn accelerate(&mut self, dynamics: &mut Dynamics, mechanism: &Mechanism) {
-        dynamics.accelerations(mechanism, &self.states, &mut self.evaluation);
+    /// Finds what is exchanged there.
+    fn count(&mut self, dynamics: &Dynamics, mechanism: &Mechanism) {
         if self.balanced {
             let [total, drives] = dynamics.power(mechanism, &self.states, &self.evaluation);
             (self.flows[TOTAL], self.flows[DRIVES]) = (total, drives);

@@ -10,10 +10,10 @@ mod projection;
 
 use self::groups::Group;
 use super::constraints::{Constraints, Rigid, groups};
-use super::telescope::{Slideway, Telescope};
+use super::telescope::{PairMasses, Slideway, Telescope};
 use super::{
-    Bearing, BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic,
-    Situation, angle_near,
+    Actuator, Bearing, BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory,
+    Prismatic, Situation, angle_near,
 };
 use crate::contact::{Contact, circle_in_ring};
 use nalgebra::{Vector2, Vector3};
@@ -25,7 +25,7 @@ pub struct Dynamics {
     weights: Vec<Vector3<f64>>,
     masses: Vec<Vector3<f64>>,
     /// Prismatic joints that alone hold two moving bodies, and these: solved in closed form.
-    telescopes: Vec<(usize, [usize; 2])>,
+    telescopes: Vec<Pair>,
     /// The other rigid joints, group by group.
     groups: Vec<Group>,
     /// Whether a group was nearly singular since that was last forgotten.
@@ -66,8 +66,8 @@ impl Dynamics {
         let bodies = &mechanism.bodies;
         let (mut telescopes, mut others) = (Vec::new(), Vec::new());
         for group in groups(mechanism) {
-            match telescope(mechanism, &group) {
-                Some(telescope) => telescopes.push(telescope),
+            match Pair::of(mechanism, &group) {
+                Some(pair) => telescopes.push(pair),
                 None => others.push(Group::new(group)),
             }
         }
@@ -217,8 +217,29 @@ impl Dynamics {
     }
 
     /// Fills `out.accelerations` from `out.wrenches` and the rigid joints, and, where drives are
-    /// prescribed, the efforts that the command takes.
+    /// prescribed, their coordinates and the efforts that the command takes.
     pub fn accelerations(
+        &mut self,
+        mechanism: &Mechanism,
+        states: &[BodyState],
+        out: &mut Evaluation,
+    ) {
+        self.accelerations_on_path(mechanism, states, out);
+        for (length, state) in out.lengths.iter_mut().zip(&self.prismatics) {
+            *length = state.length;
+        }
+        for (i, actuator) in mechanism.actuators.iter().enumerate() {
+            if actuator.drive == Drive::Prescribed {
+                out.coordinates[i] = match actuator.joint {
+                    JointIndex::Prismatic(joint) => self.prismatics[joint].length,
+                    JointIndex::Revolute(_) => self.coordinate(mechanism, i, states)[0],
+                };
+            }
+        }
+    }
+
+    /// The same at a point of a step's path, where nobody asks for lengths and coordinates.
+    pub fn accelerations_on_path(
         &mut self,
         mechanism: &Mechanism,
         states: &[BodyState],
@@ -231,30 +252,18 @@ impl Dynamics {
         for &i in &self.passive {
             self.prismatics[i] = Telescope::on(&self.ways[i], states);
         }
-        for (length, state) in out.lengths.iter_mut().zip(&self.prismatics) {
-            *length = state.length;
+        if self.prescribes {
+            out.command(mechanism);
         }
-        for (i, actuator) in mechanism.actuators.iter().enumerate() {
-            if actuator.drive == Drive::Prescribed {
-                out.command(mechanism);
-                out.coordinates[i] = match actuator.joint {
-                    JointIndex::Prismatic(joint) => self.prismatics[joint].length,
-                    JointIndex::Revolute(_) => self.coordinate(mechanism, i, states)[0],
-                };
-            }
-        }
-        for &(i, bodies) in &self.telescopes {
-            let prescribed = self.prescribed[i];
+        for Pair { joint, bodies, masses, prescribed } in &self.telescopes {
             let extension = prescribed.map(|drive| out.commands[drive].acceleration);
-            let masses = bodies.map(|b| self.masses[b]);
             let wrenches = bodies.map(|b| out.wrenches[b]);
-            let (accelerations, force) =
-                self.prismatics[i].accelerations(masses, wrenches, extension);
-            for (body, a) in bodies.into_iter().zip(accelerations) {
-                out.accelerations[body] = a;
-            }
+            let ([a1, a2], force) =
+                self.prismatics[*joint].accelerations(masses, wrenches, extension);
+            out.accelerations[bodies[0]] = a1;
+            out.accelerations[bodies[1]] = a2;
             if let Some(drive) = prescribed {
-                out.drive_forces[drive] = force;
+                out.drive_forces[*drive] = force;
             }
         }
         for g in 0..self.groups.len() {
@@ -314,11 +323,31 @@ fn contact(i: usize, mechanism: &Mechanism, states: &[BodyState], out: &mut Eval
     }
 }
 
-/// The prismatic joint and its two moving bodies, if a group is nothing else.
-fn telescope(mechanism: &Mechanism, group: &[Rigid]) -> Option<(usize, [usize; 2])> {
-    let [Rigid::Prismatic(i)] = group else { return None };
-    let joint = &mechanism.prismatics[*i];
-    Some((*i, [joint.base.body?, joint.slider.body?]))
+/// Two moving bodies on one prismatic joint, which no other rigid joint holds.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    /// Index of the joint.
+    joint: usize,
+    /// Base and slider.
+    bodies: [usize; 2],
+    masses: PairMasses,
+    /// The drive that prescribes the length.
+    prescribed: Option<usize>,
+}
+
+impl Pair {
+    /// The pair, if a group is nothing else.
+    fn of(mechanism: &Mechanism, group: &[Rigid]) -> Option<Self> {
+        let [Rigid::Prismatic(joint)] = *group else { return None };
+        let Prismatic { base, slider, .. } = &mechanism.prismatics[joint];
+        let bodies = [base.body?, slider.body?];
+        let masses = PairMasses::new(bodies.map(|body| &mechanism.bodies[body]));
+        let prescribes = |actuator: &Actuator| {
+            actuator.joint == JointIndex::Prismatic(joint) && actuator.drive == Drive::Prescribed
+        };
+        let prescribed = mechanism.actuators.iter().position(prescribes);
+        Some(Self { joint, bodies, masses, prescribed })
+    }
 }
 
 #[cfg(test)]

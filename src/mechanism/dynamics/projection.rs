@@ -1,6 +1,6 @@
 //! Bodies put back to where rigid joints and prescribed drives hold them.
 
-use super::{Dynamics, Rigid};
+use super::{Dynamics, Pair, Rigid};
 use crate::mechanism::rows::{Row, angle_row, prismatic_rows, revolute_rows};
 use crate::mechanism::telescope::Telescope;
 use crate::mechanism::{BodyState, Command, Evaluation, Mechanism, angle_near};
@@ -48,19 +48,17 @@ impl Dynamics {
         shifts: &mut [Vector3<f64>],
         commands: &[Command],
     ) {
-        let (i, bodies) = self.telescopes[k];
+        let Pair { joint: i, bodies, masses, prescribed } = self.telescopes[k];
         let state = Telescope::on(&self.ways[i], states);
         let [base, slider] = self.ways[i].points;
         let Telescope { u, n, offset: [length, side], rate, spin, .. } = state;
         let mut missed = n * (side + slider.y - base.y);
         let mut missed_rate = n * (rate.dot(&n) - spin * length);
-        if let Some(drive) = self.prescribed[i] {
+        if let Some(drive) = prescribed {
             missed += u * (state.length - commands[drive].position);
             missed_rate += u * (state.length_rate - commands[drive].rate);
         }
-        let masses = bodies.map(|b| self.masses[b].x);
-        let shares = [masses[1], -masses[0]].map(|mass| mass / (masses[0] + masses[1]));
-        for (body, share) in bodies.into_iter().zip(shares) {
+        for (body, share) in bodies.into_iter().zip(masses.shares()) {
             let (by, faster) = (missed * share, missed_rate * share);
             states[body].position += by;
             states[body].twist += faster.push(0.0);
