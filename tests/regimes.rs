@@ -36,6 +36,9 @@ const MACHINES: [(&str, Speed); 8] = [
 /// Time that a run of 0.05 s may take: stiff ones meet the bound of steps within that.
 const PATIENCE: Duration = Duration::from_secs(150);
 
+/// The same with a hundredth of the tolerance, whose fourth root (the order of stepping) says how many more steps.
+const PATIENCE_FOR_FINER: Duration = Duration::from_secs(480);
+
 struct Dice(ChaCha8Rng);
 
 impl Dice {
@@ -115,12 +118,12 @@ enum Fate {
 }
 
 /// Runs it, or says what is wrong with the program.
-fn fate(place: &Place, set: &str) -> Result<Fate, String> {
+fn fate(place: &Place, set: &str, patience: Duration) -> Result<Fate, String> {
     let line = format!(
         "run case.toml --duration 0.05 --set simulation.settle=0.02 --yes --quiet --force --out r {set}"
     );
     let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
-    let run = command.current_dir(place.path("")).args(line.split_whitespace()).timeout(PATIENCE);
+    let run = command.current_dir(place.path("")).args(line.split_whitespace()).timeout(patience);
     let done = run.output().map_err(|error| error.to_string())?;
     let said = String::from_utf8_lossy(&done.stderr).into_owned();
     match done.status.code() {
@@ -165,7 +168,7 @@ fn finer(place: &Place, summary: &Value) -> Result<(), String> {
     };
     let coarse = place.read("r/timeseries.csv");
     let set = format!("--set simulation.tolerance={:e}", tolerance / 100.0);
-    let Fate::Ran(_) = fate(place, &set)? else { return Ok(()) };
+    let Fate::Ran(_) = fate(place, &set, PATIENCE_FOR_FINER)? else { return Ok(()) };
     let off = apart(&coarse, &place.read("r/timeseries.csv"), until);
     if off <= 2e-6 { Ok(()) } else { Err(format!("is off by {off:e} m before {until} s: {own}")) }
 }
@@ -177,7 +180,7 @@ fn campaign(numbers: std::ops::Range<u64>) {
         let (kind, text) = machine(number);
         let place = Place::new();
         place.write("case.toml", &text);
-        let word = match fate(&place, "") {
+        let word = match fate(&place, "", PATIENCE) {
             Ok(Fate::Ran(summary)) => {
                 let sure = summary["watched"]["doubts"].as_array().is_some_and(Vec::is_empty);
                 let checked = if sure && number.is_multiple_of(10) {
