@@ -128,9 +128,7 @@ impl Direct {
         let zeros = vec![Vector3::zeros(); mechanism.bodies.len()];
         let node = Node::new(mechanism, balanced);
         Self {
-            tolerance: step_tolerance(tolerance)
-                * share(mechanism)
-                    .powf(std::env::var("SHARE").map_or(1.0, |v| v.parse().unwrap_or(1.0))),
+            tolerance: step_tolerance(tolerance) * share(mechanism),
             dynamics: Dynamics::new(mechanism),
             radii: mechanism.bodies.iter().map(|b: &Body| (b.inertia / b.mass).sqrt()).collect(),
             beyond: !mechanism.actuators.iter().any(|a| matches!(a.drive, Drive::Sampled(_))),

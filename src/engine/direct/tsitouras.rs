@@ -140,20 +140,20 @@ mod tests {
         let start = [1.0, 0.3];
         let mut k = [Vector3::zeros(); STAGES];
         k[0].x = a(0.0, start[0]);
-        let (mut shift, mut rate) = (Vector3::zeros(), Vector3::zeros());
         macro_rules! at {
-            ($i:literal) => {
-                (shift, rate) = stage::<$i>(h, Vector3::x() * start[1], &k);
+            ($i:literal) => {{
+                let (shift, rate) = stage::<$i>(h, Vector3::x() * start[1], &k);
                 k[$i].x = a(C[$i] * h, start[0] + shift.x);
-            };
+                [start[0] + shift.x, rate.x]
+            }};
         }
         at!(1);
         at!(2);
         at!(3);
         at!(4);
         at!(5);
-        at!(6);
-        [start[0] + shift.x, rate.x, error(h, &k).x]
+        let [place, rate] = at!(6);
+        [place, rate, error(h, &k).x]
     }
 
     /// On the oscillator `q̈ = −q`, whose solution is known: a step's error falls with h⁶, its estimate
