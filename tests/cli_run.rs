@@ -297,16 +297,18 @@ fn effects_are_added_by_their_kind() {
     }
 }
 
-/// Dampers far too strong for the masses: energy came from nowhere, without a word and with exit code 0.
+/// A tolerance that no hit is resolved at: energy comes from nowhere.
 #[test]
 fn a_run_that_does_not_balance_says_so() {
     let place = Place::new();
-    let done = place.freeplay("run --out r --duration 0.28 --set contact.c_max=1e6");
+    let done = place.freeplay(
+        "run --out r --duration 0.28 --set simulation.tolerance=1e-2 --set environment.gravity=[0,-9.81]",
+    );
     assert_eq!(done.code, 1, "{}", done.out);
     assert!(done.err.starts_with("error: the energy is off by "), "{}", done.err);
     let json: Value = serde_json::from_str(&place.read("r/summary.json")).unwrap();
     assert!(json["watched"]["energy"]["imbalance_share"].as_f64().unwrap() > 0.01);
-    assert_eq!(json["watched"]["faults"].as_array().unwrap().len(), 1);
+    assert!(!json["watched"]["faults"].as_array().unwrap().is_empty());
     assert!(place.read("r/index.html").contains("Do not trust this run"));
 
     place.good("run --out s --duration 0.1");

@@ -186,6 +186,8 @@ mod tests {
         for (sets, most) in [
             (&["simulation.tolerance=1e-5", gravity][..], 2e-4),
             (&["simulation.tolerance=1e-8"], 1e-6),
+            (&["simulation.engine=direct", gravity], 2e-4),
+            (&["simulation.engine=direct", "simulation.tolerance=1e-8"], 1e-7),
             (&["simulation.tolerance=1e-5", "drive.mode=servo", gravity], 2e-4),
             (&["simulation.tolerance=1e-5", "joints.friction=0.1", gravity], 2e-4),
             (&["simulation.step=1e-5"], 2e-4),
@@ -201,11 +203,22 @@ mod tests {
         }
     }
 
-    /// Dampers far too strong for the masses are stepped wrongly, and energy comes from nowhere.
+    /// At a tolerance that no hit is resolved at, energy comes from nowhere.
     #[test]
     fn energy_from_nowhere_is_seen() {
-        let energy = energy(&["contact.c_max=1e6"], 0.3);
+        let energy = energy(&["simulation.tolerance=1e-2", "environment.gravity=[0,-9.81]"], 0.3);
         assert!(energy.share() > 0.05, "{energy:?}");
+    }
+
+    /// Dampers far too strong for the masses, whose rattle fed on itself below the tolerance: 27 % of the energy
+    /// was off.
+    #[test]
+    fn strong_dampers_of_contacts_are_stepped_as_they_need() {
+        for engine in ["rapier", "direct"] {
+            let engine = format!("simulation.engine={engine}");
+            let energy = energy(&["contact.c_max=1e6", &engine], 0.3);
+            assert!(energy.share() < 1e-3, "{engine}: {energy:?}");
+        }
     }
 
     /// Keeping the balance costs evaluations that nobody else needs, and must not move anything.
@@ -215,6 +228,7 @@ mod tests {
             ("3rpr", "drive.mode=servo"),
             ("3rpr", "simulation.step=1e-5"),
             ("four-bar", "simulation.tolerance=1e-5"),
+            ("3rpr", "simulation.engine=direct"),
             ("four-bar", "simulation.step=1e-5"),
         ] {
             let text = format!("mechanism.kind = '{kind}'\n");

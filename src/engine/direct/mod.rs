@@ -144,7 +144,7 @@ impl Direct {
                 peaks: vec![0.0; joints],
                 work: vec![0.0; joints],
                 brushes: vec![false; joints],
-                exchange: None,
+                exchange: balanced.then(Exchange::default),
             },
             start: node.clone(),
             inside: node.clone(),
