@@ -8,7 +8,7 @@ use crate::scenario::Law;
 use crate::simulate::{assemble, findings};
 use crate::study::compare::{
     COMPARE_FILE, CompareError, Compared, Options, QUANTITIES, SAMPLE_INTERVAL, Use, compare,
-    in_words, law_key, simulated_time,
+    in_words, simulated_time,
 };
 use clap::Args;
 use std::fmt::Write as _;
@@ -136,7 +136,7 @@ fn text(compared: &Compared) -> String {
         let _ = writeln!(
             text,
             "  {:<12}{step:<12}{path:>14}{peak:>14}{fraction:>12}{impacts:>12}{:>14}{}",
-            law_key(row.law),
+            row.law.name(),
             number(row.wall_s_per_simulated_s),
             if row.halted > 0 {
                 "  broke down"

@@ -21,8 +21,9 @@ const LONGEST: usize = 100_000;
 /// by Heun's method.
 pub fn impact(law: &dyn ForceLaw, mass: f64, speed: f64) -> Impact {
     let dt = law.longest_step(mass, speed) / REFINEMENT;
-    let force =
-        |depth: f64, rate: f64| if depth > 0.0 { law.normal_force(depth, rate) } else { 0.0 };
+    let force = |depth: f64, rate: f64| {
+        if depth > 0.0 { law.normal_force_after(depth, rate, speed) } else { 0.0 }
+    };
     let (mut depth, mut rate) = (0.0, speed);
     let mut hit = Impact { rebound: 0.0, duration: 0.0 };
     for _ in 0..LONGEST {

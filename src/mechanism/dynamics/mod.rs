@@ -12,9 +12,9 @@ use super::constraints::{Constraints, Rigid, groups};
 use super::telescope::Telescope;
 use super::{
     Bearing, BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic,
-    Situation, angle_near,
+    Revolute, Situation, angle_near,
 };
-use crate::contact::circle_in_ring;
+use crate::contact::{Contact, Touch, circle_in_ring};
 use nalgebra::{Vector2, Vector3};
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
@@ -42,6 +42,10 @@ pub struct Dynamics {
     held: Vec<Held>,
     /// What each load remembers of the end of the last step.
     memories: Vec<Memory>,
+    /// What each revolute joint remembers of its contact; none at all where no law asks for it.
+    touches: Vec<Touch>,
+    /// Time in s of that memory.
+    touched: f64,
     /// Workspace of a group.
     constraints: Constraints,
 }
@@ -113,6 +117,8 @@ impl Dynamics {
                     load.begin(Situation { t: mechanism.epoch, mechanism, states: &starts })
                 })
                 .collect(),
+            touches: touches(mechanism, &starts),
+            touched: 0.0,
             constraints: Constraints::default(),
         }
     }
@@ -159,10 +165,13 @@ impl Dynamics {
             let contact = &mut out.contacts[i];
             let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
             if let Bearing::Clearance(clearance) = &joint.bearing {
-                let (state, forces) = match &joint.out_of_round {
-                    None => clearance.forces(&ring, &journal),
-                    Some(shape) => {
-                        shape.forces(clearance, joint.ring.rotation(states), &ring, &journal)
+                let memory = self.touches.get(i).map(|touch| touch.after(t - self.touched));
+                let (state, forces) = match (&joint.out_of_round, memory) {
+                    (None, None) => clearance.forces(&ring, &journal),
+                    (None, Some(memory)) => clearance.forces_after(memory, &ring, &journal),
+                    (Some(shape), memory) => {
+                        let turned = joint.ring.rotation(states);
+                        shape.forces(clearance, memory, turned, &ring, &journal)
                     }
                 };
                 *contact = state;
@@ -196,6 +205,11 @@ impl Dynamics {
         for (load, memory) in mechanism.loads.iter().zip(&mut self.memories) {
             *memory = load.remember(at, *memory);
         }
+        for (touch, joint) in self.touches.iter_mut().zip(&mechanism.revolutes) {
+            let Contact { penetration, rate, .. } = contact(joint, states);
+            *touch = touch.after(t - self.touched).reached(penetration, rate);
+        }
+        self.touched = t;
         for (angle, actuator) in self.angles.iter_mut().zip(&mechanism.actuators) {
             if let JointIndex::Revolute(i) = actuator.joint {
                 *angle = angle_near(mechanism.revolutes[i].rotation(states), *angle);
@@ -271,6 +285,33 @@ impl Dynamics {
             *w = a.component_mul(m);
         }
     }
+}
+
+/// What the joints remember at the start of a run; nothing where no law asks for it.
+fn touches(mechanism: &Mechanism, starts: &[BodyState]) -> Vec<Touch> {
+    let remembers = |joint: &Revolute| match &joint.bearing {
+        Bearing::Clearance(clearance) => clearance.law.remembers(),
+        Bearing::Ideal | Bearing::Native { .. } => false,
+    };
+    if !mechanism.revolutes.iter().any(remembers) {
+        return Vec::new();
+    }
+    let begin = |joint| {
+        let Contact { penetration, rate, .. } = contact(joint, starts);
+        Touch::begin(penetration, rate)
+    };
+    mechanism.revolutes.iter().map(begin).collect()
+}
+
+/// Where the journal of a joint stands; flying in one that no law acts in.
+fn contact(joint: &Revolute, states: &[BodyState]) -> Contact {
+    let Bearing::Clearance(clearance) = &joint.bearing else { return Contact::default() };
+    let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
+    let (contact, _) = match &joint.out_of_round {
+        None => clearance.forces(&ring, &journal),
+        Some(shape) => shape.forces(clearance, None, joint.ring.rotation(states), &ring, &journal),
+    };
+    contact
 }
 
 /// The prismatic joint and its two moving bodies, if a group is nothing else.

@@ -252,12 +252,3 @@ fn trends(comparison: &Comparison) -> Vec<TrendResult> {
     }
     trends
 }
-
-/// A law's name as scenarios have it.
-pub fn law_key(law: Law) -> &'static str {
-    match law {
-        Law::HertzStep => "hertz-step",
-        Law::Native => "native",
-        Law::Ideal => "ideal",
-    }
-}

@@ -1,6 +1,5 @@
 //! The tables of a comparison as files.
 
-use super::law_key;
 use super::quantities::{QUANTITIES, index};
 use super::result::{Comparison, RowResult};
 use super::verdict::in_words;
@@ -20,7 +19,7 @@ pub fn csv(comparison: &Comparison) -> String {
     let number =
         |value: f64| if value.is_finite() { format!("{value:.6e}") } else { String::new() };
     for row in &comparison.rows {
-        let (law, resolved) = (law_key(row.law), row.resolved);
+        let (law, resolved) = (row.law.name(), row.resolved);
         let [step, tolerance] = [row.step_s, row.tolerance_m_s]
             .map(|v| v.map_or_else(String::new, |v| format!("{v:e}")));
         let runs = format!("{},{}", row.starts, row.halted);
