@@ -1,7 +1,7 @@
 //! One clearance joint: a round journal inside a round bearing ring, both of them rigid apart from
 //! the local give that the force law describes.
 
-use super::{After, CoulombFriction, ForceLaw};
+use super::{After, ForceLaw, Friction};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub struct Clearance {
     /// Normal force as a function of penetration and its rate.
     pub law: Arc<dyn ForceLaw>,
     /// Friction at the contact point, if any.
-    pub friction: Option<CoulombFriction>,
+    pub friction: Option<Friction>,
 }
 
 impl Clearance {
@@ -158,13 +158,18 @@ impl Clearance {
 
 #[cfg(test)]
 mod tests {
-    use super::super::HertzStep;
+    use super::super::{CoulombFriction, HertzStep};
     use super::*;
 
     fn joint(friction: Option<CoulombFriction>) -> Clearance {
         let law =
             HertzStep { stiffness: 3.7e9, exponent: 1.5, c_max: 500.0, d_max: 1e-5, clip: true };
-        Clearance { bearing_radius: 0.01, journal_radius: 0.0095, law: Arc::new(law), friction }
+        Clearance {
+            bearing_radius: 0.01,
+            journal_radius: 0.0095,
+            law: Arc::new(law),
+            friction: friction.map(Friction::from),
+        }
     }
 
     fn frame(centre: [f64; 2], arm: [f64; 2], velocity: [f64; 2], spin: f64) -> Frame {

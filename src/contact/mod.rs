@@ -14,9 +14,9 @@ mod touch;
 
 use std::sync::Arc;
 
-pub use friction::CoulombFriction;
+pub use friction::{CoulombFriction, Friction};
 pub use hertz_step::{HertzStep, step};
-pub use impact::{Impact, impact};
+pub use impact::{Impact, Moment, hit, impact};
 pub use joint::{Clearance, Contact, Frame, circle_in_ring, valid_penetration};
 pub use out_of_round::OutOfRound;
 pub use stiffness::{Material, StiffnessForm, hertz_stiffness};

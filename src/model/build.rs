@@ -4,7 +4,7 @@ use super::layout::{Layout, Written};
 use super::names::{mark, names};
 use super::parts::Parts;
 use crate::contact::laws::Given;
-use crate::contact::{Clearance, CoulombFriction, HertzStep, Material};
+use crate::contact::{Clearance, HertzStep, Material};
 use crate::mechanism::{
     Actuator, Attachment, Bearing, Cascade, Drive, JointIndex, JointSpring, Mechanism, PointSpring,
     Prismatic, Reads, Revolute, Sensor, Stop,
@@ -169,10 +169,7 @@ fn bearing(
             bearing_radius,
             journal_radius,
             law: (kind.build)(&given),
-            friction: (friction > 0.0).then_some(CoulombFriction {
-                coefficient: friction,
-                velocity: scenario.contact.friction_velocity,
-            }),
+            friction: (friction > 0.0).then(|| scenario.contact.friction(friction)),
         }),
         (Law::Native, None) => Bearing::Native { bearing_radius, journal_radius, friction },
         (_, None) => Bearing::Ideal,

@@ -25,6 +25,7 @@ pub(super) fn problems(scenario: &Scenario) -> Vec<Problem> {
             out_of_range(scenario, &format!("contact.{key}"), key, value?)
         }),
     );
+    found.extend(friction(scenario));
     for (i, joint) in revolutes(scenario) {
         let law = joint.law.unwrap_or(contact.law);
         for (key, value) in written(joint) {
@@ -38,6 +39,34 @@ pub(super) fn problems(scenario: &Scenario) -> Vec<Problem> {
         }
     }
     found
+}
+
+/// Keys of other friction laws, and values that none takes.
+fn friction(scenario: &Scenario) -> Vec<Problem> {
+    let contact = &scenario.contact;
+    let fast = contact.friction_velocity;
+    let numbers = [
+        ("static_ratio", contact.static_ratio, Range::FromOne, f64::INFINITY),
+        ("stribeck_velocity", contact.stribeck_velocity, Range::Positive, f64::INFINITY),
+        ("rest_velocity", contact.rest_velocity, Range::NotNegative, fast),
+    ];
+    let wrong = |(key, value, range, below): (&str, Option<f64>, Range, f64)| {
+        let (path, value) = (format!("contact.{key}"), value?);
+        if !contact.friction_law.takes(key) {
+            let help = "take it out, or set contact.friction_law: static_ratio and stribeck_velocity go with \
+                        bengisu-akay and stribeck, rest_velocity with ambrosio";
+            Some(scenario.problem(&path, "means nothing to the friction law", help))
+        } else if !range.holds(value) {
+            let help = format!("expected {}", range.in_words());
+            Some(scenario.problem(&path, format!("is {value}"), help))
+        } else if value >= below {
+            let help = format!("expected below contact.friction_velocity, {below} m/s");
+            Some(scenario.problem(&path, format!("is {value}"), help))
+        } else {
+            None
+        }
+    };
+    numbers.into_iter().filter_map(wrong).collect()
 }
 
 /// The laws that a scenario names: that of `[contact]` and those of joints.

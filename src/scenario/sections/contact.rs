@@ -1,7 +1,7 @@
 //! `[contact]`: the force between a journal and its bearing.
 
-use crate::contact::StiffnessForm;
 use crate::contact::laws::{self, HERTZ_STEP, Kind};
+use crate::contact::{CoulombFriction, Friction, StiffnessForm};
 use serde::de::{Deserializer, Error};
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
@@ -47,6 +47,21 @@ pub struct Contact {
     /// Sliding speed v_s at which friction is near its full value, m/s: μ F tanh(v/v_s).
     /// Default 1e-3: assumed; slow against the sliding speeds of a rattling journal.
     pub friction_velocity: f64,
+    /// How friction follows the sliding speed. Default `coulomb`, with a tanh around rest.
+    #[serde(skip_serializing_if = "FrictionLaw::is_coulomb")]
+    pub friction_law: FrictionLaw,
+    /// Static friction over sliding friction of `bengisu-akay` and `stribeck`, 1 or more. Default 1.5: dry steel,
+    /// about 0.6 against 0.4.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub static_ratio: Option<f64>,
+    /// Sliding speed over which these fall from static to sliding friction, m/s. Default ten times
+    /// `friction_velocity`, so that both show.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stribeck_velocity: Option<f64>,
+    /// Sliding speed below which `ambrosio` has no friction, m/s, below `friction_velocity`. Default a tenth of
+    /// that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest_velocity: Option<f64>,
 }
 
 impl Default for Contact {
@@ -65,6 +80,68 @@ impl Default for Contact {
             damping: None,
             length: None,
             friction_velocity: 1e-3,
+            friction_law: FrictionLaw::Coulomb,
+            static_ratio: None,
+            stribeck_velocity: None,
+            rest_velocity: None,
+        }
+    }
+}
+
+/// Static over sliding friction where nothing is written.
+const STATIC_RATIO: f64 = 1.5;
+
+impl Contact {
+    /// The friction law with the coefficient μ of a joint.
+    pub fn friction(&self, coefficient: f64) -> Friction {
+        let velocity = self.friction_velocity;
+        let ratio = self.static_ratio.unwrap_or(STATIC_RATIO);
+        let fall = self.stribeck_velocity.unwrap_or(10.0 * velocity);
+        match self.friction_law {
+            FrictionLaw::Coulomb => CoulombFriction { coefficient, velocity }.into(),
+            FrictionLaw::Threlfall => Friction::Threlfall { coefficient, velocity },
+            FrictionLaw::BengisuAkay => {
+                Friction::BengisuAkay { coefficient, ratio, velocity, fall }
+            }
+            FrictionLaw::Ambrosio => {
+                let rest = self.rest_velocity.unwrap_or(0.1 * velocity);
+                Friction::Ambrosio { coefficient, rest, velocity }
+            }
+            FrictionLaw::Stribeck => Friction::Stribeck { coefficient, ratio, velocity, fall },
+        }
+    }
+}
+
+/// A friction law by name; equations and sources stand at [`Friction`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrictionLaw {
+    /// `μ F tanh(v/v_s)`.
+    Coulomb,
+    /// An exponential up to `friction_velocity`.
+    Threlfall,
+    /// A parabola up to static friction at `friction_velocity`, an exponential fall beyond.
+    BengisuAkay,
+    /// Nothing up to `rest_velocity`, a straight line up to `friction_velocity`.
+    Ambrosio,
+    /// Coulomb's with static friction that falls over `stribeck_velocity`.
+    Stribeck,
+}
+
+impl FrictionLaw {
+    /// Whether it is the default.
+    fn is_coulomb(&self) -> bool {
+        *self == FrictionLaw::Coulomb
+    }
+
+    /// Whether a key of `[contact]` means something to it.
+    pub fn takes(self, key: &str) -> bool {
+        match key {
+            "static_ratio" | "stribeck_velocity" => {
+                matches!(self, FrictionLaw::BengisuAkay | FrictionLaw::Stribeck)
+            }
+            "rest_velocity" => self == FrictionLaw::Ambrosio,
+            _ => true,
         }
     }
 }

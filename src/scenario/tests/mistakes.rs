@@ -187,6 +187,17 @@ fn every_mistake_says_where_what_and_what_would_be_right() {
         (MINIMAL, &["contact.law=kelvin-voigt", "contact.damping=-1"], &["0 or more"]),
         (MINIMAL, &["contact.law=liu", "contact.length=0"], &["expected above 0"]),
         (MINIMAL, &["contact.restitution=0.5"], &["means nothing to the law \"hertz-step\""]),
+        (
+            MINIMAL,
+            &["contact.static_ratio=2"],
+            &["--set contact.static_ratio: means nothing to the friction"],
+        ),
+        (
+            MINIMAL,
+            &["contact.friction_law=ambrosio", "contact.rest_velocity=1e-2"],
+            &["below contact.friction_velocity, 0.001 m/s"],
+        ),
+        (MINIMAL, &["contact.friction_law=stribek"], &["did you mean `stribeck`?"]),
         (MINIMAL, &["contact.law=hunt-crosley"], &["did you mean `hunt-crossley`?"]),
         (MINIMAL, &["sensors.pose_std=-1"], &["0 m or more"]),
         (MINIMAL, &["motion.period=0"], &["--set motion.period: is 0; expected above 0 s"]),
