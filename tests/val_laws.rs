@@ -6,9 +6,13 @@
 
 use freeplay::contact::laws::{ALL, Given, Kind, Losses, named};
 use freeplay::contact::{Clearance, ForceLaw, Material, StiffnessForm, impact};
-use freeplay::engine::{Schedule, StepControl, run};
+use freeplay::engine::{
+    ClearanceJoint, ClearanceJoints, Schedule, StepControl, physics_world, run,
+};
 use freeplay::mechanism::{Attachment, Bearing, Body, BodyState, Mechanism, Revolute};
 use nalgebra::{UnitComplex, Vector2, Vector3};
+use rapier2d_f64::dynamics::{MassProperties, RigidBodyBuilder};
+use rapier2d_f64::math::Vector;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -265,6 +269,36 @@ fn runs_remember_the_impact_speed() {
             assert!((found - exact).abs() < 5e-4, "{name} at {e}: {found}, closed form {exact}");
         }
     }
+}
+
+/// The same in somebody else's rapier world, at fixed steps.
+#[test]
+fn joints_of_other_worlds_remember_the_impact_speed() {
+    let law = asked(named("gonthier").unwrap(), 0.5);
+    let exact = returned(factor(&*law));
+    let step = law.longest_step(MASS, SPEED) / 10.0;
+    let mut world = physics_world(step);
+    let ring_body = world.bodies.insert(RigidBodyBuilder::fixed());
+    let journal_body = world.bodies.insert(
+        RigidBodyBuilder::dynamic()
+            .translation(Vector::new(0.5e-3 - 1e-5, 0.0))
+            .linvel(Vector::new(SPEED, 0.0))
+            .additional_mass_properties(MassProperties::new(Vector::ZERO, MASS, 1e-4))
+            .can_sleep(false),
+    );
+    let mut joints = ClearanceJoints::new();
+    let clearance =
+        Clearance { bearing_radius: 10e-3, journal_radius: 9.5e-3, law, friction: None };
+    let (ring_point, journal_point) = (Vector2::zeros(), Vector2::zeros());
+    joints.add(
+        &mut world,
+        ClearanceJoint { ring_body, ring_point, journal_body, journal_point, clearance },
+    );
+    for _ in 0..(1.5e-3 / step) as usize {
+        joints.step(&mut world);
+    }
+    let found = -joints.state(journal_body).unwrap().twist.x / SPEED;
+    assert!((found - exact).abs() < 2e-3, "{found}, closed form {exact}");
 }
 
 /// A linear spring and damper lets a free mass go with

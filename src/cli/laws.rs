@@ -46,7 +46,7 @@ const INTRODUCTION: &str = "A contact law is chosen by contact.law, for one join
      it. d is the penetration (m), rate its rate (m/s, positive while surfaces approach), impact_speed that \
      rate when they touched, K = 4/(3 pi (h_i + h_j)) sqrt(Ri Rj/(Ri + Rj)) with h = (1 - nu^2)/(pi E), E* \
      the composite modulus, L the bearing's length, dR = Ri - Rj the radial clearance. Laws by restitution \
-     take an impact speed of at least 1e-4 m/s, and the fastest approach of a contact that lasts. Beside \
+     take an impact speed of at least 1e-3 m/s, and the fastest approach of a contact that lasts. Beside \
      these, law = \"native\" leaves contacts to the physics engine, and law = \"ideal\" has no clearance.";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {

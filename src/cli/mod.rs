@@ -9,6 +9,7 @@ mod calibrate;
 mod check;
 mod check_text;
 mod compare;
+mod compare_laws;
 mod completions;
 mod effects;
 mod expand;

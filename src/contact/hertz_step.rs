@@ -1,6 +1,6 @@
 //! The Hertz spring with STEP damping: ADAMS' IMPACT function, equations 4–6 of the source paper.
 
-use super::ForceLaw;
+use super::{ForceLaw, power_force};
 use std::sync::Arc;
 
 /// Hertz spring plus a damper that fades in with penetration (paper eqs. 4 and 6):
@@ -34,12 +34,7 @@ pub fn step(penetration: f64, d_max: f64, c_max: f64) -> f64 {
 impl HertzStep {
     /// The elastic part `K δ^n` in N.
     fn elastic(&self, penetration: f64) -> f64 {
-        // δ√δ costs a tenth of a general power, and 1.5 is what almost everybody uses.
-        if self.exponent == 1.5 {
-            self.stiffness * penetration * penetration.sqrt()
-        } else {
-            self.stiffness * penetration.powf(self.exponent)
-        }
+        power_force(self.stiffness, self.exponent, penetration)
     }
 }
 

@@ -19,7 +19,7 @@ pub use hertz_step::{HertzStep, step};
 pub use impact::{Impact, Moment, hit, impact};
 pub use joint::{Clearance, Contact, Frame, circle_in_ring, valid_penetration};
 pub use out_of_round::OutOfRound;
-pub use stiffness::{Material, StiffnessForm, hertz_stiffness};
+pub use stiffness::{Material, StiffnessForm, hertz_stiffness, power_force};
 pub use touch::{After, SLOWEST_IMPACT, Touch};
 
 /// Normal force of a contact as a function of how deep and how fast the surfaces interpenetrate.
@@ -40,6 +40,11 @@ pub trait ForceLaw: std::fmt::Debug + Send + Sync {
     /// The same force in a hit that began at `impact_speed` m/s, above 0 (see [`Touch`]).
     fn normal_force_after(&self, penetration: f64, rate: f64, _impact_speed: f64) -> f64 {
         self.normal_force(penetration, rate)
+    }
+
+    /// Damping ∂F/∂δ̇ in N·s/m of a law that remembers, at a penetration in a hit that began at `impact_speed`.
+    fn damping(&self, _penetration: f64, _impact_speed: f64) -> f64 {
+        0.0
     }
 
     /// Deepest penetration in m of a lossless hit of `mass` kg at `speed` m/s.

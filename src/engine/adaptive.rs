@@ -278,7 +278,8 @@ impl Stepper for Adaptive {
         let span = until - t;
         let at = Situation { t: mechanism.epoch + t, mechanism, states: &self.states };
         let loads = mechanism.loads.iter().filter_map(|load| load.longest_step_at(at));
-        let longest = loads.fold(self.longest, f64::min);
+        let contacts = self.dynamics.longest_contact_step(mechanism, &self.now.contacts);
+        let longest = loads.fold(self.longest.min(contacts), f64::min);
         let mut h = self.next_step.min(longest);
         let (h, reached) = loop {
             let last = h >= span * (1.0 - 1e-9);

@@ -54,6 +54,15 @@ fn by_name<S: Serializer>(kind: &Kind, serializer: S) -> Result<S::Ok, S::Error>
     serializer.serialize_str(kind.name)
 }
 
+/// What [`LAWS_FILE`] says.
+#[derive(Serialize)]
+struct Written<'a> {
+    program: &'a str,
+    version: &'a str,
+    laws: &'a [LawFigures],
+    files: &'a [String],
+}
+
 /// Figures and their files.
 #[derive(Debug)]
 pub struct Drawn {
@@ -108,14 +117,15 @@ pub fn figures(kind: &'static Kind, law: &dyn ForceLaw) -> LawFigures {
 /// A file that cannot be written; the folder is left as it was.
 pub fn write_laws(all: &[LawFigures], folder: Folder) -> Result<Drawn, RunError> {
     let pictures = pictures(all)?;
-    let json = to_json(&all);
+    let files = pictures.iter().map(|picture| picture.file.clone());
+    let files: Vec<String> = [LAWS_FILE.to_owned()].into_iter().chain(files).collect();
+    let [program, version] = [env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION")];
+    let json = to_json(&Written { program, version, laws: all, files: &files });
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
     write(LAWS_FILE, &json)?;
     for picture in &pictures {
         write(&picture.file, &picture.svg)?;
     }
-    let files = pictures.into_iter().map(|picture| picture.file);
-    let files = [LAWS_FILE.to_owned()].into_iter().chain(files).collect();
     Ok(Drawn { json, folder: folder.finish()?, files })
 }
 
@@ -123,7 +133,7 @@ pub fn write_laws(all: &[LawFigures], folder: Folder) -> Result<Drawn, RunError>
 /// each other.
 fn family(kind: &Kind) -> &'static str {
     match kind.losses {
-        _ if kind.takes("length") => "line contact",
+        _ if kind.takes("length") => "of line contact",
         Losses::Restitution => "by restitution",
         Losses::Elastic | Losses::Damping | Losses::Step => "by damping, and elastic",
     }

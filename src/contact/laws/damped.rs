@@ -55,6 +55,15 @@ impl<S: Spring> ForceLaw for Damped<S> {
         self.spring.penetration(force)
     }
 
+    fn damping(&self, penetration: f64, impact_speed: f64) -> f64 {
+        match self.loss {
+            Loss::None => 0.0,
+            Loss::Viscous(c) => c,
+            Loss::Hysteresis(alpha) => alpha * self.spring.force(penetration),
+            Loss::Restitution(h) => h * self.spring.force(penetration) / impact_speed,
+        }
+    }
+
     fn deepest_penetration(&self, mass: f64, speed: f64) -> f64 {
         self.spring.deepest(mass, speed)
     }
@@ -75,13 +84,7 @@ impl<S: Spring> ForceLaw for Damped<S> {
     /// [`HertzStep`](crate::contact::HertzStep) has it.
     fn longest_step(&self, mass: f64, speed: f64) -> f64 {
         let elastic = self.contact_time(mass, speed) / 5.0;
-        let deepest = || self.spring.force(self.spring.deepest(mass, speed));
-        let damping = match self.loss {
-            Loss::None => 0.0,
-            Loss::Viscous(c) => c,
-            Loss::Hysteresis(alpha) => alpha * deepest(),
-            Loss::Restitution(h) => h * deepest() / speed,
-        };
+        let damping = self.damping(self.spring.deepest(mass, speed), speed);
         if damping > 0.0 { elastic.min(mass / damping) } else { elastic }
     }
 

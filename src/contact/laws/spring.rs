@@ -1,5 +1,6 @@
 //! Elastic forces over the penetration: what the laws of this room have beside their damping.
 
+use crate::contact::power_force;
 use std::f64::consts::PI;
 use std::fmt::Debug;
 
@@ -96,12 +97,7 @@ pub struct Power {
 
 impl Spring for Power {
     fn force(&self, penetration: f64) -> f64 {
-        // δ√δ costs a tenth of a general power.
-        if self.exponent == 1.5 {
-            self.stiffness * penetration * penetration.sqrt()
-        } else {
-            self.stiffness * penetration.powf(self.exponent)
-        }
+        power_force(self.stiffness, self.exponent, penetration)
     }
 
     fn stiffness(&self) -> Option<f64> {

@@ -217,6 +217,25 @@ impl Dynamics {
         }
     }
 
+    /// The longest step in s that contacts stand which damp as laws that remember say, `contacts` being those of the
+    /// instant last remembered; infinite where no law remembers.
+    ///
+    /// A damper c on a mass m: the velocity at the end of a step follows from an acceleration that depends on it
+    /// by `h c/m` times a third; two such times leave a margin. Longer steps do not see that error: what they
+    /// predict has it, too.
+    pub fn longest_contact_step(&self, mechanism: &Mechanism, contacts: &[Contact]) -> f64 {
+        let joints = mechanism.revolutes.iter().zip(contacts);
+        let steps = self.touches.iter().zip(joints).filter_map(|(touch, (joint, contact))| {
+            let Bearing::Clearance(clearance) = &joint.bearing else { return None };
+            let Contact { penetration, rate, .. } = *contact;
+            let speed = touch.after(0.0).impact_speed(penetration, rate);
+            (penetration > 0.0).then(|| {
+                2.0 * mechanism.joint_mass(joint) / clearance.law.damping(penetration, speed)
+            })
+        });
+        steps.fold(f64::INFINITY, f64::min)
+    }
+
     /// Fills `out.accelerations` from `out.wrenches` and the rigid joints, and, where drives are
     /// prescribed, the efforts that the command takes.
     pub fn accelerations(

@@ -1,6 +1,7 @@
 //! One motion under several contact models: the contact law, the physics engine's own contacts, and
 //! ideal joints, over a list of steps and several starts.
 
+pub mod by_law;
 mod first_hit;
 mod page;
 mod pictures;

@@ -118,7 +118,10 @@ pub struct ChaosResult {
     pub pairs: usize,
 }
 
-fn by_key<S: serde::Serializer>(means: &[Mean], serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn by_key<S: serde::Serializer>(
+    means: &[Mean],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     let entry = |(quantity, mean): (&super::quantities::Quantity, &Mean)| {
         let mean = serde_json::to_value(mean).unwrap_or(Value::Null);
         (quantity.key.to_owned(), mean)
