@@ -136,15 +136,7 @@ impl Document {
         if table.get("kind").is_none_or(|kind| kind == new_kind) {
             return;
         }
-        let origins = &mut self.origins;
-        table.retain(|key, _| {
-            let path = format!("{section}.{key}");
-            let keep = matches!(origins.places.get(&path), Some(Place::Set(_)));
-            if !keep {
-                origins.forget(&path);
-            }
-            keep
-        });
+        self.origins.drop_file_keys(section, table, |_| true);
     }
 
     fn forget_other_law(&mut self, section: &str, law: &Value) {
@@ -163,17 +155,7 @@ impl Document {
             _ => None,
         });
         let Some(Value::Table(table)) = found else { return };
-        let origins = &mut self.origins;
-        table.retain(|key, _| {
-            let path = format!("{section}.{key}");
-            let keep = !is_law_key(key)
-                || law.takes(key)
-                || matches!(origins.places.get(&path), Some(Place::Set(_)));
-            if !keep {
-                origins.forget(&path);
-            }
-            keep
-        });
+        self.origins.drop_file_keys(section, table, |key| is_law_key(key) && !law.takes(key));
     }
 
     /// Values that TOML allows and nothing here can use: numbers that are infinite or none, texts that act on what
@@ -208,6 +190,18 @@ impl Origins {
     /// Whether something was written at `path`.
     pub(super) fn has(&self, path: &str) -> bool {
         self.places.contains_key(path)
+    }
+
+    /// Takes keys out of a section, but not those that an override gave.
+    fn drop_file_keys(&mut self, section: &str, table: &mut Table, dropped: impl Fn(&str) -> bool) {
+        table.retain(|key, _| {
+            let path = format!("{section}.{key}");
+            let keep = !dropped(key) || matches!(self.places.get(&path), Some(Place::Set(_)));
+            if !keep {
+                self.forget(&path);
+            }
+            keep
+        });
     }
 
     fn in_file(&self, line: Option<u32>) -> Location {
