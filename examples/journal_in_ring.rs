@@ -35,7 +35,7 @@ fn main() {
         d_max: 1e-5,
         clip: true,
     };
-    let friction = Some(CoulombFriction { coefficient: 0.1, velocity: 1e-3 });
+    let friction = Some(CoulombFriction { coefficient: 0.1, velocity: 1e-3 }.into());
     let mut joints = ClearanceJoints::new();
     let joint = joints.add(
         &mut world,

@@ -13,7 +13,7 @@
 //! Everything about the machine is read off its [`Mechanism`], effects included.
 
 use super::spectrum::{Signal, fast_length};
-use crate::contact::CoulombFriction;
+use crate::contact::Friction;
 use crate::measure::filter::{ZeroPhase, derivative};
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::{Bearing, Body, BodyState, Command, Drive, Mechanism, Revolute, Situation};
@@ -369,7 +369,7 @@ impl<'a> Machine<'a> {
 }
 
 /// Friction of a joint and its journal's radius in m, if it rubs.
-fn friction(joint: &Revolute) -> Option<(CoulombFriction, f64)> {
+fn friction(joint: &Revolute) -> Option<(Friction, f64)> {
     match &joint.bearing {
         Bearing::Clearance(clearance) => Some((clearance.friction?, clearance.journal_radius)),
         Bearing::Ideal | Bearing::Native { .. } => None,

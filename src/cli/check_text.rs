@@ -1,7 +1,6 @@
 //! The text of `freeplay check`.
 
 use crate::report::{length, number};
-use crate::scenario::Law;
 use crate::study::{CheckedMachine, Engines};
 use std::fmt::Write as _;
 
@@ -139,17 +138,15 @@ fn joints(text: &mut Text, m: &CheckedMachine) {
             Some(clearance) => format!("clearance {}", length(clearance)),
             None => "ideal".to_owned(),
         };
-        if let (Some(stiffness), Some(time)) = (joint.stiffness, joint.contact_time_s) {
-            let _ = write!(
-                value,
-                "   K = {} N/m^n   a hit lasts about {} µs",
-                number(stiffness),
-                number(1e6 * time)
-            );
+        if let Some(stiffness) = joint.stiffness {
+            let _ = write!(value, "   K = {} N/m^n", number(stiffness));
+        }
+        if let Some(time) = joint.contact_time_s {
+            let _ = write!(value, "   a hit lasts about {} µs", number(1e6 * time));
         }
         text.entry(&joint.joint, &value);
     }
-    if m.law == Law::HertzStep {
+    if m.law.kind().is_some() {
         text.line(&format!("  (hits taken at {} m/s)", number(m.impact_speed_m_s)));
     }
     let step = match (m.step_s, m.tolerance_m_s) {

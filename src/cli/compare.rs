@@ -1,5 +1,6 @@
 //! `freeplay compare`: one motion under several contact models.
 
+use super::compare_laws::{self, figure};
 use super::failure::{Failure, refuse_errors, refuse_faults};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::progress::Progress;
@@ -8,7 +9,7 @@ use crate::scenario::Law;
 use crate::simulate::{assemble, findings};
 use crate::study::compare::{
     COMPARE_FILE, CompareError, Compared, Options, QUANTITIES, SAMPLE_INTERVAL, Use, compare,
-    in_words, law_key, simulated_time,
+    simulated_time,
 };
 use clap::Args;
 use std::fmt::Write as _;
@@ -23,6 +24,10 @@ use std::fmt::Write as _;
 ///
 /// The native contacts are given a spring that lasts as long and returns as much speed in one hit as
 /// the law; [native] in the scenario sets them otherwise.
+///
+/// With --laws, the scenario is simulated under each of these laws instead, at its tolerance and at equal
+/// restitution where that can be matched: `index.html`, `compare-laws.json` and `compare-laws.csv` say which results depend on the
+/// law by more than chaos makes them differ from start to start.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
@@ -39,6 +44,9 @@ pub(super) struct Arguments {
     /// Starts over which statistics are taken: points around a circle, otherwise tiny displacements
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(2..=1000))]
     starts: u16,
+    /// Compare contact laws with each other instead: `all`, or names separated by commas
+    #[arg(long, value_name = "LAW,…", conflicts_with = "steps")]
+    laws: Option<String>,
     #[command(flatten)]
     folder: FolderOptions,
     #[command(flatten)]
@@ -51,6 +59,8 @@ Examples:
   freeplay compare --steps 2e-5,1e-5,5e-6,2e-6 --starts 32
   freeplay compare my-machine.toml --set joints.clearance=1e-4
   freeplay compare --set native.restitution=0.7       another native setting
+  freeplay compare --laws all                         every contact law, at equal restitution
+  freeplay compare --laws hertz-step,flores,liu --starts 16
   freeplay compare --json --quiet | jq -r '.answer[]'";
 
 /// Steps that a list may have: each is simulated under three models.
@@ -60,6 +70,10 @@ const MOST_STEPS: usize = 8;
 const SHORTEST_STEP: f64 = 1e-7;
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(list) = &arguments.laws {
+        let Arguments { scenario, starts, folder, print, .. } = arguments;
+        return compare_laws::main(list, scenario, usize::from(*starts), folder, print);
+    }
     let steps = steps(&arguments.steps).map_err(|problem| Failure::Input(vec![problem]))?;
     let options = Options { steps, starts: arguments.starts.into() };
     let mut scenario = arguments.scenario.load()?;
@@ -128,15 +142,11 @@ fn text(compared: &Compared) -> String {
     );
     for row in &c.rows {
         let step = row.step_s.map_or("tolerance".to_owned(), |step| format!("{step:e} s"));
-        let cell = |key: &str| {
-            let found = QUANTITIES.iter().zip(&row.quantities).find(|(q, _)| q.key == key);
-            found.map_or(String::new(), |(quantity, mean)| in_words(quantity, mean.mean))
-        };
-        let [path, peak, fraction, impacts] = chosen.map(cell);
+        let [path, peak, fraction, impacts] = chosen.map(|key| figure(&row.quantities, key));
         let _ = writeln!(
             text,
             "  {:<12}{step:<12}{path:>14}{peak:>14}{fraction:>12}{impacts:>12}{:>14}{}",
-            law_key(row.law),
+            row.law.name(),
             number(row.wall_s_per_simulated_s),
             if row.halted > 0 {
                 "  broke down"

@@ -1,7 +1,7 @@
 //! `freeplay effects`: what can act on a machine beside what is declared.
 
 use super::failure::Failure;
-use super::output;
+use super::output::{self, paragraph};
 use crate::effects::{ALL, Joints, Kind, Parameter, Senses, Targets, named};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -33,9 +33,6 @@ Examples:
   freeplay effects --json | jq '.[].name'
   freeplay run --set effect=[{kind=\"payload\",mass_kg=0.5}]      the built-in machine with one
   freeplay sweep my.toml --vary effect.0.mass_kg=0..1:20        the first effect of a file, varied";
-
-/// Columns of a line of text.
-const WIDTH: usize = 100;
 
 const INTRODUCTION: &str = "An effect acts on a machine beside what its scenario declares. A scenario has any number of them, \
      each an [[effect]] with its kind and its parameters; they apply in their order, on top of each \
@@ -80,38 +77,8 @@ fn explained(kind: &Kind) -> String {
             format!("default {default}"),
         ]
     };
-    let rows: Vec<[String; 4]> = kind.parameters.iter().map(columns).collect();
-    let width = |i: usize| rows.iter().map(|row| row[i].len()).max().unwrap_or(0);
-    for (row, parameter) in rows.iter().zip(kind.parameters) {
-        let mut line = String::from("    ");
-        for (i, cell) in row.iter().enumerate() {
-            // Writing to a string cannot fail.
-            let _ = write!(line, "{cell:<width$}  ", width = width(i));
-        }
-        let start = line.chars().count();
-        text += &paragraph(&line, &" ".repeat(start), parameter.about);
-    }
-    text
-}
-
-/// Words after `first`, lines after the first one after `next`.
-fn paragraph(first: &str, next: &str, words: &str) -> String {
-    let (mut text, mut line) = (String::new(), first.to_owned());
-    let mut empty = true;
-    for word in words.split_whitespace() {
-        if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            text += line.trim_end();
-            text.push('\n');
-            next.clone_into(&mut line);
-            empty = true;
-        }
-        if !empty {
-            line.push(' ');
-        }
-        line += word;
-        empty = false;
-    }
-    text + line.trim_end() + "\n"
+    let rows = kind.parameters.iter().map(|parameter| (columns(parameter), parameter.about));
+    text + &output::parameters(&rows.collect::<Vec<_>>())
 }
 
 /// An `[[effect]]` that can be pasted into a scenario for the built-in machine.

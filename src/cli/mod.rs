@@ -9,10 +9,12 @@ mod calibrate;
 mod check;
 mod check_text;
 mod compare;
+mod compare_laws;
 mod completions;
 mod effects;
 mod expand;
 mod failure;
+mod laws;
 mod merge;
 mod options;
 mod output;
@@ -52,6 +54,7 @@ Examples:
   freeplay calibrate --rig rig.toml --data run.csv   what a declared model lacks, by measured data
   freeplay expand                               the same machine, body by body, to be changed
   freeplay effects payload                      what a scenario can add to a machine
+  freeplay laws hunt-crossley                   contact laws, what they are and do
 
 Exit codes: 0 done, 2 wrong input, 130 and 143 ended by Ctrl-C and SIGTERM, 1 anything else.";
 
@@ -67,6 +70,7 @@ enum Command {
     Sweep(sweep::Arguments),
     Merge(merge::Arguments),
     Effects(effects::Arguments),
+    Laws(laws::Arguments),
     Expand(expand::Arguments),
     Completions(completions::Arguments),
 }
@@ -86,6 +90,7 @@ pub fn main() -> ExitCode {
         Command::Sweep(arguments) => sweep::main(&arguments),
         Command::Merge(arguments) => merge::main(&arguments),
         Command::Effects(arguments) => effects::main(&arguments),
+        Command::Laws(arguments) => laws::main(&arguments),
         Command::Expand(arguments) => expand::main(&arguments),
         Command::Completions(arguments) => completions::main(&arguments),
     };

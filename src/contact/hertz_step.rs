@@ -1,6 +1,6 @@
 //! The Hertz spring with STEP damping: ADAMS' IMPACT function, equations 4–6 of the source paper.
 
-use super::ForceLaw;
+use super::{ForceLaw, power_force};
 use std::sync::Arc;
 
 /// Hertz spring plus a damper that fades in with penetration (paper eqs. 4 and 6):
@@ -34,24 +34,7 @@ pub fn step(penetration: f64, d_max: f64, c_max: f64) -> f64 {
 impl HertzStep {
     /// The elastic part `K δ^n` in N.
     fn elastic(&self, penetration: f64) -> f64 {
-        // δ√δ costs a tenth of a general power, and 1.5 is what almost everybody uses.
-        if self.exponent == 1.5 {
-            self.stiffness * penetration * penetration.sqrt()
-        } else {
-            self.stiffness * penetration.powf(self.exponent)
-        }
-    }
-
-    /// Deepest penetration in m of a lossless hit: `½ m v² = K δ^(n+1)/(n+1)`.
-    pub fn deepest_penetration(&self, mass: f64, speed: f64) -> f64 {
-        let n1 = self.exponent + 1.0;
-        (n1 * mass * speed * speed / (2.0 * self.stiffness)).powf(1.0 / n1)
-    }
-
-    /// Duration in s of a lossless Hertzian hit, `T = 2.94 δ_max/v` (K. L. Johnson, *Contact
-    /// Mechanics*, 1985, §11.4: 2.94 = 2√π Γ(7/5)/Γ(9/10) for n = 1.5).
-    pub fn contact_time(&self, mass: f64, speed: f64) -> f64 {
-        2.9432 * self.deepest_penetration(mass, speed) / speed
+        power_force(self.stiffness, self.exponent, penetration)
     }
 }
 
@@ -63,6 +46,22 @@ impl ForceLaw for HertzStep {
         let damping = step(penetration, self.d_max, self.c_max);
         let force = self.elastic(penetration) + damping * rate;
         if self.clip { force.max(0.0) } else { force }
+    }
+
+    /// Deepest penetration in m of a lossless hit: `½ m v² = K δ^(n+1)/(n+1)`.
+    fn deepest_penetration(&self, mass: f64, speed: f64) -> f64 {
+        let n1 = self.exponent + 1.0;
+        (n1 * mass * speed * speed / (2.0 * self.stiffness)).powf(1.0 / n1)
+    }
+
+    /// Duration in s of a lossless Hertzian hit, `T = 2.94 δ_max/v` (K. L. Johnson, *Contact
+    /// Mechanics*, 1985, §11.4: 2.94 = 2√π Γ(7/5)/Γ(9/10) for n = 1.5).
+    fn contact_time(&self, mass: f64, speed: f64) -> f64 {
+        2.9432 * self.deepest_penetration(mass, speed) / speed
+    }
+
+    fn stiffness(&self) -> Option<f64> {
+        Some(self.stiffness)
     }
 
     fn resting_penetration(&self, force: f64) -> f64 {

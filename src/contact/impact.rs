@@ -17,12 +17,24 @@ const REFINEMENT: f64 = 200.0;
 /// Steps after which a hit without end (a damper that never lets go) is taken to be over.
 const LONGEST: usize = 100_000;
 
+/// A moment of a hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Penetration in m.
+    pub depth: f64,
+    /// Its rate in m/s.
+    pub rate: f64,
+    /// Force of the law in N.
+    pub force: f64,
+}
+
 /// A free `mass` (kg) hits the surface at `speed` m/s under a law: `m δ̈ = −F(δ, δ̇)` from δ = 0,
-/// by Heun's method.
-pub fn impact(law: &dyn ForceLaw, mass: f64, speed: f64) -> Impact {
+/// by Heun's method. `look` is shown every step in contact.
+pub fn hit(law: &dyn ForceLaw, mass: f64, speed: f64, look: &mut dyn FnMut(Moment)) -> Impact {
     let dt = law.longest_step(mass, speed) / REFINEMENT;
-    let force =
-        |depth: f64, rate: f64| if depth > 0.0 { law.normal_force(depth, rate) } else { 0.0 };
+    let force = |depth: f64, rate: f64| {
+        if depth > 0.0 { law.normal_force_after(depth, rate, speed) } else { 0.0 }
+    };
     let (mut depth, mut rate) = (0.0, speed);
     let mut hit = Impact { rebound: 0.0, duration: 0.0 };
     for _ in 0..LONGEST {
@@ -35,9 +47,15 @@ pub fn impact(law: &dyn ForceLaw, mass: f64, speed: f64) -> Impact {
             break;
         }
         hit.duration += dt;
+        look(Moment { depth, rate, force: force(depth, rate) });
     }
     hit.rebound = (-rate).max(0.0);
     hit
+}
+
+/// A [`hit`] that nobody looks at.
+pub fn impact(law: &dyn ForceLaw, mass: f64, speed: f64) -> Impact {
+    hit(law, mass, speed, &mut |_| {})
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! One clearance joint: a round journal inside a round bearing ring, both of them rigid apart from
 //! the local give that the force law describes.
 
-use super::{CoulombFriction, ForceLaw};
+use super::{After, ForceLaw, Friction};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub struct Clearance {
     /// Normal force as a function of penetration and its rate.
     pub law: Arc<dyn ForceLaw>,
     /// Friction at the contact point, if any.
-    pub friction: Option<CoulombFriction>,
+    pub friction: Option<Friction>,
 }
 
 impl Clearance {
@@ -81,7 +81,35 @@ impl Clearance {
     /// `F_N` acts along the line of centres, −n on the journal and +n on the bearing; friction at
     /// the journal's surface point, with arms `R_j` from the journal's centre and `R_j + |e|` from
     /// the bearing's. Both forces are opposite, so momentum and moment of momentum are kept.
+    ///
+    /// Of a law that remembers, the force of a hit that begins now; [`forces_after`](Self::forces_after) has
+    /// its memory.
     pub fn forces(&self, bearing: &Frame, journal: &Frame) -> (Contact, Option<[Vector3<f64>; 2]>) {
+        self.forces_by(
+            |penetration, rate| self.law.normal_force(penetration, rate),
+            bearing,
+            journal,
+        )
+    }
+
+    /// The same with what a law that [remembers](ForceLaw::remembers) remembers of the joint.
+    pub fn forces_after(
+        &self,
+        memory: After,
+        bearing: &Frame,
+        journal: &Frame,
+    ) -> (Contact, Option<[Vector3<f64>; 2]>) {
+        let force = |penetration, rate| self.normal_force_after(memory, penetration, rate);
+        self.forces_by(force, bearing, journal)
+    }
+
+    #[inline(always)]
+    fn forces_by(
+        &self,
+        normal_force: impl FnOnce(f64, f64) -> f64,
+        bearing: &Frame,
+        journal: &Frame,
+    ) -> (Contact, Option<[Vector3<f64>; 2]>) {
         let eccentricity = journal.centre - bearing.centre;
         let (penetration, normal) = circle_in_ring(eccentricity, self.radial());
         let relative = journal.velocity - bearing.velocity;
@@ -90,11 +118,17 @@ impl Clearance {
         if penetration <= 0.0 {
             return (contact, None);
         }
-        contact.normal_force = self.law.normal_force(penetration, rate);
+        contact.normal_force = normal_force(penetration, rate);
         let to_surface = [self.journal_radius + penetration + self.radial(), self.journal_radius];
         let arms = to_surface.map(|radius| normal * radius);
         let wrenches = self.press(&mut contact, [bearing, journal], normal, to_surface, arms);
         (contact, Some(wrenches))
+    }
+
+    /// Force in N of a law that remembers, at a penetration (m) and its rate (m/s).
+    pub(super) fn normal_force_after(&self, memory: After, penetration: f64, rate: f64) -> f64 {
+        let impact_speed = memory.impact_speed(penetration, rate);
+        self.law.normal_force_after(penetration, rate, impact_speed)
     }
 
     /// Adds friction to a contact whose normal force is known, and puts both on bearing and journal: the
@@ -124,13 +158,18 @@ impl Clearance {
 
 #[cfg(test)]
 mod tests {
-    use super::super::HertzStep;
+    use super::super::{CoulombFriction, HertzStep};
     use super::*;
 
     fn joint(friction: Option<CoulombFriction>) -> Clearance {
         let law =
             HertzStep { stiffness: 3.7e9, exponent: 1.5, c_max: 500.0, d_max: 1e-5, clip: true };
-        Clearance { bearing_radius: 0.01, journal_radius: 0.0095, law: Arc::new(law), friction }
+        Clearance {
+            bearing_radius: 0.01,
+            journal_radius: 0.0095,
+            law: Arc::new(law),
+            friction: friction.map(Friction::from),
+        }
     }
 
     fn frame(centre: [f64; 2], arm: [f64; 2], velocity: [f64; 2], spin: f64) -> Frame {

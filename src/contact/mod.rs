@@ -7,17 +7,20 @@ mod friction;
 mod hertz_step;
 mod impact;
 mod joint;
+pub mod laws;
 mod out_of_round;
 mod stiffness;
+mod touch;
 
 use std::sync::Arc;
 
-pub use friction::CoulombFriction;
+pub use friction::{CoulombFriction, Friction};
 pub use hertz_step::{HertzStep, step};
-pub use impact::{Impact, impact};
+pub use impact::{Impact, Moment, hit, impact};
 pub use joint::{Clearance, Contact, Frame, circle_in_ring, valid_penetration};
 pub use out_of_round::OutOfRound;
-pub use stiffness::{Material, StiffnessForm, hertz_stiffness};
+pub use stiffness::{Material, StiffnessForm, hertz_stiffness, power_force};
+pub use touch::{After, SLOWEST_IMPACT, Touch};
 
 /// Normal force of a contact as a function of how deep and how fast the surfaces interpenetrate.
 ///
@@ -25,8 +28,40 @@ pub use stiffness::{Material, StiffnessForm, hertz_stiffness};
 pub trait ForceLaw: std::fmt::Debug + Send + Sync {
     /// Normal force in N, positive when the surfaces push each other apart.
     ///
-    /// `penetration` δ in m (only asked for δ > 0), `rate` δ̇ in m/s, positive while approaching.
+    /// `penetration` δ in m (only asked for δ > 0), `rate` δ̇ in m/s, positive while approaching. Of a law
+    /// that [`remembers`](Self::remembers), the force of a hit that begins at this rate.
     fn normal_force(&self, penetration: f64, rate: f64) -> f64;
+
+    /// Whether the force depends on how fast the hit began.
+    fn remembers(&self) -> bool {
+        false
+    }
+
+    /// The same force in a hit that began at `impact_speed` m/s, above 0 (see [`Touch`]).
+    fn normal_force_after(&self, penetration: f64, rate: f64, _impact_speed: f64) -> f64 {
+        self.normal_force(penetration, rate)
+    }
+
+    /// Damping ∂F/∂δ̇ in N·s/m of a law that remembers, at a penetration in a hit that began at `impact_speed`.
+    fn damping(&self, _penetration: f64, _impact_speed: f64) -> f64 {
+        0.0
+    }
+
+    /// Deepest penetration in m of a lossless hit of `mass` kg at `speed` m/s.
+    fn deepest_penetration(&self, mass: f64, speed: f64) -> f64;
+
+    /// Duration in s of that hit.
+    fn contact_time(&self, mass: f64, speed: f64) -> f64;
+
+    /// Stiffness K in N/mⁿ of a law whose elastic force is `K δⁿ`.
+    fn stiffness(&self) -> Option<f64> {
+        None
+    }
+
+    /// Deepest penetration in m up to which the law's formula holds, where it has such an end.
+    fn valid_depth(&self) -> Option<f64> {
+        None
+    }
 
     /// Penetration in m at which a contact at rest bears `force` N.
     fn resting_penetration(&self, force: f64) -> f64;

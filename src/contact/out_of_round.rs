@@ -1,6 +1,6 @@
 //! A bearing ring that is not a circle.
 
-use super::{Clearance, Contact, Frame};
+use super::{After, Clearance, Contact, Frame};
 use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -68,7 +68,7 @@ impl OutOfRound {
     }
 
     /// Forces in the joint, as [`Clearance::forces`] has them for a round ring; `turned` is the rotation
-    /// of the ring's body.
+    /// of the ring's body, `memory` what a law that remembers has of the joint.
     ///
     /// With δ = |e| − c(θ), the normal force acts along
     ///
@@ -79,6 +79,7 @@ impl OutOfRound {
     pub fn forces(
         &self,
         clearance: &Clearance,
+        memory: Option<After>,
         turned: UnitComplex<f64>,
         bearing: &Frame,
         journal: &Frame,
@@ -99,7 +100,11 @@ impl OutOfRound {
         }
         let steepness = gradient.norm();
         let normal = gradient / steepness;
-        contact.normal_force = steepness * clearance.law.normal_force(penetration, rate);
+        contact.normal_force = steepness
+            * match memory {
+                None => clearance.law.normal_force(penetration, rate),
+                Some(memory) => clearance.normal_force_after(memory, penetration, rate),
+            };
         let to_journal = normal * clearance.journal_radius;
         let arms = [eccentricity + to_journal, to_journal];
         let to_surface = arms.map(|arm| arm.dot(&normal));

@@ -35,8 +35,11 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     for index in setting.revolutes(mechanism)? {
         match &mut mechanism.revolutes[index].bearing {
             Bearing::Clearance(clearance) => {
-                let velocity = clearance.friction.map_or(SLIDING_SPEED, |f| f.velocity);
-                clearance.friction = Some(CoulombFriction { coefficient, velocity });
+                let coulomb = CoulombFriction { coefficient, velocity: SLIDING_SPEED };
+                clearance.friction = Some(match clearance.friction {
+                    Some(friction) => friction.with_coefficient(coefficient),
+                    None => coulomb.into(),
+                });
             }
             Bearing::Native { friction, .. } => *friction = coefficient,
             Bearing::Ideal => {}

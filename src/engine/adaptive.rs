@@ -29,10 +29,6 @@ pub const LONGEST_STEP: f64 = 2e-4;
 /// step ends closer to the pose, and loses more than it wins.
 const SINGULAR_STEP: f64 = 2e-5;
 
-/// Rate in m/s of a contact that counts as at rest where its damping is looked at: slower than any hit that
-/// matters, far above rounding.
-const SLOW: f64 = 1e-6;
-
 /// First step in s, before anything is known of the error.
 const FIRST_STEP: f64 = 1e-6;
 
@@ -124,23 +120,6 @@ impl Adaptive {
             peaks: vec![0.0; mechanism.revolutes.len()],
             errors: zeros,
         }
-    }
-
-    /// The longest step in s that the dampers of the contacts stand which touch now: `h ≤ m/c` (explicit, unstable
-    /// from 2), c how much the force grows with the rate. Beyond, a rattle below the tolerance feeds on itself,
-    /// and no error is seen.
-    fn longest_in_contact(&self, mechanism: &Mechanism) -> f64 {
-        let joints = mechanism.revolutes.iter().zip(&self.now.contacts);
-        let steps =
-            joints.filter(|(_, contact)| contact.penetration > 0.0).map(|(joint, contact)| {
-                let Bearing::Clearance(clearance) = &joint.bearing else { return f64::INFINITY };
-                let force = |rate| clearance.law.normal_force(contact.penetration, rate);
-                // Approaching, where no law that never pulls is cut off.
-                let rate = contact.rate.abs().max(SLOW);
-                let damping = (force(2.0 * rate) - force(rate)) / rate;
-                mechanism.joint_mass(joint) / damping.max(0.0)
-            });
-        steps.fold(f64::INFINITY, f64::min)
     }
 
     /// Makes `path` the forces at `t + tau` on the predicted path.
@@ -309,7 +288,8 @@ impl Stepper for Adaptive {
         let span = until - t;
         let at = Situation { t: mechanism.epoch + t, mechanism, states: &self.states };
         let loads = mechanism.loads.iter().filter_map(|load| load.longest_step_at(at));
-        let longest = loads.fold(self.longest, f64::min).min(self.longest_in_contact(mechanism));
+        let contacts = self.dynamics.longest_contact_step(mechanism, &self.now.contacts);
+        let longest = loads.fold(self.longest.min(contacts), f64::min);
         let mut h = self.next_step.min(longest);
         let (h, reached) = loop {
             let last = h >= span * (1.0 - 1e-9);

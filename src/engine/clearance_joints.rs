@@ -2,7 +2,7 @@
 
 use super::leapfrog::Leapfrog;
 use super::{JointColliders, Solver, to_rapier};
-use crate::contact::{Clearance, Contact};
+use crate::contact::{Clearance, Contact, Touch};
 use crate::mechanism::BodyState;
 use nalgebra::{Vector2, Vector3};
 use rapier2d_f64::dynamics::RigidBodyHandle;
@@ -36,6 +36,10 @@ pub struct ClearanceJoints {
     handles: Vec<RigidBodyHandle>,
     colliders: JointColliders,
     contacts: Vec<Contact>,
+    /// What each joint remembers of its contact, after the first step.
+    touches: Vec<Option<Touch>>,
+    /// Length of the last step in s.
+    last: f64,
     leapfrog: Option<Leapfrog>,
 }
 
@@ -65,6 +69,7 @@ impl ClearanceJoints {
         });
         self.joints.push((joint, indices));
         self.contacts.push(Contact::default());
+        self.touches.push(None);
         self.leapfrog = None;
         self.joints.len() - 1
     }
@@ -89,12 +94,20 @@ impl ClearanceJoints {
             self.leapfrog.get_or_insert_with(|| Leapfrog::new(self.handles.clone(), &world.bodies));
         let states = leapfrog.states();
         let mut wrenches = vec![Vector3::zeros(); self.handles.len()];
-        for ((joint, [ring, journal]), contact) in self.joints.iter().zip(&mut self.contacts) {
-            let (state, forces) = joint.clearance.forces(
-                &states[*ring].frame(joint.ring_point),
-                &states[*journal].frame(joint.journal_point),
-            );
+        let memories = self.contacts.iter_mut().zip(&mut self.touches);
+        for ((joint, [ring, journal]), (contact, touch)) in self.joints.iter().zip(memories) {
+            let memory = touch.map(|touch| touch.after(self.last));
+            let ring_frame = states[*ring].frame(joint.ring_point);
+            let journal_frame = states[*journal].frame(joint.journal_point);
+            let (state, forces) = match memory {
+                Some(memory) => joint.clearance.forces_after(memory, &ring_frame, &journal_frame),
+                None => joint.clearance.forces(&ring_frame, &journal_frame),
+            };
             *contact = state;
+            *touch = Some(match memory {
+                Some(memory) => memory.reached(state.penetration, state.rate),
+                None => Touch::begin(state.penetration, state.rate),
+            });
             if let Some([on_ring, on_journal]) = forces {
                 wrenches[*ring] += on_ring;
                 wrenches[*journal] += on_journal;
@@ -118,6 +131,7 @@ impl ClearanceJoints {
             body.add_force(force, false);
             body.add_torque(torque, false);
         }
-        leapfrog.record(&world.bodies, world.integration_parameters.dt);
+        self.last = world.integration_parameters.dt;
+        leapfrog.record(&world.bodies, self.last);
     }
 }

@@ -4,7 +4,7 @@
 use super::assembly::{Closure, matrix};
 use super::factors::Factors;
 use super::{Bearing, BodyState, Command, JointIndex, Mechanism, Revolute, Situation, Tracker};
-use crate::contact::CoulombFriction;
+use crate::contact::Friction;
 use nalgebra::{DMatrix, DVector, Dyn, UnitComplex, Vector2, Vector3};
 
 /// What a motion takes at one instant.
@@ -323,7 +323,7 @@ fn rub(
 }
 
 /// Friction of a joint and its journal's radius in m, if it rubs.
-fn friction(joint: &Revolute) -> Option<(CoulombFriction, f64)> {
+fn friction(joint: &Revolute) -> Option<(Friction, f64)> {
     match &joint.bearing {
         Bearing::Clearance(clearance) => Some((clearance.friction?, clearance.journal_radius)),
         Bearing::Ideal | Bearing::Native { .. } => None,

@@ -8,7 +8,7 @@ use super::parts::Parts;
 use super::path::DrivenPath;
 use super::templates::expand;
 use super::{motion, native};
-use crate::contact::HertzStep;
+use crate::contact::ForceLaw;
 use crate::effects::Wrong;
 use crate::engine::{Schedule, StepControl};
 use crate::mechanism::motion::{Line, Motion};
@@ -41,8 +41,6 @@ pub struct Machine {
     pub schedule: Schedule,
     /// How to step.
     pub control: StepControl,
-    /// Force law of each revolute joint with a declared clearance.
-    pub(super) laws: Vec<Option<HertzStep>>,
     /// Shortest and longest length that each driven prismatic joint is declared to have, in m.
     pub(super) ranges: Vec<Option<[f64; 2]>>,
 }
@@ -90,7 +88,6 @@ pub fn assemble(scenario: &Scenario) -> Result<Machine, Problem> {
         layout,
         schedule,
         control,
-        laws,
         ranges,
     })
 }
@@ -286,13 +283,12 @@ pub fn close(scenario: &Scenario, mechanism: &mut Mechanism) -> Result<(), Probl
 }
 
 impl Machine {
-    /// Stiffness K in N/mⁿ of joint `index` and how long it touches (s) in a lossless hit at `speed`
-    /// m/s, under the laws that have a stiffness.
-    pub fn contact(&self, index: usize, speed: f64) -> Option<(f64, f64)> {
+    /// The force law of joint `index`, and how long (s) it touches in a lossless hit at `speed` m/s.
+    pub fn contact(&self, index: usize, speed: f64) -> Option<(&dyn ForceLaw, f64)> {
         let joint = &self.mechanism.revolutes[index];
-        let Bearing::Clearance(_) = joint.bearing else { return None };
-        let law = self.laws[index]?;
-        Some((law.stiffness, law.contact_time(self.mechanism.joint_mass(joint), speed)))
+        let Bearing::Clearance(clearance) = &joint.bearing else { return None };
+        let law = &*clearance.law;
+        Some((law, law.contact_time(self.mechanism.joint_mass(joint), speed)))
     }
 
     /// The driven path of the machine without clearance, looked at from end to end; none where the motion

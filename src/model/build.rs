@@ -3,7 +3,8 @@
 use super::layout::{Layout, Written};
 use super::names::{mark, names};
 use super::parts::Parts;
-use crate::contact::{Clearance, CoulombFriction, HertzStep, Material, hertz_stiffness};
+use crate::contact::laws::Given;
+use crate::contact::{Clearance, HertzStep, Material};
 use crate::mechanism::{
     Actuator, Attachment, Bearing, Cascade, Drive, JointIndex, JointSpring, Mechanism, PointSpring,
     Prismatic, Reads, Revolute, Sensor, Stop,
@@ -20,7 +21,7 @@ pub(super) struct Built {
     pub mechanism: Mechanism,
     pub parts: Parts,
     pub layout: Layout,
-    /// The force law of each revolute joint with a declared clearance, whatever law it is under: native
+    /// The default law of each revolute joint with a declared clearance, whatever law it is under: native
     /// contacts are fitted to it.
     pub laws: Vec<Option<HertzStep>>,
 }
@@ -37,7 +38,7 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
             Joint::Revolute(joint) => {
                 let index = mechanism.revolutes.len();
                 let clearance = clearance(scenario, joint, index);
-                let law = clearance.map(|clearance| law(scenario, joint, clearance));
+                let given = clearance.map(|clearance| given(scenario, joint, clearance));
                 if clearance.is_some() {
                     declared.push(index);
                 }
@@ -45,10 +46,10 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
                     name: joint.name.clone(),
                     ring: first.0,
                     journal: second.0,
-                    bearing: bearing(scenario, joint, index, clearance, law),
+                    bearing: bearing(scenario, joint, index, given),
                     out_of_round: None,
                 });
-                laws.push(law);
+                laws.push(given.as_ref().map(HertzStep::from));
             }
             Joint::Prismatic(joint) => {
                 let ((base, base_angle), (slider, slider_angle)) = (first, second);
@@ -130,19 +131,23 @@ fn clearance(scenario: &Scenario, joint: &scenario::Revolute, index: usize) -> O
     joint.clearance.or_else(default).filter(|clearance| *clearance > 0.0)
 }
 
-/// The Hertz–STEP law of a joint.
-fn law(scenario: &Scenario, joint: &scenario::Revolute, clearance: f64) -> HertzStep {
+/// What the law of a joint is built from.
+fn given(scenario: &Scenario, joint: &scenario::Revolute, clearance: f64) -> Given {
     let contact = &scenario.contact;
-    let material =
-        Material { youngs_modulus: contact.youngs_modulus, poisson_ratio: contact.poisson_ratio };
     let bearing_radius = joint.bearing_radius.unwrap_or(scenario.joints.bearing_radius);
-    let stiffness = joint.stiffness.or(contact.stiffness).unwrap_or_else(|| {
-        let journal_radius = bearing_radius - clearance;
-        hertz_stiffness(contact.stiffness_form, material, bearing_radius, journal_radius)
-    });
-    HertzStep {
-        stiffness,
+    Given {
+        bearing_radius,
+        journal_radius: bearing_radius - clearance,
+        material: Material {
+            youngs_modulus: contact.youngs_modulus,
+            poisson_ratio: contact.poisson_ratio,
+        },
+        stiffness_form: contact.stiffness_form,
+        stiffness: joint.stiffness.or(contact.stiffness),
         exponent: contact.exponent,
+        length: contact.length,
+        restitution: joint.restitution.or(contact.restitution),
+        damping: joint.damping.or(contact.damping),
         c_max: joint.c_max.unwrap_or(contact.c_max),
         d_max: joint.d_max.unwrap_or(contact.d_max),
         clip: contact.clip,
@@ -153,25 +158,21 @@ fn bearing(
     scenario: &Scenario,
     joint: &scenario::Revolute,
     index: usize,
-    clearance: Option<f64>,
-    law: Option<HertzStep>,
+    given: Option<Given>,
 ) -> Bearing {
-    let (Some(clearance), Some(law)) = (clearance, law) else { return Bearing::Ideal };
-    let bearing_radius = joint.bearing_radius.unwrap_or(scenario.joints.bearing_radius);
-    let journal_radius = bearing_radius - clearance;
+    let Some(given) = given else { return Bearing::Ideal };
+    let Given { bearing_radius, journal_radius, .. } = given;
     let friction = joint.friction.unwrap_or_else(|| scenario.joints.friction.at(index));
-    match joint.law.unwrap_or(scenario.contact.law) {
-        Law::Ideal => Bearing::Ideal,
-        Law::Native => Bearing::Native { bearing_radius, journal_radius, friction },
-        Law::HertzStep => Bearing::Clearance(Clearance {
+    let law = joint.law.unwrap_or(scenario.contact.law);
+    match (law, law.kind()) {
+        (_, Some(kind)) => Bearing::Clearance(Clearance {
             bearing_radius,
             journal_radius,
-            law: Arc::new(law),
-            friction: (friction > 0.0).then_some(CoulombFriction {
-                coefficient: friction,
-                velocity: scenario.contact.friction_velocity,
-            }),
+            law: (kind.build)(&given),
+            friction: (friction > 0.0).then(|| scenario.contact.friction(friction)),
         }),
+        (Law::Native, None) => Bearing::Native { bearing_radius, journal_radius, friction },
+        (_, None) => Bearing::Ideal,
     }
 }
 

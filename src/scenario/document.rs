@@ -6,6 +6,7 @@ use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table, Value};
 
 use super::problem::{Location, Problem};
+use super::{Law, is_law_key};
 use crate::measure::shown::is_hidden;
 
 /// A TOML text after `--set` overrides, not yet given a meaning.
@@ -52,7 +53,9 @@ impl Document {
     ///
     /// Missing sections are made on the way. A number in the path counts the elements of a list
     /// from 0, and the number after the last makes a new one if its `kind` is what is set. A new `kind` starts its section afresh: what the file gave for the old kind (but
-    /// not what earlier overrides gave) is dropped, because it means nothing to the new one.
+    /// not what earlier overrides gave) is dropped, because it means nothing to the new one. A new contact
+    /// `law` drops the file's keys that belong to other laws, unless joints have laws of their own, which may
+    /// use them.
     pub(super) fn set(&mut self, assignment: &str) -> Result<(), Problem> {
         let (path, value) = assignment.split_once('=').unwrap_or((assignment, ""));
         let path = path.trim();
@@ -81,6 +84,9 @@ impl Document {
         let path = keys.join(".");
         if let Some(section) = path.strip_suffix(".kind") {
             self.forget_other_kind(section, &value);
+        }
+        if let Some(section) = path.strip_suffix(".law") {
+            self.forget_other_law(section, &value);
         }
         let mut node = child_of_table(&mut self.table, keys[0], &keys[1..]);
         let mut so_far = keys[0].to_owned();
@@ -130,15 +136,26 @@ impl Document {
         if table.get("kind").is_none_or(|kind| kind == new_kind) {
             return;
         }
-        let origins = &mut self.origins;
-        table.retain(|key, _| {
-            let path = format!("{section}.{key}");
-            let keep = matches!(origins.places.get(&path), Some(Place::Set(_)));
-            if !keep {
-                origins.forget(&path);
-            }
-            keep
+        self.origins.drop_file_keys(section, table, |_| true);
+    }
+
+    fn forget_other_law(&mut self, section: &str, law: &Value) {
+        let Some(law) = law.as_str().and_then(Law::named) else { return };
+        let joints = self.table.get("joint").and_then(Value::as_array);
+        let own =
+            joints.is_some_and(|joints| joints.iter().any(|joint| joint.get("law").is_some()));
+        if section == "contact" && own {
+            return;
+        }
+        let mut keys = section.split('.');
+        let root = keys.next().and_then(|key| self.table.get_mut(key));
+        let found = keys.fold(root, |node, key| match node? {
+            Value::Table(table) => table.get_mut(key),
+            Value::Array(elements) => elements.get_mut(key.parse::<usize>().ok()?),
+            _ => None,
         });
+        let Some(Value::Table(table)) = found else { return };
+        self.origins.drop_file_keys(section, table, |key| is_law_key(key) && !law.takes(key));
     }
 
     /// Values that TOML allows and nothing here can use: numbers that are infinite or none, texts that act on what
@@ -173,6 +190,18 @@ impl Origins {
     /// Whether something was written at `path`.
     pub(super) fn has(&self, path: &str) -> bool {
         self.places.contains_key(path)
+    }
+
+    /// Takes keys out of a section, but not those that an override gave.
+    fn drop_file_keys(&mut self, section: &str, table: &mut Table, dropped: impl Fn(&str) -> bool) {
+        table.retain(|key, _| {
+            let path = format!("{section}.{key}");
+            let keep = !dropped(key) || matches!(self.places.get(&path), Some(Place::Set(_)));
+            if !keep {
+                self.forget(&path);
+            }
+            keep
+        });
     }
 
     fn in_file(&self, line: Option<u32>) -> Location {

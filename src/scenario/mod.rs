@@ -18,6 +18,7 @@ mod sections;
 mod tests;
 mod validate;
 mod validate_described;
+mod validate_laws;
 mod validate_names;
 mod validate_shape;
 mod write;

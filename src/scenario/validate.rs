@@ -11,6 +11,7 @@ impl Scenario {
         checks.legs();
         checks.joints();
         checks.contact();
+        checks.problems.extend(super::validate_laws::problems(self));
         checks.native();
         checks.drive();
         checks.sensors();

@@ -80,11 +80,14 @@ impl Checks<'_> {
                     );
                     self.complain(&format!("{path}.clearance"), message, &help);
                 }
+                // What a law takes of the last two is checked with the laws.
                 let numbers = [
                     ("friction", joint.friction, 0.0),
                     ("c_max", joint.c_max, 0.0),
                     ("stiffness", joint.stiffness, f64::MIN_POSITIVE),
                     ("d_max", joint.d_max, f64::MIN_POSITIVE),
+                    ("restitution", joint.restitution, f64::NEG_INFINITY),
+                    ("damping", joint.damping, f64::NEG_INFINITY),
                 ];
                 let without = if joint.law == Some(super::Law::Ideal) {
                     Some("take one of both out")

@@ -1,9 +1,10 @@
 //! A scenario as TOML with every default filled in.
 
+use super::validate_laws::used;
 use super::{
     Body, Contact, Described, Drive, DriveMode, Environment, Ground, Joint, JointDrive, Joints,
     Legs, Mechanism, Motion, Native, Output, PerJoint, Scenario, Sensor, Sensors, Simulation,
-    Spring, Stop, Target,
+    Spring, Stop, Target, is_law_key,
 };
 use crate::effects::Setting;
 use crate::scenario::Columns;
@@ -27,7 +28,7 @@ struct Written<'a> {
     #[serde(skip_serializing_if = "is_empty")]
     joint: &'a [Joint],
     joints: &'a Joints,
-    contact: &'a Contact,
+    contact: LawKeys<'a>,
     native: &'a Native,
     #[serde(skip_serializing_if = "Option::is_none")]
     drive: Option<Drives<'a>>,
@@ -58,6 +59,26 @@ enum Drives<'a> {
     Each(&'a [JointDrive]),
 }
 
+/// `[contact]`, without the keys that mean nothing to any law of the machine.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum LawKeys<'a> {
+    All(&'a Contact),
+    Some(Table),
+}
+
+fn law_keys(scenario: &Scenario) -> LawKeys<'_> {
+    let contact = &scenario.contact;
+    let laws = used(scenario);
+    let keeps = |key: &str| !is_law_key(key) || laws.iter().any(|law| law.takes(key));
+    match Table::try_from(contact) {
+        Ok(table) if !table.keys().all(|key| keeps(key)) => {
+            LawKeys::Some(table.into_iter().filter(|(key, _)| keeps(key)).collect())
+        }
+        _ => LawKeys::All(contact),
+    }
+}
+
 fn is_empty<T>(list: &&[T]) -> bool {
     list.is_empty()
 }
@@ -82,7 +103,7 @@ pub(super) fn text(scenario: &Scenario) -> String {
         body: &parts.bodies,
         joint: &parts.joints,
         joints: &full.joints,
-        contact: &full.contact,
+        contact: law_keys(&full),
         native: &full.native,
         drive,
         spring: &parts.springs,

@@ -87,6 +87,7 @@ pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {
     found.extend(step(scenario, machine));
     found.extend(rows(scenario));
     found.extend(conformal(scenario, machine));
+    found.extend(too_deep(scenario, machine));
     found.extend(table_end(scenario, machine));
     found
 }
@@ -372,6 +373,26 @@ fn conformal(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
         );
         let help = "give contact.stiffness, or use \"printed\"";
         Finding::warning(scenario.problem("contact.stiffness_form", message, help))
+    })
+}
+
+/// A hit that goes deeper than the formula of its law holds.
+fn too_deep(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
+    let mechanism = &machine.mechanism;
+    mechanism.revolutes.iter().find_map(|joint| {
+        let Bearing::Clearance(clearance) = &joint.bearing else { return None };
+        let valid = clearance.law.valid_depth()?;
+        let mass = mechanism.joint_mass(joint);
+        let depth = clearance.law.deepest_penetration(mass, TYPICAL_IMPACT_SPEED);
+        (depth > valid).then(|| {
+            let message = format!(
+                "holds down to {valid:.1e} m in the joint {}, and a hit at {TYPICAL_IMPACT_SPEED} m/s goes \
+                 {depth:.1e} m deep: beyond, its tangent is taken",
+                joint.name
+            );
+            let help = "take the law \"liu\", which holds for small clearances, or a larger clearance";
+            Finding::warning(scenario.problem("contact.law", message, help))
+        })
     })
 }
 

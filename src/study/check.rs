@@ -202,7 +202,7 @@ pub struct CheckedJoint {
     pub joint: String,
     /// Radial clearance in m; none of an ideal joint.
     pub clearance_m: Option<f64>,
-    /// Contact stiffness K in N/mⁿ (n is `contact.exponent`); none where the law has none.
+    /// Contact stiffness K in N/mⁿ (n is `contact.exponent`, 1 under kelvin-voigt); none where the law has none.
     #[serde(rename = "stiffness_N_m_n")]
     pub stiffness: Option<f64>,
     /// How long a hit lasts, in s.
@@ -264,7 +264,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         CheckedJoint {
             joint: joint.name.clone(),
             clearance_m: radial_clearance(&joint.bearing),
-            stiffness: contact.map(|(stiffness, _)| stiffness),
+            stiffness: contact.and_then(|(law, _)| law.stiffness()),
             contact_time_s: contact.map(|(_, time)| time),
         }
     });

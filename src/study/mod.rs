@@ -7,6 +7,7 @@ pub mod compare;
 mod film;
 mod folder;
 mod forecast;
+pub mod laws;
 pub mod paper;
 mod pictures;
 mod recent;

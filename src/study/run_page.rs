@@ -253,7 +253,7 @@ fn provenance(s: &Summary) -> Vec<(String, String)> {
     };
     let more = [
         ("Seed", s.seed.to_string()),
-        ("Contact law", law(s.law).to_owned()),
+        ("Contact law", law(s.law)),
         ("Drive", drive.to_owned()),
         ("Step", step),
         ("Figures leave out", format!("the first {} s", number(s.settle_s))),
@@ -261,10 +261,12 @@ fn provenance(s: &Summary) -> Vec<(String, String)> {
     s.provenance.lines("scenario", Some(SCENARIO_FILE), more)
 }
 
-fn law(law: Law) -> &'static str {
-    match law {
-        Law::HertzStep => "hertz-step: Hertz stiffness with damping that steps in",
-        Law::Native => "native: the physics engine's own rigid contacts",
-        Law::Ideal => "ideal: no clearance",
-    }
+fn law(law: Law) -> String {
+    let about = match law {
+        Law::HertzStep => "Hertz stiffness with damping that steps in",
+        Law::Native => "the physics engine's own rigid contacts",
+        Law::Ideal => "no clearance",
+        Law::Other(kind) => kind.summary,
+    };
+    format!("{}: {about}", law.name())
 }

@@ -46,7 +46,7 @@ impl Case {
             journal_radius,
             law: Arc::new(hertz(bearing_radius, journal_radius)),
             friction: (self.friction > 0.0)
-                .then_some(CoulombFriction { coefficient: self.friction, velocity: 1e-3 }),
+                .then_some(CoulombFriction { coefficient: self.friction, velocity: 1e-3 }.into()),
         })
     }
 

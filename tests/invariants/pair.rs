@@ -86,7 +86,7 @@ impl Pair {
                     bearing_radius: 0.01,
                     journal_radius: 0.01 - self.clearance,
                     law: Arc::new(self.law(c_max)),
-                    friction,
+                    friction: friction.map(Into::into),
                 }),
                 out_of_round: None,
             }],

@@ -26,7 +26,7 @@ fn action_equals_reaction() {
                 bearing_radius: 0.01,
                 journal_radius: 0.0098,
                 law: Arc::new(hertz(0.01, 0.0098)),
-                friction: Some(CoulombFriction { coefficient, velocity: 1e-3 }),
+                friction: Some(CoulombFriction { coefficient, velocity: 1e-3 }.into()),
             };
             let (contact, forces) = joint.forces(&frames[0], &frames[1]);
             let Some(wrenches) = forces else {

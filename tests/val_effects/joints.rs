@@ -53,7 +53,7 @@ fn an_uneven_ring_keeps_energy() {
         let e = n * (5e-4 + 2e-4 * (3.0 * (direction - turn - 0.4)).cos() + 8e-6);
         let (ring, journal) = (frame(Vector2::zeros(), arms[0]), frame(e, arms[1]));
         let rotation = UnitComplex::new(turn);
-        let (contact, wrenches) = shape.forces(&clearance, rotation, &ring, &journal);
+        let (contact, wrenches) = shape.forces(&clearance, None, rotation, &ring, &journal);
         assert!((contact.penetration - 8e-6).abs() < 1e-15);
         let [on_ring, on_journal] = wrenches.expect("in contact");
         let h = 1e-9;
@@ -73,7 +73,7 @@ fn an_uneven_ring_keeps_energy() {
         let (velocity, spin) = (Vector2::new(0.3, -0.2), 4.0);
         let moving = Frame { spin, ..ring };
         let (contact, _) =
-            shape.forces(&clearance, rotation, &moving, &Frame { velocity, ..journal });
+            shape.forces(&clearance, None, rotation, &moving, &Frame { velocity, ..journal });
         let h = 1e-8;
         let later = |h: f64| depth(e + velocity * h, turn + spin * h);
         let rate = (later(h) - later(-h)) / (2.0 * h);

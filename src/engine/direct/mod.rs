@@ -170,7 +170,13 @@ impl Direct {
         let loads = mechanism.loads.iter().filter_map(|load| load.longest_step_at(at));
         let fastest = states.iter().map(|state| state.twist.z.abs()).fold(0.0, f64::max);
         let longest = loads.map(|step| STIFF * step).fold(LONGEST_STEP, f64::min);
-        let h = self.wanted.min(self.after_onset).min(longest).min(LARGEST_TURN / fastest);
+        let contacts = self.dynamics.longest_contact_step(mechanism, &evaluation.contacts);
+        let h = self
+            .wanted
+            .min(self.after_onset)
+            .min(longest)
+            .min(contacts)
+            .min(LARGEST_TURN / fastest);
         match next_onset(mechanism, states, &evaluation.contacts) {
             Some(onset) if onset.time < h => {
                 let reach = onset.reach(mechanism, self.tolerance);

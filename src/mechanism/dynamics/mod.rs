@@ -13,9 +13,9 @@ use super::constraints::{Constraints, Rigid, groups};
 use super::telescope::{PairMasses, Slideway, Telescope};
 use super::{
     Actuator, Bearing, BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory,
-    Prismatic, Situation, angle_near,
+    Prismatic, Revolute, Situation, angle_near,
 };
-use crate::contact::{Contact, circle_in_ring};
+use crate::contact::{After, Contact, Touch, circle_in_ring};
 use nalgebra::{Vector2, Vector3};
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
@@ -47,9 +47,17 @@ pub struct Dynamics {
     held: Vec<Held>,
     /// What each load remembers of the end of the last step.
     memories: Vec<Memory>,
+    /// What each revolute joint remembers of its contact; none at all where no law asks for it.
+    touches: Vec<Touch>,
+    /// Time in s of that memory.
+    touched: f64,
     /// Workspace of a group.
     constraints: Constraints,
 }
+
+/// Rate in m/s of a contact that counts as at rest where its damping is looked at: slower than any hit that
+/// matters, far above rounding.
+const SLOW: f64 = 1e-6;
 
 fn add(wrenches: &mut [Vector3<f64>], body: Option<usize>, wrench: Vector3<f64>) {
     if let Some(i) = body {
@@ -120,6 +128,8 @@ impl Dynamics {
                     load.begin(Situation { t: mechanism.epoch, mechanism, states: &starts })
                 })
                 .collect(),
+            touches: touches(mechanism, &starts),
+            touched: 0.0,
             constraints: Constraints::default(),
         }
     }
@@ -163,7 +173,7 @@ impl Dynamics {
         out.t = t;
         out.wrenches.copy_from_slice(&self.weights);
         for i in 0..mechanism.revolutes.len() {
-            contact(i, mechanism, states, out);
+            touch(i, self.memory(i, t), mechanism, states, out);
         }
         self.push(mechanism, t, states, out);
     }
@@ -187,7 +197,7 @@ impl Dynamics {
                 out.contacts[i] = Contact::default();
                 out.reactions[i] = Vector2::zeros();
             } else {
-                contact(i, mechanism, states, out);
+                touch(i, self.memory(i, t), mechanism, states, out);
             }
         }
         self.push(mechanism, t, states, out);
@@ -209,11 +219,47 @@ impl Dynamics {
         for (load, memory) in mechanism.loads.iter().zip(&mut self.memories) {
             *memory = load.remember(at, *memory);
         }
+        for (touch, joint) in self.touches.iter_mut().zip(&mechanism.revolutes) {
+            let Contact { penetration, rate, .. } = contact(joint, states);
+            *touch = touch.after(t - self.touched).reached(penetration, rate);
+        }
+        self.touched = t;
         for (angle, actuator) in self.angles.iter_mut().zip(&mechanism.actuators) {
             if let JointIndex::Revolute(i) = actuator.joint {
                 *angle = angle_near(mechanism.revolutes[i].rotation(states), *angle);
             }
         }
+    }
+
+    /// What revolute joint `i` remembers of its contact at time `t` (s).
+    fn memory(&self, i: usize, t: f64) -> Option<After> {
+        self.touches.get(i).map(|touch| touch.after(t - self.touched))
+    }
+
+    /// The longest step in s that the dampers of contacts stand, `contacts` being those of the instant last
+    /// remembered; infinite where none touches.
+    ///
+    /// A damper c on a mass m: the velocity at the end of a step follows from an acceleration that depends on it
+    /// by `h c/m` times a third; two such times leave a margin. Longer steps do not see that error: what they
+    /// predict has it, too, and a rattle below the tolerance feeds on itself.
+    pub fn longest_contact_step(&self, mechanism: &Mechanism, contacts: &[Contact]) -> f64 {
+        let joints = mechanism.revolutes.iter().zip(contacts).enumerate();
+        let touching = joints.filter(|(_, (_, contact))| contact.penetration > 0.0);
+        let steps = touching.filter_map(|(i, (joint, contact))| {
+            let Bearing::Clearance(clearance) = &joint.bearing else { return None };
+            let Contact { penetration, rate, .. } = *contact;
+            let damping = if clearance.law.remembers() {
+                let speed = self.touches.get(i)?.after(0.0).impact_speed(penetration, rate);
+                clearance.law.damping(penetration, speed)
+            } else {
+                // Approaching, where a law that never pulls is not cut off.
+                let force = |rate| clearance.law.normal_force(penetration, rate);
+                let rate = rate.abs().max(SLOW);
+                ((force(2.0 * rate) - force(rate)) / rate).max(0.0)
+            };
+            Some(2.0 * mechanism.joint_mass(joint) / damping)
+        });
+        steps.fold(f64::INFINITY, f64::min)
     }
 
     /// Fills `out.accelerations` from `out.wrenches` and the rigid joints, and, where drives are
@@ -295,8 +341,14 @@ impl Dynamics {
     }
 }
 
-/// Describes revolute joint `i`, and adds what its contact does.
-fn contact(i: usize, mechanism: &Mechanism, states: &[BodyState], out: &mut Evaluation) {
+/// Describes revolute joint `i`, and adds what its contact does; `memory` is what it remembers.
+fn touch(
+    i: usize,
+    memory: Option<After>,
+    mechanism: &Mechanism,
+    states: &[BodyState],
+    out: &mut Evaluation,
+) {
     let joint = &mechanism.revolutes[i];
     let contact = &mut out.contacts[i];
     let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
@@ -310,9 +362,12 @@ fn contact(i: usize, mechanism: &Mechanism, states: &[BodyState], out: &mut Eval
         }
         return;
     };
-    let (state, forces) = match &joint.out_of_round {
-        None => clearance.forces(&ring, &journal),
-        Some(shape) => shape.forces(clearance, joint.ring.rotation(states), &ring, &journal),
+    let (state, forces) = match (&joint.out_of_round, memory) {
+        (None, None) => clearance.forces(&ring, &journal),
+        (None, Some(memory)) => clearance.forces_after(memory, &ring, &journal),
+        (Some(shape), memory) => {
+            shape.forces(clearance, memory, joint.ring.rotation(states), &ring, &journal)
+        }
     };
     *contact = state;
     out.reactions[i] = Vector2::zeros();
@@ -321,6 +376,33 @@ fn contact(i: usize, mechanism: &Mechanism, states: &[BodyState], out: &mut Eval
         add(&mut out.wrenches, joint.ring.body, on_bearing);
         add(&mut out.wrenches, joint.journal.body, on_journal);
     }
+}
+
+/// What the joints remember at the start of a run; nothing where no law asks for it.
+fn touches(mechanism: &Mechanism, starts: &[BodyState]) -> Vec<Touch> {
+    let remembers = |joint: &Revolute| match &joint.bearing {
+        Bearing::Clearance(clearance) => clearance.law.remembers(),
+        Bearing::Ideal | Bearing::Native { .. } => false,
+    };
+    if !mechanism.revolutes.iter().any(remembers) {
+        return Vec::new();
+    }
+    let begin = |joint| {
+        let Contact { penetration, rate, .. } = contact(joint, starts);
+        Touch::begin(penetration, rate)
+    };
+    mechanism.revolutes.iter().map(begin).collect()
+}
+
+/// Where the journal of a joint stands; flying in one that no law acts in.
+fn contact(joint: &Revolute, states: &[BodyState]) -> Contact {
+    let Bearing::Clearance(clearance) = &joint.bearing else { return Contact::default() };
+    let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
+    let (contact, _) = match &joint.out_of_round {
+        None => clearance.forces(&ring, &journal),
+        Some(shape) => shape.forces(clearance, None, joint.ring.rotation(states), &ring, &journal),
+    };
+    contact
 }
 
 /// Two moving bodies on one prismatic joint, which no other rigid joint holds.

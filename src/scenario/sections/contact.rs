@@ -1,7 +1,11 @@
 //! `[contact]`: the force between a journal and its bearing.
 
-use crate::contact::StiffnessForm;
+use crate::contact::laws::{self, HERTZ_STEP, Kind};
+use crate::contact::{CoulombFriction, Friction, StiffnessForm};
+use serde::de::{Deserializer, Error};
+use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
 
 /// Contact law and its parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,9 +34,34 @@ pub struct Contact {
     /// radii. Default none: computed for each joint.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
+    /// Coefficient of restitution e of laws that are given by one. Default 0.73: what the default law returns
+    /// of a 0.1 kg journal at 0.1 m/s; 1 of conformal laws, which are elastic.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
+    /// Damping of laws that are given by one, in the law's own unit. Default that of the law.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping: Option<f64>,
+    /// Axial length of bearings, m, for laws of line contact. Default a bearing's diameter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length: Option<f64>,
     /// Sliding speed v_s at which friction is near its full value, m/s: μ F tanh(v/v_s).
     /// Default 1e-3: assumed; slow against the sliding speeds of a rattling journal.
     pub friction_velocity: f64,
+    /// How friction follows the sliding speed. Default `coulomb`, with a tanh around rest.
+    #[serde(skip_serializing_if = "FrictionLaw::is_coulomb")]
+    pub friction_law: FrictionLaw,
+    /// Static friction over sliding friction of `bengisu-akay` and `stribeck`, 1 or more. Default 1.5: dry steel,
+    /// about 0.6 against 0.4.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub static_ratio: Option<f64>,
+    /// Sliding speed over which these fall from static to sliding friction, m/s. Default ten times
+    /// `friction_velocity`, so that both show.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stribeck_velocity: Option<f64>,
+    /// Sliding speed below which `ambrosio` has no friction, m/s, below `friction_velocity`. Default a tenth of
+    /// that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest_velocity: Option<f64>,
 }
 
 impl Default for Contact {
@@ -47,14 +76,78 @@ impl Default for Contact {
             clip: true,
             stiffness_form: StiffnessForm::Printed,
             stiffness: None,
+            restitution: None,
+            damping: None,
+            length: None,
             friction_velocity: 1e-3,
+            friction_law: FrictionLaw::Coulomb,
+            static_ratio: None,
+            stribeck_velocity: None,
+            rest_velocity: None,
+        }
+    }
+}
+
+/// Static over sliding friction where nothing is written.
+const STATIC_RATIO: f64 = 1.5;
+
+impl Contact {
+    /// The friction law with the coefficient μ of a joint.
+    pub fn friction(&self, coefficient: f64) -> Friction {
+        let velocity = self.friction_velocity;
+        let ratio = self.static_ratio.unwrap_or(STATIC_RATIO);
+        let fall = self.stribeck_velocity.unwrap_or(10.0 * velocity);
+        match self.friction_law {
+            FrictionLaw::Coulomb => CoulombFriction { coefficient, velocity }.into(),
+            FrictionLaw::Threlfall => Friction::Threlfall { coefficient, velocity },
+            FrictionLaw::BengisuAkay => {
+                Friction::BengisuAkay { coefficient, ratio, velocity, fall }
+            }
+            FrictionLaw::Ambrosio => {
+                let rest = self.rest_velocity.unwrap_or(0.1 * velocity);
+                Friction::Ambrosio { coefficient, rest, velocity }
+            }
+            FrictionLaw::Stribeck => Friction::Stribeck { coefficient, ratio, velocity, fall },
+        }
+    }
+}
+
+/// A friction law by name; equations and sources stand at [`Friction`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrictionLaw {
+    /// `μ F tanh(v/v_s)`.
+    Coulomb,
+    /// An exponential up to `friction_velocity`.
+    Threlfall,
+    /// A parabola up to static friction at `friction_velocity`, an exponential fall beyond.
+    BengisuAkay,
+    /// Nothing up to `rest_velocity`, a straight line up to `friction_velocity`.
+    Ambrosio,
+    /// Coulomb's with static friction that falls over `stribeck_velocity`.
+    Stribeck,
+}
+
+impl FrictionLaw {
+    /// Whether it is the default.
+    fn is_coulomb(&self) -> bool {
+        *self == FrictionLaw::Coulomb
+    }
+
+    /// Whether a key of `[contact]` means something to it.
+    pub fn takes(self, key: &str) -> bool {
+        match key {
+            "static_ratio" | "stribeck_velocity" => {
+                matches!(self, FrictionLaw::BengisuAkay | FrictionLaw::Stribeck)
+            }
+            "rest_velocity" => self == FrictionLaw::Ambrosio,
+            _ => true,
         }
     }
 }
 
 /// A contact law by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
     /// Hertzian stiffness with a damping that steps in over `d_max` (paper, eqs. 3–6).
     HertzStep,
@@ -62,4 +155,71 @@ pub enum Law {
     Native,
     /// No clearance: ideal revolute joints.
     Ideal,
+    /// Another force law of the literature.
+    Other(&'static Kind),
+}
+
+/// The names of all laws, the physics engine's contact and ideal joints after the default.
+static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
+    let others = laws::ALL.into_iter().filter(|kind| **kind != HERTZ_STEP).map(|kind| kind.name);
+    [Law::HertzStep, Law::Native, Law::Ideal].map(Law::name).into_iter().chain(others).collect()
+});
+
+impl Law {
+    /// The law of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "native" => Some(Law::Native),
+            "ideal" => Some(Law::Ideal),
+            _ => laws::named(name).map(Law::of),
+        }
+    }
+
+    /// A force law.
+    pub fn of(kind: &'static Kind) -> Self {
+        if *kind == HERTZ_STEP { Law::HertzStep } else { Law::Other(kind) }
+    }
+
+    /// Its name in scenarios.
+    pub fn name(self) -> &'static str {
+        match self {
+            Law::HertzStep => HERTZ_STEP.name,
+            Law::Native => "native",
+            Law::Ideal => "ideal",
+            Law::Other(kind) => kind.name,
+        }
+    }
+
+    /// The force law that it is; none where no force law acts.
+    pub fn kind(self) -> Option<&'static Kind> {
+        match self {
+            Law::HertzStep => Some(&HERTZ_STEP),
+            Law::Native | Law::Ideal => None,
+            Law::Other(kind) => Some(kind),
+        }
+    }
+
+    /// Whether a key of `[contact]` means something under it: native contacts are fitted to the default law,
+    /// and a machine without clearance is the same file with another word.
+    pub fn takes(self, key: &str) -> bool {
+        self.kind().unwrap_or(&HERTZ_STEP).takes(key)
+    }
+}
+
+/// Whether a key of `[contact]` belongs to some laws and not to others.
+pub fn is_law_key(key: &str) -> bool {
+    laws::ALL.iter().any(|kind| kind.takes(key))
+}
+
+impl Serialize for Law {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for Law {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        Law::named(&name).ok_or_else(|| Error::unknown_variant(&name, &NAMES))
+    }
 }

@@ -166,6 +166,12 @@ pub struct Revolute {
     /// Stiffness K, N/m^1.5. Default that of `[contact]`, or from E, ν and the radii.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
+    /// Coefficient of restitution. Default that of `[contact]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
+    /// Damping in the law's unit. Default that of `[contact]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping: Option<f64>,
     /// Damping at full depth, N s/m. Default that of `[contact]`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub c_max: Option<f64>,

@@ -155,6 +155,50 @@ fn every_mistake_says_where_what_and_what_would_be_right() {
         (MINIMAL, &["contact.d_max=0"], &["above 0 m"]),
         (MINIMAL, &["contact.stiffness=0"], &["above 0 N/m^1.5"]),
         (MINIMAL, &["drive.damping=0"], &["above 0 N s/m"]),
+        // Laws and their keys.
+        (
+            "[mechanism]\nkind = \"3rpr\"\n[contact]\nlaw = \"hunt-crossley\"\nc_max = 3.0\n",
+            &[],
+            &[
+                "my.toml:5: contact.c_max: means nothing to the law \"hunt-crossley\"; that law takes",
+            ],
+        ),
+        (
+            "[mechanism]\nkind = \"3rpr\"\n[contact]\nlaw = \"hunt-crossley\"\nrestitution = 0.5\n",
+            &[],
+            &["my.toml:5: contact.restitution: means nothing", "that law takes damping (s/m)"],
+        ),
+        (
+            "[mechanism]\nkind = \"3rpr\"\n[contact]\nlaw = \"flores\"\ndamping = 10\n",
+            &[],
+            &["my.toml:5: contact.damping: means nothing", "that law takes restitution (no unit)"],
+        ),
+        (
+            MINIMAL,
+            &["contact.law=johnson", "contact.exponent=1.5"],
+            &["--set contact.exponent: means"],
+        ),
+        (MINIMAL, &["contact.law=flores", "contact.restitution=0"], &["above 0, at most 1"]),
+        (
+            MINIMAL,
+            &["contact.law=flores", "contact.restitution=1.1"],
+            &["is 1.1; expected above 0"],
+        ),
+        (MINIMAL, &["contact.law=kelvin-voigt", "contact.damping=-1"], &["0 or more"]),
+        (MINIMAL, &["contact.law=liu", "contact.length=0"], &["expected above 0"]),
+        (MINIMAL, &["contact.restitution=0.5"], &["means nothing to the law \"hertz-step\""]),
+        (
+            MINIMAL,
+            &["contact.static_ratio=2"],
+            &["--set contact.static_ratio: means nothing to the friction"],
+        ),
+        (
+            MINIMAL,
+            &["contact.friction_law=ambrosio", "contact.rest_velocity=1e-2"],
+            &["below contact.friction_velocity, 0.001 m/s"],
+        ),
+        (MINIMAL, &["contact.friction_law=stribek"], &["did you mean `stribeck`?"]),
+        (MINIMAL, &["contact.law=hunt-crosley"], &["did you mean `hunt-crossley`?"]),
         (MINIMAL, &["sensors.pose_std=-1"], &["0 m or more"]),
         (MINIMAL, &["motion.period=0"], &["--set motion.period: is 0; expected above 0 s"]),
         (MINIMAL, &["motion.kind=quintic", "motion.time=0"], &["above 0 s"]),

@@ -78,7 +78,7 @@ fn a_rig_is_a_scenario() {
 
 #[test]
 fn the_effective_text_loads_back_to_the_same_scenario() {
-    let cases: [&[&str]; 8] = [
+    let cases: [&[&str]; 10] = [
         &[],
         &["joints.clearance=1e-8", "contact.stiffness=1e9", "seed=9223372036854775807"],
         &["joints.clearance=[1e-4,2e-4,3e-4,1e-4,1e-4,0.1e-3]", "contact.law=native"],
@@ -87,6 +87,8 @@ fn the_effective_text_loads_back_to_the_same_scenario() {
         &["motion.kind=multisine", "sensors.force_std=0.15", "drive.mode=servo"],
         &["motion.kind=table", "motion.file=path with \"quotes\".csv"],
         &["name=Größe \\ \"x\"", "contact.clip=false", "contact.stiffness_form=conformal"],
+        &["contact.law=hunt-crossley", "contact.damping=0.3"],
+        &["contact.law=johnson", "contact.length=0.03", "contact.restitution=0.9"],
     ];
     for list in cases {
         let first = built_in(list);

@@ -1,6 +1,7 @@
 //! One motion under several contact models: the contact law, the physics engine's own contacts, and
 //! ideal joints, over a list of steps and several starts.
 
+pub mod by_law;
 mod first_hit;
 mod page;
 mod pictures;
@@ -251,13 +252,4 @@ fn trends(comparison: &Comparison) -> Vec<TrendResult> {
         }
     }
     trends
-}
-
-/// A law's name as scenarios have it.
-pub fn law_key(law: Law) -> &'static str {
-    match law {
-        Law::HertzStep => "hertz-step",
-        Law::Native => "native",
-        Law::Ideal => "ideal",
-    }
 }

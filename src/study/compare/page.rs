@@ -1,6 +1,5 @@
 //! The page of a comparison: tables and pictures, and at the end a plain answer.
 
-use super::law_key;
 use super::quantities::QUANTITIES;
 use super::result::{ChaosResult, Comparison, RowResult};
 use super::statistics::Behaviour;
@@ -125,7 +124,7 @@ fn row_name(row: &RowResult) -> String {
         (true, _, faulty) if faulty > 0 => format!(" ({faulty} with faults)"),
         (true, ..) => String::new(),
     };
-    format!("{}, {how}{remark}", law_key(row.law))
+    format!("{}, {how}{remark}", row.law.name())
 }
 
 /// Quantities down; across, what can be compared: the law at its tolerance, native contacts at every

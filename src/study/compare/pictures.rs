@@ -1,10 +1,10 @@
 //! The pictures of a comparison.
 
+use super::CompareError;
 use super::plan::{Plan, machine};
 use super::probe::Measured;
 use super::quantities::index;
 use super::result::{Comparison, RowResult};
-use super::{CompareError, law_key};
 use crate::engine::{self, Schedule};
 use crate::report::{Curve, Panel, Picture, ReportError, Style, number, panels_svg};
 use crate::scenario::{Law, Scenario};
@@ -57,7 +57,7 @@ fn over_step(comparison: &Comparison) -> Result<Picture, ReportError> {
             comparison.rows_of(law).filter_map(point).collect()
         };
         let mut curves: Vec<Curve> = [Law::HertzStep, Law::Native]
-            .map(|law| solid(law_key(law).to_owned(), points(law)))
+            .map(|law| solid(law.name().to_owned(), points(law)))
             .into();
         // The law at its tolerance has no step: a level.
         let (law, steps) = (comparison.best(Law::HertzStep), points(Law::Native));
@@ -80,7 +80,7 @@ fn over_step(comparison: &Comparison) -> Result<Picture, ReportError> {
         let curve = |law: Law| {
             let hits = hits.rows.iter().filter(|hit| hit.law == law);
             let points = hits.map(|hit| (hit.step_s.log10(), hit.peak.mean.log10())).collect();
-            solid(law_key(law).to_owned(), points)
+            solid(law.name().to_owned(), points)
         };
         panels.push(panel(
             "Peak force of the first hit",
@@ -144,7 +144,7 @@ fn beginnings(scenario: &Scenario, plan: &Plan) -> Result<Vec<Beginning>, Compar
             .step()
             .map_or_else(String::new, |step| format!(", step {} s", number(step)));
         let style = if law == Law::Ideal { Style::Reference } else { Style::Solid };
-        beginnings.push(Beginning { name: law_key(law).to_owned() + &step, style, curves });
+        beginnings.push(Beginning { name: law.name().to_owned() + &step, style, curves });
     }
     // The law, drawn last, stays visible on the native spikes.
     beginnings.reverse();
@@ -192,8 +192,8 @@ fn distributions(comparison: &Comparison, runs: &[Vec<Measured>]) -> Result<Pict
         let stride = n.div_ceil(DISTRIBUTION).max(1);
         let points = forces.iter().enumerate().step_by(stride);
         let name = match row.step_s {
-            Some(step) => format!("{}, step {} s", law_key(row.law), number(step)),
-            None => law_key(row.law).to_owned(),
+            Some(step) => format!("{}, step {} s", row.law.name(), number(step)),
+            None => row.law.name().to_owned(),
         };
         solid(name, points.map(|(i, f)| (f.log10(), 1.0 - i as f64 / n as f64)).collect())
     };

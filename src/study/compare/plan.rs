@@ -66,9 +66,7 @@ pub fn plan(scenario: &Scenario, options: &Options) -> Result<Plan, Problem> {
     }
     let law = machine(scenario, Law::HertzStep, tolerance(scenario), 0, 1)?;
     if law.mechanism.revolutes.iter().all(|joint| radial_clearance(&joint.bearing).is_none()) {
-        let message = "has no joint with clearance: there are no contacts to compare";
-        let help = "expected a mechanism with clearance in a revolute joint";
-        return Err(scenario.problem("mechanism.kind", message, help));
+        return Err(no_contacts(scenario));
     }
     let longest = law.mechanism.longest_step(TYPICAL_IMPACT_SPEED).unwrap_or(f64::INFINITY);
     let servo = law.mechanism.longest_servo_step().unwrap_or(f64::INFINITY);
@@ -87,6 +85,13 @@ pub fn plan(scenario: &Scenario, options: &Options) -> Result<Plan, Problem> {
         }
     }
     Ok(Plan { rows, starts: options.starts })
+}
+
+/// Complains about a machine without contacts.
+pub fn no_contacts(scenario: &Scenario) -> Problem {
+    let message = "has no joint with clearance: there are no contacts to compare";
+    let help = "expected a mechanism with clearance in a revolute joint";
+    scenario.problem("mechanism.kind", message, help)
 }
 
 /// The scenario's tolerance, or the default one if it has a step.

@@ -1,7 +1,6 @@
 //! `compare.json`: what a comparison came to.
 
 use super::first_hit::FirstHits;
-use super::law_key;
 use super::statistics::{Mean, Trend};
 use super::verdict::Verdict;
 use crate::scenario::{DriveMode, Law};
@@ -123,7 +122,10 @@ pub struct ChaosResult {
     pub pairs: usize,
 }
 
-fn by_key<S: serde::Serializer>(means: &[Mean], serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn by_key<S: serde::Serializer>(
+    means: &[Mean],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     let entry = |(quantity, mean): (&super::quantities::Quantity, &Mean)| {
         let mean = serde_json::to_value(mean).unwrap_or(Value::Null);
         (quantity.key.to_owned(), mean)
@@ -149,7 +151,7 @@ impl Comparison {
                 Some(step) => format!("a step of {step:e} s"),
                 None => "the tolerance".to_owned(),
             };
-            let (law, faults) = (law_key(row.law), row.faults.join("; "));
+            let (law, faults) = (row.law.name(), row.faults.join("; "));
             format!("{law} at {how}: {} of {} runs: {faults}", row.faulty, row.starts)
         })
         .collect()

@@ -1,8 +1,8 @@
 //! The tables of a comparison as files.
 
-use super::law_key;
 use super::quantities::{QUANTITIES, index};
 use super::result::{Comparison, RowResult};
+use super::statistics::Mean;
 use super::verdict::in_words;
 use crate::report::number;
 use crate::scenario::Law;
@@ -12,26 +12,33 @@ use std::fmt::Write as _;
 /// comparison gives the same table.
 pub fn csv(comparison: &Comparison) -> String {
     let mut table = "law,step_s,tolerance_m_s,resolved,starts,halted,faulty,steps_per_s".to_owned();
-    for quantity in &QUANTITIES {
-        // Writing to a string cannot fail, here and below.
-        let _ = write!(table, ",{},{}_sem", quantity.key, quantity.key);
-    }
+    table += &heads();
     table.push('\n');
-    let number =
-        |value: f64| if value.is_finite() { format!("{value:.6e}") } else { String::new() };
     for row in &comparison.rows {
-        let (law, resolved) = (law_key(row.law), row.resolved);
+        let (law, resolved) = (row.law.name(), row.resolved);
         let [step, tolerance] = [row.step_s, row.tolerance_m_s]
             .map(|v| v.map_or_else(String::new, |v| format!("{v:e}")));
         let runs = format!("{},{},{}", row.starts, row.halted, row.faulty);
+        // Writing to a string cannot fail, here and below.
         let _ = write!(table, "{law},{step},{tolerance},{resolved},{runs}");
-        let _ = write!(table, ",{}", number(row.steps_per_s));
-        for mean in &row.quantities {
-            let _ = write!(table, ",{},{}", number(mean.mean), number(mean.sem));
-        }
-        table.push('\n');
+        let _ = writeln!(table, ",{}{}", cell(row.steps_per_s), cells(&row.quantities));
     }
     table
+}
+
+/// Heads of the columns of all quantities, each after a comma.
+pub(super) fn heads() -> String {
+    QUANTITIES.iter().map(|quantity| format!(",{0},{0}_sem", quantity.key)).collect()
+}
+
+/// Their cells.
+pub(super) fn cells(quantities: &[Mean]) -> String {
+    quantities.iter().map(|mean| format!(",{},{}", cell(mean.mean), cell(mean.sem))).collect()
+}
+
+/// A number; empty of none.
+pub(super) fn cell(value: f64) -> String {
+    if value.is_finite() { format!("{value:.6e}") } else { String::new() }
 }
 
 /// Columns of `table.md`: key of the quantity, heading. Of each kind of quantity the one that says most:

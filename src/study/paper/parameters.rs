@@ -62,7 +62,8 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
     let Mechanism::ThreeRpr(m) = &scenario.mechanism else { return Vec::new() };
     let (legs, contact, joints) = (&scenario.legs, &scenario.contact, &scenario.joints);
     let mm = |metres: f64| format!("{} mm", number(1e3 * metres));
-    let stiffness = machine.contact(0, 0.1).map_or(f64::NAN, |(k, _)| k);
+    let stiffness =
+        machine.contact(0, 0.1).and_then(|(law, _)| law.stiffness()).unwrap_or(f64::NAN);
     let gravity = scenario.environment.gravity;
     vec![
         given("platform, side length", "mm", 100.0, 1e3 * m.platform_side, "table 1"),

@@ -1,0 +1,273 @@
+//! What is said of a law once, whatever joint it acts in.
+
+use super::damped::{Damped, Loss};
+use super::spring::Power;
+use crate::contact::{ForceLaw, Material, StiffnessForm, hertz_stiffness};
+use std::sync::Arc;
+
+/// A normal force law by name.
+#[derive(Debug)]
+pub struct Kind {
+    /// Name in scenarios.
+    pub name: &'static str,
+    /// What it is, in a sentence.
+    pub summary: &'static str,
+    /// Its equation.
+    pub equation: &'static str,
+    /// Where that comes from.
+    pub source: &'static str,
+    /// Where it holds.
+    pub validity: &'static str,
+    /// Its parameters: the keys of `[contact]`, and of a joint, that mean something to it.
+    pub parameters: &'static [Parameter],
+    /// How it loses energy.
+    pub losses: Losses,
+    /// The law with its parameters.
+    pub build: fn(&Given) -> Arc<dyn ForceLaw>,
+}
+
+impl PartialEq for Kind {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Kind {}
+
+impl Kind {
+    /// Whether a key of `[contact]` means something to this law.
+    pub fn takes(&self, key: &str) -> bool {
+        self.parameters.iter().any(|parameter| parameter.name == key)
+    }
+}
+
+/// How a law loses energy, and so by which key it can be made to return a given share of the speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Losses {
+    /// Not at all.
+    Elastic,
+    /// By a coefficient of restitution, key `restitution`.
+    Restitution,
+    /// By a damping, key `damping`; what is returned depends on the impact speed.
+    Damping,
+    /// By a damping that fades in with penetration, keys `c_max` and `d_max`.
+    Step,
+}
+
+/// A parameter of a law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// The key.
+    pub name: &'static str,
+    /// Unit in words; empty for a pure number or a word.
+    pub unit: &'static str,
+    /// What it means.
+    pub about: &'static str,
+    /// What may be written.
+    pub range: Range,
+    /// What holds where nothing is written, in words.
+    pub default: &'static str,
+}
+
+/// What a parameter may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    /// Above 0.
+    Positive,
+    /// 0 or more.
+    NotNegative,
+    /// Above 0, at most 1.
+    Share,
+    /// From 0 to below 0.5.
+    Poisson,
+    /// 1 or more.
+    FromOne,
+    /// Words.
+    Choice(&'static str),
+}
+
+impl Range {
+    /// Whether a number is in it.
+    pub fn holds(self, value: f64) -> bool {
+        match self {
+            Range::Positive => value > 0.0,
+            Range::NotNegative => value >= 0.0,
+            Range::Share => value > 0.0 && value <= 1.0,
+            Range::Poisson => (0.0..0.5).contains(&value),
+            Range::FromOne => value >= 1.0,
+            Range::Choice(_) => false,
+        }
+    }
+
+    /// What may be written, in words.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Range::Positive => "above 0",
+            Range::NotNegative => "0 or more",
+            Range::Share => "above 0, at most 1",
+            Range::Poisson => "from 0 to below 0.5",
+            Range::FromOne => "1 or more",
+            Range::Choice(words) => words,
+        }
+    }
+}
+
+/// What a law is built from: a joint's radii and what is written for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Given {
+    /// Inner radius of the ring in m.
+    pub bearing_radius: f64,
+    /// Radius of the journal in m, smaller than the ring's.
+    pub journal_radius: f64,
+    /// Of both surfaces.
+    pub material: Material,
+    /// How K follows from the radii.
+    pub stiffness_form: StiffnessForm,
+    /// Stiffness K in N/mⁿ, in place of that.
+    pub stiffness: Option<f64>,
+    /// Exponent n.
+    pub exponent: f64,
+    /// Axial length of the bearing in m; its diameter where nothing is written.
+    pub length: Option<f64>,
+    /// Coefficient of restitution; the law's own default where nothing is written.
+    pub restitution: Option<f64>,
+    /// Damping in the law's unit; the law's own default where nothing is written.
+    pub damping: Option<f64>,
+    /// Damping C_max in N·s/m of a law that fades in.
+    pub c_max: f64,
+    /// Penetration in m at which it is complete.
+    pub d_max: f64,
+    /// Whether that law is kept from pulling.
+    pub clip: bool,
+}
+
+/// Share of the speed that laws with a restitution return where nothing is written: what the default law
+/// returns of a 0.1 kg journal at 0.1 m/s.
+pub const RESTITUTION: f64 = 0.73;
+
+impl Given {
+    /// Stiffness K in N/mⁿ as written, or Hertz' from material and radii.
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness.unwrap_or_else(|| self.hertz())
+    }
+
+    /// Hertz' stiffness in N/m^1.5 from material and radii.
+    pub fn hertz(&self) -> f64 {
+        hertz_stiffness(
+            self.stiffness_form,
+            self.material,
+            self.bearing_radius,
+            self.journal_radius,
+        )
+    }
+
+    /// Coefficient of restitution.
+    pub fn restitution(&self) -> f64 {
+        self.restitution.unwrap_or(RESTITUTION)
+    }
+
+    /// Radial clearance ΔR = R_i − R_j in m.
+    pub fn radial(&self) -> f64 {
+        self.bearing_radius - self.journal_radius
+    }
+
+    /// Axial length L of the bearing in m. Default its diameter: plain bearings are about as long as wide.
+    pub fn length(&self) -> f64 {
+        self.length.unwrap_or(2.0 * self.bearing_radius)
+    }
+
+    /// Composite modulus E* in Pa, `1/E* = (1 − ν²)/E` of both surfaces together.
+    pub fn modulus(&self) -> f64 {
+        let nu = self.material.poisson_ratio;
+        self.material.youngs_modulus / (2.0 * (1.0 - nu * nu))
+    }
+
+    /// `K δⁿ` with a loss.
+    pub fn power(&self, loss: Loss) -> Arc<dyn ForceLaw> {
+        let spring = Power { stiffness: self.stiffness(), exponent: self.exponent };
+        Arc::new(Damped { spring, loss })
+    }
+}
+
+/// E of both surfaces.
+pub(super) const YOUNGS_MODULUS: Parameter = Parameter {
+    name: "youngs_modulus",
+    unit: "Pa",
+    about: "Young's modulus E of both surfaces",
+    range: Range::Positive,
+    default: "73e9",
+};
+
+/// ν of both surfaces.
+pub(super) const POISSON_RATIO: Parameter = Parameter {
+    name: "poisson_ratio",
+    unit: "",
+    about: "Poisson's ratio of both surfaces",
+    range: Range::Poisson,
+    default: "0.3",
+};
+
+/// How K follows from the radii.
+pub(super) const STIFFNESS_FORM: Parameter = Parameter {
+    name: "stiffness_form",
+    unit: "",
+    about: "how K follows from the radii: with their sum (printed) or their difference (conformal)",
+    range: Range::Choice("\"printed\" or \"conformal\""),
+    default: "\"printed\"",
+};
+
+/// K itself.
+pub(super) const STIFFNESS: Parameter = Parameter {
+    name: "stiffness",
+    unit: "N/m^n",
+    about: "stiffness K, in place of the one from E, Poisson's ratio and the radii",
+    range: Range::Positive,
+    default: "from these",
+};
+
+/// n.
+pub(super) const EXPONENT: Parameter = Parameter {
+    name: "exponent",
+    unit: "",
+    about: "exponent n of the penetration",
+    range: Range::FromOne,
+    default: "1.5",
+};
+
+/// e of most laws.
+const RESTITUTION_KEY: Parameter = Parameter {
+    name: "restitution",
+    unit: "",
+    about: "coefficient of restitution e: the share of the impact speed that the law is asked to return",
+    range: Range::Share,
+    default: "0.73",
+};
+
+/// e of the conformal laws, which their authors give without damping.
+const CONFORMAL_RESTITUTION: Parameter = Parameter {
+    about: "coefficient of restitution e of the factor 1 + 3(1 - e^2)/4 rate/impact_speed after Lankarani and \
+            Nikravesh; 1 is the elastic law as its authors give it",
+    default: "1",
+    ..RESTITUTION_KEY
+};
+
+/// L.
+const LENGTH: Parameter = Parameter {
+    name: "length",
+    unit: "m",
+    about: "axial length L of the bearing",
+    range: Range::Positive,
+    default: "its diameter",
+};
+
+/// Parameters of the conformal laws.
+pub(super) const CONFORMAL: &[Parameter] =
+    &[YOUNGS_MODULUS, POISSON_RATIO, LENGTH, CONFORMAL_RESTITUTION];
+
+/// Parameters of elastic laws after Hertz.
+pub(super) const ELASTIC: &[Parameter] =
+    &[YOUNGS_MODULUS, POISSON_RATIO, STIFFNESS_FORM, STIFFNESS, EXPONENT];
+
+/// The same of laws by a coefficient of restitution.
+pub(super) const BY_RESTITUTION: &[Parameter] =
+    &[YOUNGS_MODULUS, POISSON_RATIO, STIFFNESS_FORM, STIFFNESS, EXPONENT, RESTITUTION_KEY];
