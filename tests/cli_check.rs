@@ -61,11 +61,34 @@ fn doubtful_scenarios_are_warned_about() {
              --set simulation.tolerance=1e-5",
             "grows without bound",
         ),
+        ("--set environment.gravity=[0,-9810]", "environment.gravity: is 9810 m/s²"),
+        ("--set mechanism.platform_mass=200", "mechanism.platform_mass: makes \"platform\""),
+        ("--set motion.phi=44.9", "44.9 degrees are 0.7837"),
+        ("--set effect.0.kind=payload", "does nothing: its values are those that change nothing"),
+        ("--set mechanism.kind=pendulum --set mechanism.angle=30", "30 degrees are 0.5236"),
     ] {
         let done = place.freeplay(&format!("check {arguments}"));
         assert_eq!(done.code, 0, "{}", done.err);
         assert!(done.err.starts_with("warning: ") && done.err.contains(fragment), "{}", done.err);
     }
+    let plain = place.freeplay("check");
+    assert_eq!((plain.code, plain.err.as_str()), (0, ""));
+}
+
+/// A motion is looked at as finely as it turns, however long it lasts: a circle of 20 ms was seen at one point
+/// of itself in 40 s.
+#[test]
+fn a_fast_motion_is_seen_however_long_it_lasts() {
+    let place = Place::new();
+    let fast = "check --set motion.radius=0.07 --set motion.period=0.02 --duration";
+    for duration in ["1", "40", "1000"] {
+        place.refused(&format!("{fast} {duration}"), &["legs.stroke", "leg 1"]);
+    }
+    let forces = |duration: &str| {
+        let text = place.good(&format!("check --duration {duration}"));
+        text.lines().filter(|line| line.contains("drive P")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(forces("1"), forces("1000"));
 }
 
 #[test]

@@ -68,7 +68,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let prepare = || arguments.folder.prepare("study", name, STUDY_FILE);
     let data = folder(arguments.data.as_deref()).join(name);
     let absent = |missing: Missing| match missing {
-        Missing::Absent(path) => Ok(output::print(&(skipped(source, &path) + "\n"))?),
+        // A folder that somebody names has to be there.
+        Missing::Absent(path) if arguments.data.is_none() => {
+            Ok(output::print(&(skipped(source, &path) + "\n"))?)
+        }
+        Missing::Absent(path) => {
+            Err(Failure::Input(vec![format!("--data: there is no `{}`; {source}", path.display())]))
+        }
         other => Err(Failure::from(other)),
     };
     let (lead, tables, folder) = match arguments.which {

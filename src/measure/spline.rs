@@ -74,6 +74,11 @@ impl CubicSpline {
         self.t[self.t.len() - 1]
     }
 
+    /// The shortest way in t from one sample to the next.
+    pub fn shortest_interval(&self) -> f64 {
+        self.t.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min)
+    }
+
     /// Value, first and second derivative at `t`; outside the samples the nearest end, at rest.
     pub fn at(&self, t: f64) -> [f64; 3] {
         let last = self.t.len() - 1;

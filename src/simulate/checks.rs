@@ -1,6 +1,6 @@
 //! What can be said against a machine before it is simulated.
 
-use super::three_rpr;
+use super::{plausible, three_rpr};
 use crate::contact::StiffnessForm;
 use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism};
@@ -71,6 +71,7 @@ const LARGEST_TABLE_ERROR: f64 = 1e-9;
 /// Everything wrong or doubtful about a machine and its motion.
 pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {
     let mut found: Vec<Finding> = scenario.unused().into_iter().map(Finding::warning).collect();
+    found.extend(plausible::findings(scenario, machine));
     match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(kind) => {
             three_rpr::findings(scenario, kind, &*machine.motion, &mut found);

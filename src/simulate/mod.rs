@@ -7,6 +7,7 @@
 
 mod checks;
 mod measured;
+mod plausible;
 mod provenance;
 mod summary;
 mod three_rpr;

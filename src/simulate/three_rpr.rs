@@ -83,7 +83,7 @@ fn size_key(scenario: &Scenario) -> &'static str {
 }
 
 /// The key that says at what angle the platform stands.
-fn angle_key(scenario: &Scenario) -> &'static str {
+pub(super) fn angle_key(scenario: &Scenario) -> &'static str {
     match &scenario.motion {
         scenario::Motion::Circle(_) | scenario::Motion::Line(_) => "motion.phi",
         scenario::Motion::Quintic(_) => "motion.to",

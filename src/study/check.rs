@@ -2,6 +2,7 @@
 
 use super::chaos::{WINDOW, engines_apart};
 use crate::engine::TYPICAL_IMPACT_SPEED;
+use crate::mechanism::motion::looks;
 use crate::mechanism::{Actuator, BodyState, Drive, JointIndex, Loop, Mechanism};
 use crate::model::DrivenPath;
 use crate::scenario::{self, Law, Problem, Scenario};
@@ -359,10 +360,9 @@ fn ideal(machine: &mut Machine, path: Option<&DrivenPath>) -> Ideal {
     let drives = machine.mechanism.actuators.len();
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; drives];
     let mut peak = 0.0f64;
-    let even = |k: usize| machine.schedule.duration * k as f64 / INSTANTS as f64;
     let instants: Vec<f64> = match path {
         Some(path) if path.instants.len() > INSTANTS => path.instants.clone(),
-        _ => (0..=INSTANTS).map(even).collect(),
+        _ => looks(&*machine.motion, machine.schedule.duration, INSTANTS).collect(),
     };
     for t in instants {
         let ideal = machine.ideal.at(t);

@@ -34,6 +34,14 @@ impl Motion for Circle {
             acceleration: planar(-out * (self.radius * omega * omega), 0.0),
         }
     }
+
+    fn shown_after(&self) -> f64 {
+        self.period
+    }
+
+    fn fastest_turn(&self) -> f64 {
+        self.period
+    }
 }
 
 /// A straight line at constant velocity and orientation.
@@ -85,6 +93,14 @@ impl Motion for Quintic {
         let [s, ds, dds] = rest_to_rest(t, self.time);
         PathPoint { pose: self.from + way * s, rate: way * ds, acceleration: way * dds }
     }
+
+    fn shown_after(&self) -> f64 {
+        self.time
+    }
+
+    fn fastest_turn(&self) -> f64 {
+        self.time
+    }
 }
 
 /// One term of a [`MultiSine`].
@@ -125,6 +141,10 @@ impl Motion for MultiSine {
             point.acceleration += term.amplitude * acceleration;
         }
         point
+    }
+
+    fn fastest_turn(&self) -> f64 {
+        self.terms.iter().map(|term| 1.0 / term.frequency).fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -25,8 +25,35 @@ pub trait Motion: Debug + Send + Sync {
     /// The motion at time `t` in s.
     fn at(&self, t: f64) -> PathPoint;
 
+    /// Time in s after which the motion shows nothing new, because it begins again or rests; endless where it
+    /// always does.
+    fn shown_after(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Time in s of the fastest turn that the motion takes, such as the period of its fastest wave; endless where
+    /// it goes straight.
+    fn fastest_turn(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// Time in s up to which somebody has said what to do; endless where a formula does.
     fn known_until(&self) -> f64 {
         f64::INFINITY
     }
+}
+
+/// Looks at a motion within its fastest turn: extremes of a wave are seen to `(π/500)²/2`, 2e-5 of its amplitude.
+const LOOKS_A_TURN: f64 = 500.0;
+
+/// Most looks at a motion: a second of computing. (A day of waves of 1 Hz would take forty times as many.)
+const MOST_LOOKS: f64 = 1e6;
+
+/// Instants in s, at least `fewest` intervals of equal length, at which a motion of `duration` s shows what it comes
+/// to: until it shows nothing new, and finely against its fastest turn, however long it lasts.
+pub fn looks(motion: &dyn Motion, duration: f64, fewest: usize) -> impl Iterator<Item = f64> {
+    let span = duration.min(motion.shown_after());
+    let needed = (LOOKS_A_TURN * span / motion.fastest_turn()).ceil().min(MOST_LOOKS);
+    let count = (needed as usize).max(fewest);
+    (0..=count).map(move |k| span * k as f64 / count as f64)
 }

@@ -113,4 +113,13 @@ impl Motion for Table {
     fn known_until(&self) -> f64 {
         self.splines[0].end()
     }
+
+    fn shown_after(&self) -> f64 {
+        self.known_until()
+    }
+
+    /// A wave that a table shows as one has ten points or so.
+    fn fastest_turn(&self) -> f64 {
+        10.0 * self.splines[0].shortest_interval()
+    }
 }

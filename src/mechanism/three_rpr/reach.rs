@@ -1,7 +1,7 @@
 //! What can be said of a motion before anything is simulated: strokes and singularities.
 
 use super::Geometry;
-use crate::mechanism::motion::Motion;
+use crate::mechanism::motion::{Motion, looks};
 
 /// A leg that a motion would drive out of its stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,10 +30,10 @@ pub struct Reach {
     pub fastest_leg: f64,
 }
 
-/// Samples a motion over `duration` s. 2000 samples see anything that a motion slower than a few
-/// hundred hertz does; a change of sign between samples counts as a passage.
+/// Looks at a motion over `duration` s as finely as it turns ([`looks`]), 2000 times at least; a change of sign
+/// between two looks counts as a passage.
 pub fn reach(geometry: &Geometry, motion: &dyn Motion, duration: f64, stroke: [f64; 2]) -> Reach {
-    const SAMPLES: usize = 2000;
+    const FEWEST: usize = 2000;
     let mut reach = Reach {
         lengths: [[f64::INFINITY, 0.0]; 3],
         breaches: Vec::new(),
@@ -43,8 +43,7 @@ pub fn reach(geometry: &Geometry, motion: &dyn Motion, duration: f64, stroke: [f
     };
     let mut worst: [Option<(f64, StrokeBreach)>; 3] = [None; 3];
     let mut before = None;
-    for k in 0..=SAMPLES {
-        let t = duration * k as f64 / SAMPLES as f64;
+    for t in looks(motion, duration, FEWEST) {
         let point = motion.at(t);
         for (i, command) in geometry.inverse(&point).iter().enumerate() {
             let [low, high] = &mut reach.lengths[i];
@@ -95,6 +94,15 @@ mod tests {
         let reach = reach(&PAPER, &circle(0.09), 1.0, STROKE);
         assert_eq!(reach.breaches.iter().map(|b| b.leg).collect::<Vec<_>>(), [1, 2, 3]);
         assert!(reach.breaches.iter().all(|b| b.length > 0.4));
+    }
+
+    /// 2000 samples over 40 s were one every whole period of 20 ms, always at the same point.
+    #[test]
+    fn a_fast_motion_is_seen_however_long_it_lasts() {
+        let fast = Circle { period: 0.02, ..circle(0.07) };
+        let [short, long] = [1.0, 40.0].map(|duration| reach(&PAPER, &fast, duration, STROKE));
+        assert_eq!(short.breaches.len(), 3);
+        assert_eq!(short.lengths, long.lengths);
     }
 
     #[test]

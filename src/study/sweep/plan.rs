@@ -131,6 +131,14 @@ impl Plan {
             warned.extend(checked.warning.map(|warning| (run, warning)));
         }
         self.identity.runs_hash = hexadecimal(&hash.finalize());
+        for vary in self.design.varied() {
+            let set =
+                |set: &&String| set.split_once('=').is_some_and(|(path, _)| path == vary.path);
+            if let Some(set) = self.sets.iter().find(set) {
+                self.warnings
+                    .push(format!("--set {set} does nothing: --vary says what {} is", vary.path));
+            }
+        }
         if let Some((run, reason)) = refused.first() {
             let name = self.name(*run);
             if refused.len() == runs {

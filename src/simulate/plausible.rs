@@ -1,0 +1,115 @@
+//! Numbers that are legal, and hardly meant: another unit is likely, or a value was forgotten.
+
+use super::checks::Finding;
+use super::three_rpr::angle_key;
+use crate::effects::Setting;
+use crate::mechanism::{Attachment, Mechanism};
+use crate::model::Machine;
+use crate::scenario::{self, Scenario};
+use std::f64::consts::TAU;
+
+/// Gravity in m/s² beyond which no machine stands on: ten times the earth's, four times Jupiter's.
+const LARGEST_GRAVITY: f64 = 100.0;
+
+/// Density in kg/m³ that no body has: ten times that of lead, for bodies reach farther than their joints.
+const LARGEST_DENSITY: f64 = 1.1e5;
+
+/// What is hardly meant.
+pub(super) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
+    let mut found = Vec::new();
+    found.extend(gravity(scenario));
+    found.extend(angle(scenario, machine));
+    found.extend(starts(scenario, &machine.mechanism));
+    found.extend(masses(scenario, &machine.mechanism));
+    found.extend(idle(scenario, machine.ideal.mechanism()));
+    found
+}
+
+/// Effects whose values change nothing on the machine as declared: a payload of no mass.
+fn idle(scenario: &Scenario, declared: &Mechanism) -> Vec<Finding> {
+    let effects = scenario.effects.iter().enumerate().filter(|(_, setting)| {
+        let variants = setting.kind.variants_of(declared, &setting.target);
+        let neutral = |variant: &&[&'static str]| {
+            let neutral = Setting::neutral(setting.kind, setting.target.clone(), variant, declared);
+            neutral.values().all(|(name, value)| setting.value(name) == Some(value))
+        };
+        !variants.is_empty() && variants.iter().all(neutral)
+    });
+    let found = effects.map(|(i, setting)| {
+        let message = format!("{setting} does nothing: its values are those that change nothing");
+        let names: Vec<&str> = setting.kind.parameters.iter().map(|p| p.name).collect();
+        let help = format!("give it {}, or leave it out", names.join(", "));
+        Finding::warning(scenario.problem(&format!("effect.{i}"), message, &help))
+    });
+    found.collect()
+}
+
+/// Millimetres for metres.
+fn gravity(scenario: &Scenario) -> Option<Finding> {
+    let [x, y] = scenario.environment.gravity;
+    let size = x.hypot(y);
+    (size > LARGEST_GRAVITY).then(|| {
+        let message = format!("is {size} m/s², {:.0} times the earth's", size / 9.81);
+        let help = "expected m/s²: 9810 mm/s² are 9.81";
+        Finding::warning(scenario.problem("environment.gravity", message, help))
+    })
+}
+
+/// Degrees for radians in the platform's angle.
+fn angle(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
+    let scenario::Mechanism::ThreeRpr(_) = scenario.mechanism else { return None };
+    let phi = machine.motion.at(0.0).pose.z;
+    (phi.abs() > TAU).then(|| turned(scenario, angle_key(scenario), phi))
+}
+
+/// Degrees for radians in where bodies start.
+fn starts(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
+    let far = mechanism.bodies.iter().filter(|body| body.angle.abs() > TAU);
+    far.map(|body| turned(scenario, &key_of(scenario, &body.name, "start"), body.angle)).collect()
+}
+
+/// The key of a body in the file; of the mechanism where a template made the body.
+fn key_of(scenario: &Scenario, body: &str, key: &str) -> String {
+    let bodies = scenario.mechanism.described().map_or(&[][..], |described| &described.bodies);
+    let place = bodies.iter().position(|described| described.name == body);
+    place.map_or_else(|| "mechanism".to_owned(), |place| format!("body.{place}.{key}"))
+}
+
+fn turned(scenario: &Scenario, key: &str, angle: f64) -> Finding {
+    let message = format!("has an angle of {angle} rad, more than a whole turn");
+    let help = format!("angles are in rad: {angle} degrees are {:.4}", angle.to_radians());
+    Finding::warning(scenario.problem(key, message, &help))
+}
+
+/// Grams for kilograms: bodies heavier than any solid as large as they are between their joints.
+fn masses(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
+    let bodies = mechanism.bodies.iter().enumerate().filter_map(|(i, body)| {
+        let extent = extent(mechanism, i);
+        if extent <= 0.0 || body.mass <= LARGEST_DENSITY * extent.powi(3) {
+            return None;
+        }
+        let key = match &scenario.mechanism {
+            scenario::Mechanism::ThreeRpr(_) if body.name == "platform" => {
+                "mechanism.platform_mass".to_owned()
+            }
+            scenario::Mechanism::ThreeRpr(_) => "legs.density".to_owned(),
+            _ => key_of(scenario, &body.name, "mass"),
+        };
+        let message = format!(
+            "makes \"{}\", {extent} m from joint to joint, {} kg heavy: more than ten times a cube of lead of \
+             that size",
+            body.name, body.mass
+        );
+        Some(Finding::warning(scenario.problem(&key, message, "expected kg: 200 g are 0.2")))
+    });
+    bodies.collect()
+}
+
+/// The largest distance in m between two joints of a body.
+fn extent(mechanism: &Mechanism, body: usize) -> f64 {
+    let revolutes = mechanism.revolutes.iter().flat_map(|joint| [joint.ring, joint.journal]);
+    let points: Vec<Attachment> = revolutes.filter(|point| point.body == Some(body)).collect();
+    let pairs =
+        points.iter().enumerate().flat_map(|(i, a)| points[..i].iter().map(move |b| (a, b)));
+    pairs.map(|(a, b)| (a.point - b.point).norm()).fold(0.0, f64::max)
+}
