@@ -40,6 +40,16 @@ pub fn judged(errors: &[ChannelError]) -> Vec<&ChannelError> {
     if held.is_empty() { errors.iter().collect() } else { held }
 }
 
+/// Whether a calibrated model misses what it is judged by by more than the declared one: root mean square over all
+/// columns, each in units of its floor. Then it is not delivered.
+pub fn is_worse(errors: &[ChannelError]) -> bool {
+    let judged = judged(errors);
+    let sum = |of: fn(&ChannelError) -> f64| -> f64 {
+        judged.iter().map(|error| (of(error) / error.floor).powi(2)).sum()
+    };
+    sum(|error| error.after) > sum(|error| error.before)
+}
+
 /// The largest error after calibration in units of its floor, on data not used for fits where there
 /// are any, and whose it is.
 pub fn worst(errors: &[ChannelError]) -> Option<&ChannelError> {
@@ -115,4 +125,26 @@ pub fn of_run(
             })
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(role: &'static str, before: f64, after: f64, floor: f64) -> ChannelError {
+        let (run, channel) = ("run.csv".to_owned(), "x".to_owned());
+        ChannelError { run, role, channel, unit: "m", before, after, floor }
+    }
+
+    /// Columns count by their floors, and validation runs alone where there are any.
+    #[test]
+    fn a_model_is_worse_by_the_runs_that_judge_it() {
+        let better = [error("validation", 5.0, 2.0, 1.0), error("validation", 10.0, 11.0, 10.0)];
+        assert!(!is_worse(&better));
+        let worse = [error("validation", 5.0, 4.0, 100.0), error("validation", 3.0, 36.0, 10.0)];
+        assert!(is_worse(&worse));
+        let fitted_only = [error("calibration", 9.0, 1.0, 1.0), error("validation", 1.0, 1.1, 1.0)];
+        assert!(is_worse(&fitted_only));
+        assert!(is_worse(&[error("calibration", 1.0, 1.1, 1.0)]));
+    }
 }

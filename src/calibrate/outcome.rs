@@ -127,7 +127,14 @@ pub fn calibrate(
             let (way, described) = remaining(case, &question, bare, certain)?;
             tell("predicting the runs");
             let prediction = predicted(case, &declared, &way.model)?;
-            (Verdict::Unexplained, described, way, prediction)
+            if errors::is_worse(&prediction.errors) {
+                let rounds = best.rounds.clone();
+                let bare = Way { model: declared.clone(), rounds, certain: true };
+                let prediction = predicted(case, &declared, &declared)?;
+                (Verdict::Unexplained, None, bare, prediction)
+            } else {
+                (Verdict::Unexplained, described, way, prediction)
+            }
         }
     };
     let effects = last.fit.effects.iter().map(canonical).collect();

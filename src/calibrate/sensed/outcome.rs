@@ -14,7 +14,7 @@ use super::search::{Found, Search};
 use super::settle::Model;
 use super::thresholds::{CLEARED, MET, PREDICTING};
 use super::unnamed::{Described, describe};
-use crate::calibrate::errors::ChannelError;
+use crate::calibrate::errors::{ChannelError, is_worse};
 use crate::calibrate::outcome::{Verdict, inverse_normal, pull};
 use crate::calibrate::report::Fitted;
 use crate::effects::{Setting, UNNAMED};
@@ -104,7 +104,7 @@ pub fn calibrate(
     let (before, after) = (search.left(&declared), search.left(&best));
     let noise = is_noise(&after);
     let limits = limits(&search, &best);
-    let described = match noise || !unnamed {
+    let mut described = match noise || !unnamed {
         true => None,
         false => {
             tell("looking for what the residual depends on");
@@ -116,11 +116,17 @@ pub fn calibrate(
         Some((described, _)) => vec![described.effect.clone()],
         None => Vec::new(),
     };
-    let after = described.as_ref().map_or(after, |(_, model)| search.left(model));
+    let mut after = described.as_ref().map_or(after, |(_, model)| search.left(model));
     let deviations = if noise { best.fit.deviations() } else { Vec::new() };
     tell("predicting");
-    let predicting = Predicting::of(problem, &effects, &deviations)?;
-    let errors = errors(problem, &predicting.declared, &predicting.calibrated);
+    let mut predicting = Predicting::of(problem, &effects, &deviations)?;
+    let mut errors = of_all(problem, &predicting);
+    if !noise && described.is_some() && is_worse(&errors) {
+        described = None;
+        after.clone_from(&before);
+        predicting.calibrated.clone_from(&predicting.declared);
+        errors = of_all(problem, &predicting);
+    }
     let nothing = best.fit.effects.is_empty() && events.is_empty();
     let verdict = match (noise && met(&errors), nothing) {
         (true, true) => Verdict::NothingMissing,
@@ -211,11 +217,8 @@ fn met(errors: &[ChannelError]) -> bool {
 }
 
 /// Errors of all runs of two models, simulated replica by replica.
-fn errors(
-    problem: &Problem,
-    declared: &[Vec<Recording>],
-    calibrated: &[Vec<Recording>],
-) -> Vec<ChannelError> {
+fn of_all(problem: &Problem, predicting: &Predicting) -> Vec<ChannelError> {
+    let Predicting { declared, calibrated } = predicting;
     let of = |index: usize| {
         let role = if index == 0 { "calibration" } else { "validation" };
         let recording = &problem.runs[index].recording;
