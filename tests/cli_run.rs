@@ -322,3 +322,20 @@ fn a_run_that_does_not_balance_says_so() {
     );
     assert!(place.read("s/index.html").contains("Energy is off by at most"));
 }
+
+/// The README's second `run` said that the folder of the first holds a result. A name that nobody chose counts up.
+#[test]
+fn a_second_run_stands_beside_the_first() {
+    let place = Place::new();
+    for (line, folder) in [
+        ("run --duration 0.02", "freeplay-run-default"),
+        ("run --duration 0.03", "freeplay-run-default-2"),
+        ("run --duration 0.04 --quiet", "freeplay-run-default-3"),
+    ] {
+        place.good(line);
+        assert!(place.read(&format!("{folder}/summary.json")).contains("simulated_s"), "{folder}");
+    }
+    place.good("run --duration 0.02 --force");
+    let names = ["freeplay-run-default", "freeplay-run-default-2", "freeplay-run-default-3"];
+    assert_eq!(place.entries(), names);
+}

@@ -76,20 +76,36 @@ impl Overrides {
     }
 }
 
+/// Results of one name in one folder beyond which no number is tried.
+const MOST_RESULTS: usize = 1000;
+
 impl FolderOptions {
     /// Where the results of a command on a scenario go.
     pub fn path(&self, command: &str, scenario: &str) -> PathBuf {
         self.out.clone().unwrap_or_else(|| default_name(command, scenario))
     }
 
-    /// Makes sure that the results of a command on a scenario can be written; they are known by `marker`.
+    /// Makes sure that the results of a command on a scenario can be written; they are known by `marker`. A name
+    /// that nobody chose counts up where it is taken: the first run stays beside the second.
     pub fn prepare(
         &self,
         command: &str,
         scenario: &str,
         marker: &'static str,
     ) -> Result<Folder, FolderError> {
-        Folder::prepare(&self.path(command, scenario), marker, self.force)
+        let first = self.path(command, scenario);
+        let mut prepared = Folder::prepare(&first, marker, self.force);
+        let mut count = 1;
+        while self.out.is_none()
+            && count < MOST_RESULTS
+            && matches!(prepared, Err(FolderError::Taken(_) | FolderError::Busy { .. }))
+        {
+            count += 1;
+            let mut name = first.clone().into_os_string();
+            name.push(format!("-{count}"));
+            prepared = Folder::prepare(&PathBuf::from(name), marker, self.force);
+        }
+        prepared
     }
 }
 
@@ -109,7 +125,8 @@ impl PrintOptions {
 /// Where files go.
 #[derive(Debug, Args)]
 pub(super) struct FolderOptions {
-    /// Folder for the results [default: named after command and scenario, in the working directory]
+    /// Folder for the results [default: named after command and scenario, in the working directory, and
+    /// numbered where that is taken]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Replace a result that is already there (never any other files)
