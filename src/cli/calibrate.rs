@@ -80,7 +80,7 @@ const EXAMPLES: &str = "\
 Examples:
   freeplay calibrate --rig rig.toml --data run-a.csv --validate run-b.csv
   freeplay calibrate --rig rig.toml --data run-a.csv --without payload      is there another explanation?
-  freeplay calibrate --rig rig.toml --data run-a.csv --set environment.gravity=[0,-9.81]
+  freeplay calibrate --rig rig.toml --data run-a.csv --set 'environment.gravity=[0,-9.81]'
   freeplay calibrate --rig rig.toml --data run-a.csv --json --quiet | jq .verdict";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {

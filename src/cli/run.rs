@@ -46,8 +46,8 @@ Examples:
   freeplay run --duration 5 --out long               5 s, into ./long
   freeplay run my-machine.toml --set joints.clearance=1e-4
   freeplay run --set contact.law=ideal               the same machine without clearance
-  freeplay run --set drive.mode=servo --set environment.gravity=[0,-9.81]
-  freeplay run --set motion.kind=line --set motion.velocity=[0.05,0]
+  freeplay run --set drive.mode=servo --set 'environment.gravity=[0,-9.81]'
+  freeplay run --set motion.kind=line --set 'motion.velocity=[0.05,0]'
   freeplay run --json --quiet | jq .peak_contact_force_N";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
