@@ -64,8 +64,8 @@ pub(super) struct Slideway {
 /// What of the masses of two bodies on one axis their accelerations depend on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PairMasses {
-    /// 1/m of base and slider, 1/kg.
-    inverse: [f64; 2],
+    /// Of base and slider in kg.
+    masses: [f64; 2],
     /// μ = m₁m₂/(m₁ + m₂) in kg.
     reduced: f64,
     /// I₁ + I₂ in kg m².
@@ -74,15 +74,16 @@ pub(super) struct PairMasses {
 
 impl PairMasses {
     pub fn new(bodies: [&Body; 2]) -> Self {
-        let [m1, m2] = bodies.map(|body| body.mass);
+        let masses = bodies.map(|body| body.mass);
+        let [m1, m2] = masses;
         let inertia = bodies[0].inertia + bodies[1].inertia;
-        Self { inverse: [1.0 / m1, 1.0 / m2], reduced: m1 * m2 / (m1 + m2), inertia }
+        Self { masses, reduced: m1 * m2 / (m1 + m2), inertia }
     }
 
     /// Shares of a distance between the two that base and slider take so that their common centre of mass
     /// stays, with the signs of the base's way towards the slider.
     pub fn shares(&self) -> [f64; 2] {
-        [self.inverse[0] * self.reduced, -self.inverse[1] * self.reduced]
+        [self.reduced / self.masses[0], -self.reduced / self.masses[1]]
     }
 }
 
@@ -147,8 +148,8 @@ impl Telescope {
         extension: Option<f64>,
     ) -> ([Vector3<f64>; 2], f64) {
         let Self { u, n, offset: [length, side], spin, .. } = *self;
-        let PairMasses { inverse: [base, slider], reduced, inertia } = *masses;
-        let free = wrenches[1].xy() * slider - wrenches[0].xy() * base;
+        let PairMasses { masses: [m1, m2], reduced, inertia } = *masses;
+        let free = wrenches[1].xy() / m2 - wrenches[0].xy() / m1;
         let (free_u, free_n) = (free.dot(&u), free.dot(&n));
         let b_n = 2.0 * self.length_rate * spin - spin * spin * side;
         let inertia = inertia + reduced * length * length;
@@ -163,8 +164,8 @@ impl Telescope {
             None => (torque / inertia, 0.0),
         };
         let reaction = u * force + n * (reduced * (b_n + alpha * length - free_n));
-        let a1 = (wrenches[0].xy() - reaction) * base;
-        let a2 = (wrenches[1].xy() + reaction) * slider;
+        let a1 = (wrenches[0].xy() - reaction) / m1;
+        let a2 = (wrenches[1].xy() + reaction) / m2;
         ([Vector3::new(a1.x, a1.y, alpha), Vector3::new(a2.x, a2.y, alpha)], force)
     }
 }
