@@ -138,8 +138,10 @@ fn wrong_columns_wrong_scales_and_spliced_recordings_are_refused() {
 fn without_recordings_the_studies_say_so_and_where_to_get_them() {
     let place = Place::new();
     for (which, words) in [("emps", "nonlinearbenchmark.org"), ("pendulum", "MultiArm-Pendulum")] {
-        let said = place.good(&format!("study {which} --data nowhere"));
+        let said = place.good(&format!("study {which}"));
         assert!(said.starts_with("skipped: data not present") && said.contains(words), "{said}");
+        // A folder that somebody names has to be there.
+        place.refused(&format!("study {which} --data nowhere"), &["--data: there is no", words]);
     }
 }
 

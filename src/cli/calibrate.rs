@@ -1,6 +1,6 @@
 //! `freeplay calibrate`: close the loop with measured data.
 
-use super::failure::{Failure, warn_of_unused};
+use super::failure::{Failure, say_how_written, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::self_test::SelfTest;
@@ -98,6 +98,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     warn_of_unused(&rig);
     let paths: Vec<&Path> =
         arguments.data.iter().chain(&arguments.validate).map(PathBuf::as_path).collect();
+    say_how_written(paths.iter().copied());
     if rig.mechanism.has_sensors() {
         return any_mechanism(arguments, rig, &paths, &without);
     }

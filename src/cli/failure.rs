@@ -1,10 +1,12 @@
 //! How a command fails: whose fault, and what is said.
 
 use super::output;
+use crate::measure::dialect;
 use crate::scenario::{Problem, Problems, Scenario};
 use crate::simulate::{Finding, Severity};
 use crate::study::sweep::SweepError;
 use crate::study::{FolderError, RunError};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Most problems that are told one by one: those after them mostly follow from these.
@@ -95,6 +97,15 @@ impl From<SweepError> for Failure {
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
         Failure::Other(format!("cannot write the result: {error}"))
+    }
+}
+
+/// Says how recordings are written, where that is unusual.
+pub(super) fn say_how_written<'a>(paths: impl IntoIterator<Item = &'a Path>) {
+    for path in paths {
+        if let Some(remark) = dialect::remark(path) {
+            output::complain(&format!("note: {}: {remark}", path.display()));
+        }
     }
 }
 

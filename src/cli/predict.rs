@@ -1,6 +1,6 @@
 //! `freeplay predict`: hold a model against a recording.
 
-use super::failure::{Failure, warn_of_unused};
+use super::failure::{Failure, say_how_written, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use crate::calibrate::errors::ChannelError;
@@ -64,6 +64,7 @@ Examples:
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let model = Scenario::load(Some(&arguments.model), &arguments.sets.all())?;
     warn_of_unused(&model);
+    say_how_written([arguments.data.as_path()]);
     if model.mechanism.has_sensors() {
         let asked = Asked { window: arguments.window, fit: arguments.fit, from: arguments.from };
         if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {

@@ -1,6 +1,7 @@
 //! Recorded runs: a CSV file, one row a sample, at a constant rate.
 
 use super::bounded;
+use super::dialect::Rows;
 use super::shown::shown;
 use super::spelling::nearest;
 use serde::{Deserialize, Serialize};
@@ -240,11 +241,9 @@ fn load(
     let opened = bounded::open(path, bounded::TABLE).map_err(|error| {
         wrong(None, format!("cannot be read: {error}"), "is this the right file?")
     })?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(opened);
-    let header = reader
-        .headers()
-        .map_err(|error| wrong(Some(1), format!("cannot be read: {error}"), expected))?
-        .clone();
+    let mut rows = Rows::begin(opened)
+        .map_err(|error| wrong(Some(1), format!("cannot be read: {error}"), expected))?;
+    let header = rows.heads().clone();
     let (time, chosen) = no_header(&header)
         .map_or_else(|| choose(&header), Err)
         .map_err(|(message, help)| wrong(Some(1), message, &help))?;
@@ -253,7 +252,7 @@ fn load(
         chosen.iter().map(|(_, channel)| (*channel, Vec::new())).collect();
     let mut record = csv::StringRecord::new();
     loop {
-        let more = reader.read_record(&mut record).map_err(|error| {
+        let more = rows.next(&mut record).map_err(|error| {
             let line = error.position().map(csv::Position::line);
             let help = "as many values as the header has names";
             wrong(line, format!("cannot be read: {error}"), help)
@@ -264,7 +263,7 @@ fn load(
         let line = record.position().map(csv::Position::line);
         let number = |place: usize| {
             let field = record.get(place).unwrap_or_default();
-            field.parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
+            rows.number(field).ok_or_else(|| {
                 let what = if field.is_empty() { "nothing" } else { field };
                 let message = format!("column `{}` holds {what}", &header[place]);
                 wrong(line, message, "expected a finite number in every row")
@@ -276,9 +275,8 @@ fn load(
         }
     }
     let interval = constant_step(&times).map_err(|(row, message)| {
-        // The header is line 1.
         let help = "expected samples at a constant rate, time growing";
-        wrong(Some(row as u64 + 2), message, help)
+        wrong(Some(row as u64 + 1 + rows.lines_above()), message, help)
     })?;
     let name = path.file_name().map_or(file.clone(), |name| name.to_string_lossy().into_owned());
     let name = shown(&name);

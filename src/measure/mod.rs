@@ -1,6 +1,7 @@
 //! Signals as plain numbers: interpolation, filters, thinning, logs, and the files that they come from.
 
 pub mod bounded;
+pub mod dialect;
 pub mod envelope;
 pub mod filter;
 pub mod frames;

@@ -165,3 +165,46 @@ fn rigs_that_do_not_fit_are_refused() {
     assert_eq!(place.freeplay(&format!("calibrate --data {data}")).code, 2);
     assert_eq!(place.freeplay("calibrate --rig rig.toml").code, 2);
 }
+
+/// Semicolons, decimal commas, a row of units, UTF-16: the same numbers, and it is said how they are written.
+#[test]
+fn recordings_as_other_programs_write_them_are_read() {
+    let place = Place::new();
+    let plain = Table::of_rig("run-b.csv").text();
+    let mut german = plain.replace(',', ";").replace('.', ",");
+    let header = german.find('\n').unwrap();
+    let units: Vec<&str> = plain[..header].split(',').map(unit).collect();
+    german.insert_str(header, &format!("\n{}", units.join(";")));
+    let wide: Vec<u8> =
+        [0xfe, 0xff].into_iter().chain(german.encode_utf16().flat_map(u16::to_be_bytes)).collect();
+    let rig = rig("rig.toml");
+    let predicted = |name: &str, bytes: &[u8]| {
+        std::fs::write(place.path(name), bytes).unwrap();
+        let done = place
+            .freeplay(&format!("predict {} --data {name} --json --quiet --force", rig.display()));
+        assert_eq!(done.code, 0, "{}", done.err);
+        let json: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+        (json["errors"].to_string().replace(name, "run"), done.err)
+    };
+    let (errors, said) = predicted("plain.csv", plain.as_bytes());
+    assert!(!said.contains("note:"), "{said}");
+    let (again, said) = predicted("wide.csv", &wide);
+    assert_eq!(errors, again);
+    let how = "read with UTF-16, semicolons between columns, decimal commas, a row of units";
+    assert!(said.contains(&format!("note: wide.csv: {how}")), "{said}");
+
+    let millimetres =
+        plain.replacen('\n', &format!("\n{}\n", units.join(",").replace('m', "mm")), 1);
+    place.write("mm.csv", &millimetres);
+    let line = format!("predict {} --data mm.csv", rig.display());
+    place.refused(&line, &["mm.csv:1", "column `q1_cmd` is in `[mm]`", "expected SI units"]);
+}
+
+fn unit(column: &str) -> &'static str {
+    match column {
+        "t" => "[s]",
+        "phi" => "[rad]",
+        force if force.starts_with('F') => "[N]",
+        _ => "[m]",
+    }
+}

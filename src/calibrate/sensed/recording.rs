@@ -3,6 +3,7 @@
 use super::cells::Cells;
 use super::thresholds::{LATE, LATE_SHARE, LATE_STEPS, LOWEST_RATE, PLAIN_BAND, SHORTEST};
 use crate::measure::bounded;
+use crate::measure::dialect::Rows;
 use crate::measure::log::{LogError, Source, constant_step, no_header};
 use crate::measure::shown::shown;
 use crate::measure::spelling::nearest;
@@ -73,8 +74,8 @@ impl Recording {
         };
         let opened =
             bounded::open(path, bounded::TABLE).map_err(|error| unread(csv::Error::from(error)))?;
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(opened);
-        let heads = reader.headers().map_err(unread)?.clone();
+        let mut rows = Rows::begin(opened).map_err(unread)?;
+        let heads = rows.heads().clone();
         let asked = time.as_ref().map(|time| time.column.as_str());
         let Places { time: place_of_time, places, others } = no_header(&heads)
             .map_or_else(|| choose(&heads, sensors, efforts, asked), Err)
@@ -85,11 +86,11 @@ impl Recording {
         let mut times = Vec::new();
         let mut columns: Vec<Option<Vec<f64>>> =
             places.iter().map(|place| place.map(|_| Vec::new())).collect();
-        for record in reader.records() {
-            let record = record.map_err(unread)?;
+        let mut record = csv::StringRecord::new();
+        while rows.next(&mut record).map_err(unread)? {
             let number = |place: usize| {
                 let text = record.get(place).unwrap_or_default();
-                text.parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
+                rows.number(text).ok_or_else(|| {
                     let what = if text.is_empty() { "nothing" } else { text };
                     let message = format!("column `{}` holds {what}", &heads[place]);
                     let line = record.position().map(csv::Position::line);
@@ -103,7 +104,7 @@ impl Recording {
                 }
             }
             for (place, cells) in others.iter().zip(&mut carried) {
-                cells.push(record.get(*place).unwrap_or_default());
+                cells.push(&rows.plain(record.get(*place).unwrap_or_default()));
             }
         }
         let mut jitter = 0.0;
@@ -120,9 +121,8 @@ impl Recording {
                 interval
             }
             (Err((row, message)), None) => {
-                // The header is line 1.
                 let help = "expected samples at a constant rate, time growing".to_owned();
-                return Err(wrong(Some(row as u64 + 2), message, help));
+                return Err(wrong(Some(row as u64 + 1 + rows.lines_above()), message, help));
             }
         };
         let name = path.file_name().map_or(file.clone(), |n| n.to_string_lossy().into_owned());

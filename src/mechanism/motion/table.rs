@@ -2,6 +2,7 @@
 
 use super::{Motion, PathPoint};
 use crate::measure::bounded;
+use crate::measure::dialect::Rows;
 use crate::measure::spline::CubicSpline;
 use std::path::Path;
 
@@ -58,20 +59,19 @@ pub enum TableError {
 /// A file that is no such table.
 pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<CubicSpline>, TableError> {
     let file = bounded::open_plain(path, bounded::TABLE).map_err(csv::Error::from)?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
-    let headers = reader.headers()?.clone();
+    let mut rows = Rows::begin(file)?;
+    let headers = rows.heads().clone();
     let missing =
         |name: &&str| TableError::Column { missing: (*name).to_owned(), needed: names.join(",") };
     let index = |name: &&str| headers.iter().position(|h| h == *name).ok_or_else(|| missing(name));
     let indices = names.iter().map(index).collect::<Result<Vec<usize>, _>>()?;
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
-    for record in reader.records() {
-        let record = record?;
+    let mut record = csv::StringRecord::new();
+    while rows.next(&mut record)? {
         let line = record.position().map_or(0, csv::Position::line);
         for ((values, &index), column) in columns.iter_mut().zip(&indices).zip(names) {
             let text = record.get(index).unwrap_or("");
-            let value = text.parse::<f64>().ok().filter(|v| v.is_finite());
-            values.push(value.ok_or_else(|| TableError::Number {
+            values.push(rows.number(text).ok_or_else(|| TableError::Number {
                 line,
                 column: (*column).to_owned(),
                 text: text.to_owned(),
