@@ -17,7 +17,7 @@ use std::path::PathBuf;
 /// Two published recordings, one of each kind of joint: `emps`, a driven slide, and `pendulum`, the free
 /// swings of an arm. What the declared model lacks is added effect after effect, with the error before
 /// and after each. The recordings are not part of freeplay; where they are not present the command says
-/// so, says where to get them, and ends with exit code 0.
+/// so, says where to get them, and ends with exit code 0; a folder that --data names has to hold them.
 ///
 /// Columns and units of the recordings are those of the rig's [columns]; a rig of your own makes your
 /// own recording readable as it is. A wrong name, a wrong scale and a recording spliced from two runs are
