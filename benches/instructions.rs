@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 /// What is run: its name, the control of the step, whether servos drive it, whether its energy is balanced.
 type Counted = (&'static str, StepControl, bool, bool);
 
-const CASES: [Counted; 7] = [
+const CASES: [Counted; 9] = [
     ("fixed 1e-5 s, prescribed", StepControl::Fixed(1e-5), false, false),
     ("the same, energy balanced", StepControl::Fixed(1e-5), false, true),
     ("tolerance 1e-5 m/s, prescribed", StepControl::Tolerance(1e-5), false, false),
@@ -23,6 +23,8 @@ const CASES: [Counted; 7] = [
     ("tolerance 1e-5 m/s, servo", StepControl::Tolerance(1e-5), true, false),
     ("the same, energy balanced", StepControl::Tolerance(1e-5), true, true),
     ("tolerance 1e-4 m/s, prescribed", StepControl::Tolerance(1e-4), false, false),
+    ("direct, 1e-5 m/s, prescribed", StepControl::Direct(1e-5), false, false),
+    ("direct, 1e-5 m/s, servo", StepControl::Direct(1e-5), true, false),
 ];
 
 /// Simulated time of the shorter and of the longer run, in s; their difference is what counts.

@@ -29,9 +29,10 @@ fn computed() -> Option<f64> {
 }
 
 /// A sweep on so many threads, everything written; then once more, when nothing is left to be run.
-fn cost(threads: Option<usize>, vary: &str, tolerance: f64) -> Cost {
+fn cost(threads: Option<usize>, vary: &str, tolerance: f64, engine: &str) -> Cost {
     let folder = tempfile::tempdir().expect("a folder for the results");
-    let sets = [format!("simulation.tolerance={tolerance:e}")];
+    let sets =
+        [format!("simulation.tolerance={tolerance:e}"), format!("simulation.engine={engine}")];
     let once = || {
         let started = Instant::now();
         let (done, computed) = on_threads(threads, || {
@@ -50,7 +51,8 @@ fn cost(threads: Option<usize>, vary: &str, tolerance: f64) -> Cost {
 }
 
 fn main() {
-    let [one, two] = [1, 2].map(|threads| cost(Some(threads), "motion.phase=0..6.25:200", 1e-5));
+    let [one, two] =
+        [1, 2].map(|threads| cost(Some(threads), "motion.phase=0..6.25:200", 1e-5, "rapier"));
     println!(
         "200 runs of 1 s, tolerance 1e-5 m/s: {:.1} s on one thread, {:.1} s on two",
         one.wall, two.wall
@@ -64,10 +66,13 @@ fn main() {
             alone / (0.5 * (together - around) + around)
         );
     }
-    for tolerance in [1e-4, 1e-5] {
-        let Cost { wall, .. } = cost(None, "joints.clearance=1e-8..1e-3:log:1000", tolerance);
+    for (engine, tolerance) in
+        [("rapier", 1e-4), ("rapier", 1e-5), ("direct", 1e-4), ("direct", 1e-5)]
+    {
+        let vary = "joints.clearance=1e-8..1e-3:log:1000";
+        let Cost { wall, .. } = cost(None, vary, tolerance, engine);
         println!(
-            "1000 runs of 1 s, clearance 1e-8 to 1e-3 m, tolerance {tolerance:e} m/s: {wall:.1} s"
+            "1000 runs of 1 s, clearance 1e-8 to 1e-3 m, {engine}, tolerance {tolerance:e} m/s: {wall:.1} s"
         );
     }
 }
