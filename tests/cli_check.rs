@@ -64,7 +64,10 @@ fn doubtful_scenarios_are_warned_about() {
         ("--set environment.gravity=[0,-9810]", "environment.gravity: is 9810 m/s²"),
         ("--set mechanism.platform_mass=200", "mechanism.platform_mass: makes \"platform\""),
         ("--set motion.phi=44.9", "44.9 degrees are 0.7837"),
-        ("--set effect.0.kind=payload", "does nothing: its values are those that change nothing"),
+        (
+            "--set effect.0.kind=payload",
+            "effect.0: payload has no values, and does nothing without",
+        ),
         ("--set mechanism.kind=pendulum --set mechanism.angle=30", "30 degrees are 0.5236"),
     ] {
         let done = place.freeplay(&format!("check {arguments}"));

@@ -25,9 +25,12 @@ pub(super) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
     found
 }
 
-/// Effects whose values change nothing on the machine as declared: a payload of no mass.
+/// Effects without values, whose defaults change nothing on the machine as declared: a payload of no mass. (Who
+/// writes a zero, or varies from one, means it.)
 fn idle(scenario: &Scenario, declared: &Mechanism) -> Vec<Finding> {
-    let effects = scenario.effects.iter().enumerate().filter(|(_, setting)| {
+    let effects = scenario.effects.iter().enumerate();
+    let silent = effects.filter(|(_, setting)| setting.values().next().is_none());
+    let idle = silent.filter(|(_, setting)| {
         let variants = setting.kind.variants_of(declared, &setting.target);
         let neutral = |variant: &&[&'static str]| {
             let neutral = Setting::neutral(setting.kind, setting.target.clone(), variant, declared);
@@ -35,8 +38,8 @@ fn idle(scenario: &Scenario, declared: &Mechanism) -> Vec<Finding> {
         };
         !variants.is_empty() && variants.iter().all(neutral)
     });
-    let found = effects.map(|(i, setting)| {
-        let message = format!("{setting} does nothing: its values are those that change nothing");
+    let found = idle.map(|(i, setting)| {
+        let message = format!("{setting} has no values, and does nothing without");
         let names: Vec<&str> = setting.kind.parameters.iter().map(|p| p.name).collect();
         let help = format!("give it {}, or leave it out", names.join(", "));
         Finding::warning(scenario.problem(&format!("effect.{i}"), message, &help))
