@@ -4,18 +4,22 @@
 //! accelerations follow from Gauss' principle (`constraints.rs`). Groups touch each other
 //! through clearance joints only, so each is a small dense system: a leg has three rows.
 
+mod contacts;
 mod drives;
 mod groups;
+mod pairs;
 mod projection;
 
+use self::contacts::{contact, touch, touches};
 use self::groups::Group;
+use self::pairs::Pair;
 use super::constraints::{Constraints, Rigid, groups};
-use super::telescope::{PairMasses, Slideway, Telescope};
+use super::telescope::{Slideway, Telescope};
 use super::{
-    Actuator, Bearing, BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory,
-    Prismatic, Revolute, Situation, angle_near,
+    Bearing, BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic,
+    Situation, angle_near,
 };
-use crate::contact::{After, Contact, Touch, circle_in_ring};
+use crate::contact::{Contact, Touch};
 use nalgebra::{Vector2, Vector3};
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
@@ -54,10 +58,6 @@ pub struct Dynamics {
     /// Workspace of a group.
     constraints: Constraints,
 }
-
-/// Rate in m/s of a contact that counts as at rest where its damping is looked at: slower than any hit that
-/// matters, far above rounding.
-const SLOW: f64 = 1e-6;
 
 fn add(wrenches: &mut [Vector3<f64>], body: Option<usize>, wrench: Vector3<f64>) {
     if let Some(i) = body {
@@ -231,37 +231,6 @@ impl Dynamics {
         }
     }
 
-    /// What revolute joint `i` remembers of its contact at time `t` (s).
-    fn memory(&self, i: usize, t: f64) -> Option<After> {
-        self.touches.get(i).map(|touch| touch.after(t - self.touched))
-    }
-
-    /// The longest step in s that the dampers of contacts stand, `contacts` being those of the instant last
-    /// remembered; infinite where none touches.
-    ///
-    /// A damper c on a mass m: the velocity at the end of a step follows from an acceleration that depends on it
-    /// by `h c/m` times a third; two such times leave a margin. Longer steps do not see that error: what they
-    /// predict has it, too, and a rattle below the tolerance feeds on itself.
-    pub fn longest_contact_step(&self, mechanism: &Mechanism, contacts: &[Contact]) -> f64 {
-        let joints = mechanism.revolutes.iter().zip(contacts).enumerate();
-        let touching = joints.filter(|(_, (_, contact))| contact.penetration > 0.0);
-        let steps = touching.filter_map(|(i, (joint, contact))| {
-            let Bearing::Clearance(clearance) = &joint.bearing else { return None };
-            let Contact { penetration, rate, .. } = *contact;
-            let damping = if clearance.law.remembers() {
-                let speed = self.touches.get(i)?.after(0.0).impact_speed(penetration, rate);
-                clearance.law.damping(penetration, speed)
-            } else {
-                // Approaching, where a law that never pulls is not cut off.
-                let force = |rate| clearance.law.normal_force(penetration, rate);
-                let rate = rate.abs().max(SLOW);
-                ((force(2.0 * rate) - force(rate)) / rate).max(0.0)
-            };
-            Some(2.0 * mechanism.joint_mass(joint) / damping)
-        });
-        steps.fold(f64::INFINITY, f64::min)
-    }
-
     /// Fills `out.accelerations` from `out.wrenches` and the rigid joints, and, where drives are
     /// prescribed, their coordinates and the efforts that the command takes.
     pub fn accelerations(
@@ -338,97 +307,6 @@ impl Dynamics {
         for ((w, a), m) in out.wrenches.iter_mut().zip(&out.accelerations).zip(&self.masses) {
             *w = a.component_mul(m);
         }
-    }
-}
-
-/// Describes revolute joint `i`, and adds what its contact does; `memory` is what it remembers.
-fn touch(
-    i: usize,
-    memory: Option<After>,
-    mechanism: &Mechanism,
-    states: &[BodyState],
-    out: &mut Evaluation,
-) {
-    let joint = &mechanism.revolutes[i];
-    let contact = &mut out.contacts[i];
-    let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
-    let Bearing::Clearance(clearance) = &joint.bearing else {
-        contact.eccentricity = journal.centre - ring.centre;
-        if let Bearing::Native { bearing_radius, journal_radius, .. } = joint.bearing {
-            let clearance = bearing_radius - journal_radius;
-            let (penetration, normal) = circle_in_ring(contact.eccentricity, clearance);
-            contact.penetration = penetration;
-            contact.rate = (journal.velocity - ring.velocity).dot(&normal);
-        }
-        return;
-    };
-    let (state, forces) = match (&joint.out_of_round, memory) {
-        (None, None) => clearance.forces(&ring, &journal),
-        (None, Some(memory)) => clearance.forces_after(memory, &ring, &journal),
-        (Some(shape), memory) => {
-            shape.forces(clearance, memory, joint.ring.rotation(states), &ring, &journal)
-        }
-    };
-    *contact = state;
-    out.reactions[i] = Vector2::zeros();
-    if let Some([on_bearing, on_journal]) = forces {
-        out.reactions[i] = on_journal.xy();
-        add(&mut out.wrenches, joint.ring.body, on_bearing);
-        add(&mut out.wrenches, joint.journal.body, on_journal);
-    }
-}
-
-/// What the joints remember at the start of a run; nothing where no law asks for it.
-fn touches(mechanism: &Mechanism, starts: &[BodyState]) -> Vec<Touch> {
-    let remembers = |joint: &Revolute| match &joint.bearing {
-        Bearing::Clearance(clearance) => clearance.law.remembers(),
-        Bearing::Ideal | Bearing::Native { .. } => false,
-    };
-    if !mechanism.revolutes.iter().any(remembers) {
-        return Vec::new();
-    }
-    let begin = |joint| {
-        let Contact { penetration, rate, .. } = contact(joint, starts);
-        Touch::begin(penetration, rate)
-    };
-    mechanism.revolutes.iter().map(begin).collect()
-}
-
-/// Where the journal of a joint stands; flying in one that no law acts in.
-fn contact(joint: &Revolute, states: &[BodyState]) -> Contact {
-    let Bearing::Clearance(clearance) = &joint.bearing else { return Contact::default() };
-    let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
-    let (contact, _) = match &joint.out_of_round {
-        None => clearance.forces(&ring, &journal),
-        Some(shape) => shape.forces(clearance, None, joint.ring.rotation(states), &ring, &journal),
-    };
-    contact
-}
-
-/// Two moving bodies on one prismatic joint, which no other rigid joint holds.
-#[derive(Clone, Copy, Debug)]
-struct Pair {
-    /// Index of the joint.
-    joint: usize,
-    /// Base and slider.
-    bodies: [usize; 2],
-    masses: PairMasses,
-    /// The drive that prescribes the length.
-    prescribed: Option<usize>,
-}
-
-impl Pair {
-    /// The pair, if a group is nothing else.
-    fn of(mechanism: &Mechanism, group: &[Rigid]) -> Option<Self> {
-        let [Rigid::Prismatic(joint)] = *group else { return None };
-        let Prismatic { base, slider, .. } = &mechanism.prismatics[joint];
-        let bodies = [base.body?, slider.body?];
-        let masses = PairMasses::new(bodies.map(|body| &mechanism.bodies[body]));
-        let prescribes = |actuator: &Actuator| {
-            actuator.joint == JointIndex::Prismatic(joint) && actuator.drive == Drive::Prescribed
-        };
-        let prescribed = mechanism.actuators.iter().position(prescribes);
-        Some(Self { joint, bodies, masses, prescribed })
     }
 }
 

@@ -1,0 +1,107 @@
+//! What journals do to their rings, what they remember of their hits, and how long a step their dampers stand.
+
+use super::{Dynamics, add};
+use crate::contact::{After, Contact, Touch, circle_in_ring};
+use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism, Revolute};
+use nalgebra::Vector2;
+
+/// Rate in m/s of a contact that counts as at rest where its damping is looked at: slower than any hit that
+/// matters, far above rounding.
+const SLOW: f64 = 1e-6;
+
+impl Dynamics {
+    /// What revolute joint `i` remembers of its contact at time `t` (s).
+    pub(super) fn memory(&self, i: usize, t: f64) -> Option<After> {
+        self.touches.get(i).map(|touch| touch.after(t - self.touched))
+    }
+
+    /// The longest step in s that the dampers of contacts stand, `contacts` being those of the instant last
+    /// remembered; infinite where none touches.
+    ///
+    /// A damper c on a mass m: the velocity at the end of a step follows from an acceleration that depends on it
+    /// by `h c/m` times a third; two such times leave a margin. Longer steps do not see that error: what they
+    /// predict has it, too, and a rattle below the tolerance feeds on itself.
+    pub fn longest_contact_step(&self, mechanism: &Mechanism, contacts: &[Contact]) -> f64 {
+        let joints = mechanism.revolutes.iter().zip(contacts).enumerate();
+        let touching = joints.filter(|(_, (_, contact))| contact.penetration > 0.0);
+        let steps = touching.filter_map(|(i, (joint, contact))| {
+            let Bearing::Clearance(clearance) = &joint.bearing else { return None };
+            let Contact { penetration, rate, .. } = *contact;
+            let damping = if clearance.law.remembers() {
+                let speed = self.touches.get(i)?.after(0.0).impact_speed(penetration, rate);
+                clearance.law.damping(penetration, speed)
+            } else {
+                // Approaching, where a law that never pulls is not cut off.
+                let force = |rate| clearance.law.normal_force(penetration, rate);
+                let rate = rate.abs().max(SLOW);
+                ((force(2.0 * rate) - force(rate)) / rate).max(0.0)
+            };
+            Some(2.0 * mechanism.joint_mass(joint) / damping)
+        });
+        steps.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Describes revolute joint `i`, and adds what its contact does; `memory` is what it remembers.
+pub(super) fn touch(
+    i: usize,
+    memory: Option<After>,
+    mechanism: &Mechanism,
+    states: &[BodyState],
+    out: &mut Evaluation,
+) {
+    let joint = &mechanism.revolutes[i];
+    let contact = &mut out.contacts[i];
+    let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
+    let Bearing::Clearance(clearance) = &joint.bearing else {
+        contact.eccentricity = journal.centre - ring.centre;
+        if let Bearing::Native { bearing_radius, journal_radius, .. } = joint.bearing {
+            let clearance = bearing_radius - journal_radius;
+            let (penetration, normal) = circle_in_ring(contact.eccentricity, clearance);
+            contact.penetration = penetration;
+            contact.rate = (journal.velocity - ring.velocity).dot(&normal);
+        }
+        return;
+    };
+    let (state, forces) = match (&joint.out_of_round, memory) {
+        (None, None) => clearance.forces(&ring, &journal),
+        (None, Some(memory)) => clearance.forces_after(memory, &ring, &journal),
+        (Some(shape), memory) => {
+            shape.forces(clearance, memory, joint.ring.rotation(states), &ring, &journal)
+        }
+    };
+    *contact = state;
+    out.reactions[i] = Vector2::zeros();
+    if let Some([on_bearing, on_journal]) = forces {
+        out.reactions[i] = on_journal.xy();
+        add(&mut out.wrenches, joint.ring.body, on_bearing);
+        add(&mut out.wrenches, joint.journal.body, on_journal);
+    }
+}
+
+/// What the joints remember at the start of a run; nothing where no law asks for it.
+pub(super) fn touches(mechanism: &Mechanism, starts: &[BodyState]) -> Vec<Touch> {
+    let remembers = |joint: &Revolute| match &joint.bearing {
+        Bearing::Clearance(clearance) => clearance.law.remembers(),
+        Bearing::Ideal | Bearing::Native { .. } => false,
+    };
+    if !mechanism.revolutes.iter().any(remembers) {
+        return Vec::new();
+    }
+    let begin = |joint| {
+        let Contact { penetration, rate, .. } = contact(joint, starts);
+        Touch::begin(penetration, rate)
+    };
+    mechanism.revolutes.iter().map(begin).collect()
+}
+
+/// Where the journal of a joint stands; flying in one that no law acts in.
+pub(super) fn contact(joint: &Revolute, states: &[BodyState]) -> Contact {
+    let Bearing::Clearance(clearance) = &joint.bearing else { return Contact::default() };
+    let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
+    let (contact, _) = match &joint.out_of_round {
+        None => clearance.forces(&ring, &journal),
+        Some(shape) => shape.forces(clearance, None, joint.ring.rotation(states), &ring, &journal),
+    };
+    contact
+}
