@@ -36,6 +36,13 @@ impl Table {
         self.header[column] = to.to_owned();
     }
 
+    /// Gives two columns each other's name.
+    pub fn exchange(&mut self, a: &str, b: &str) {
+        self.rename(a, "exchanged");
+        self.rename(b, a);
+        self.rename("exchanged", b);
+    }
+
     pub fn drop(&mut self, names: &[&str]) {
         for name in names {
             let column = self.column(name);

@@ -70,15 +70,7 @@ const BROKEN: &[Break] = &[
         },
         &["rows are 0.0100 s apart", "at least 300 a second"],
     ),
-    (
-        "lengths exchanged",
-        |t| {
-            t.rename("q1", "q");
-            t.rename("q2", "q1");
-            t.rename("q", "q2");
-        },
-        &["do not close", "columns exchanged"],
-    ),
+    ("lengths exchanged", |t| t.exchange("q1", "q2"), &["do not close", "columns exchanged"]),
     (
         "a force negated",
         |t| t.scale(&["F2"], -1.0),
@@ -86,20 +78,12 @@ const BROKEN: &[Break] = &[
     ),
     (
         "forces exchanged",
-        |t| {
-            t.rename("F1", "F");
-            t.rename("F3", "F1");
-            t.rename("F", "F3");
-        },
+        |t| t.exchange("F1", "F3"),
         &["columns `F1` and `F3` each hold what the other's drive gives"],
     ),
     (
         "commands exchanged",
-        |t| {
-            t.rename("q1_cmd", "q");
-            t.rename("q2_cmd", "q1_cmd");
-            t.rename("q", "q2_cmd");
-        },
+        |t| t.exchange("q1_cmd", "q2_cmd"),
         &["columns `q1_cmd` and `q1` differ by"],
     ),
 ];
