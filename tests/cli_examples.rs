@@ -110,6 +110,8 @@ fn the_table_of_speeds_is_that_of_its_sweep() {
     let shown = rest.split_once("<!-- end of table of speeds -->").expect("ends").0;
     let block = before.rsplit("```sh\n").next().expect("a command above the table");
     let line = block.split("```").next().unwrap().replace("\\\n", " ");
+    // Shells take the quotes away.
+    let line = line.replace('\'', "");
     let line = line.trim().strip_prefix("freeplay ").expect("a command of freeplay");
     let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/");
     let place = Place::new();

@@ -114,7 +114,8 @@ fn the_study_writes_everything_that_was_promised() {
     assert_eq!(page.find("<section"), Some(claims), "the result stands first");
     assert!(!page.contains("NaN") && page.matches("<figcaption>").count() == 9);
 
-    place.refused("paper", &["`freeplay-paper-default` already holds a result", "--force"]);
+    let taken = "paper --out freeplay-paper-default";
+    place.refused(taken, &["`freeplay-paper-default` already holds a result", "--force"]);
 }
 
 #[test]

@@ -27,8 +27,8 @@ pub(super) struct Sets {
     /// `motion.period=0.5` (s), `contact.law=native`, `simulation.output_interval=1e-4` (s).
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
-    /// What steps the machine: the physics engine, or the equations of motion integrated directly, several
-    /// times as fast; short for --set simulation.engine=ENGINE
+    /// What steps the machine: the physics engine, or the equations of motion integrated directly, two to
+    /// four times as fast; short for --set simulation.engine=ENGINE
     #[arg(long, value_parser = ["rapier", "direct"])]
     engine: Option<String>,
 }
