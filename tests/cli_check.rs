@@ -122,3 +122,30 @@ fn a_closed_pipe_is_no_error() {
     let err = String::from_utf8(output.stderr).unwrap();
     assert_eq!((output.status.code(), err.as_str()), (Some(0), ""));
 }
+
+/// The engines by name: what only one of them has is not done by the other without a word.
+#[test]
+fn engines_are_held_against_each_other_and_do_what_they_can() {
+    let place = Place::new();
+    let said = place.good("check --engines --set simulation.tolerance=1e-8 --duration 0.05");
+    assert!(said.contains("Physics engine against direct integration"), "{said}");
+    assert!(said.contains("all of the 0.05 s looked at"), "{said}");
+    let json = place.good("check --engines --duration 0.05 --json");
+    let json: Value = serde_json::from_str(&json).unwrap();
+    let apart = json["engines"]["apart"]["position_m"].as_f64().unwrap();
+    assert!(apart > 0.0 && apart < 1e-6, "{apart}");
+
+    place.good("run --engine direct --duration 0.05 --quiet --out d");
+    let summary: Value = serde_json::from_str(&place.read("d/summary.json")).unwrap();
+    assert_eq!(summary["engine"], "direct");
+    assert!(place.read("d/index.html").contains("without the physics engine"));
+    for (line, fragment) in [
+        ("run --engine direct --set contact.law=native", "does not go with contact.law"),
+        ("run --engine direct --set simulation.step=1e-5", "which controls its error"),
+        ("compare --engine direct", "has no contacts of the physics engine's own"),
+        ("check --engines --set simulation.step=1e-5", "compares steps under error control"),
+        ("run --engine bullet", "possible values: rapier, direct"),
+    ] {
+        place.refused(line, &[fragment]);
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::{plausible, three_rpr};
 use crate::contact::StiffnessForm;
-use crate::engine::{StepControl, TYPICAL_IMPACT_SPEED};
+use crate::engine::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism};
 use crate::model::{Machine, Singular, radial_clearance};
 use crate::scenario::{self, Problem, Scenario};
@@ -284,13 +284,16 @@ fn redundant(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
 fn step(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
     let has = |of: fn(&Bearing) -> bool| machine.mechanism.revolutes.iter().any(|j| of(&j.bearing));
     let native = has(|bearing| matches!(bearing, Bearing::Native { .. }));
-    match machine.control {
-        StepControl::Direct(_) if native => Some(Finding::error(scenario.problem(
+    // A fixed step where nobody asks for one: the engine is asked by name.
+    if native && scenario.simulation.engine == Engine::Direct {
+        return Some(Finding::error(scenario.problem(
             "simulation.engine",
             "\"direct\" does not go with contact.law = \"native\": those are the physics engine's own \
              contacts",
             "leave simulation.engine out, and set simulation.step, such as 1e-5",
-        ))),
+        )));
+    }
+    match machine.control {
         StepControl::Tolerance(_) if native => Some(Finding::error(scenario.problem(
             "simulation.tolerance",
             "does not go with contact.law = \"native\": the physics engine's own contacts have no \
