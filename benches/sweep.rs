@@ -10,6 +10,7 @@
 use freeplay::scenario::Source;
 use freeplay::study::sweep::{Plan, Shard, SweepError, on_threads, sweep};
 use std::fs;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// What a sweep took, in s.
@@ -38,7 +39,8 @@ fn cost(threads: Option<usize>, vary: &str, tolerance: f64, engine: &str) -> Cos
         let (done, computed) = on_threads(threads, || {
             let source = Source::read(None).expect("the built-in scenario");
             let plan = Plan::new(source, &sets, &[vary.to_owned()], Shard::WHOLE)?;
-            let done = sweep(&plan, &folder.path().join("sweep"), false, &|_, _| {})?;
+            let never = AtomicBool::new(false);
+            let done = sweep(&plan, &folder.path().join("sweep"), false, &never, &|_, _| {})?;
             Ok((done, rayon::broadcast(|_| computed())))
         })
         .expect("threads")

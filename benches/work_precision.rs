@@ -14,7 +14,7 @@ mod minimal;
 use common::{Case, SERVO};
 use freeplay::engine::{Schedule, StepControl, run};
 use freeplay::mechanism::Mechanism;
-use freeplay::report::{Curve as Line, Panel, Style, panels_svg};
+use freeplay::report::{Curve as Line, Label, Panel, Style, panels_svg};
 use std::time::Instant;
 
 /// Start phases over which an error of the diagram is averaged.
@@ -155,8 +155,8 @@ fn diagram(means: &Means, by_tolerance: &[(f64, f64)]) -> Panel {
     let minimal = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|tolerance| means.theirs(tolerance));
     Panel {
         title: format!("{}, up to {:.0} ms", means.name, means.until * 1e3),
-        x_label: "log10 of wall time (s) per simulated second".to_owned(),
-        y_label: "log10 of error (m)".to_owned(),
+        x_label: Label::log("wall time per simulated second (s)"),
+        y_label: Label::log("error (m)"),
         curves: vec![
             line("fixed step", &fixed),
             line("tolerance", by_tolerance),
@@ -188,8 +188,8 @@ fn over_tolerance(means: &[Means], by_tolerance: &[Vec<(f64, f64)>]) -> Panel {
     });
     Panel {
         title: "error of the platform's position, mean of 8 starts".to_owned(),
-        x_label: "log10 of tolerance (m/s)".to_owned(),
-        y_label: "log10 of error (m)".to_owned(),
+        x_label: Label::log("tolerance (m/s)"),
+        y_label: Label::log("error (m)"),
         curves,
     }
 }

@@ -41,8 +41,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let line = |name: &str, points, style| Curve { name: name.to_owned(), points, style };
     let svg = panels_svg(&[Panel {
         title: "force of actuator 1".to_owned(),
-        x_label: "time (s)".to_owned(),
-        y_label: "force (N)".to_owned(),
+        x_label: "time (s)".into(),
+        y_label: "force (N)".into(),
         curves: vec![
             line("c = 0.5 mm", loose.force, Style::Solid),
             line("without clearance", tight.force, Style::Reference),

@@ -81,5 +81,5 @@ fn simulate([clearance, friction]: [f64; 2]) -> Result<Summary, Box<dyn Error + 
     let work = run(mechanism, machine.control, machine.schedule, &mut |instant| {
         recorder.row(mechanism, instant, &ideal.at(instant.t));
     })?;
-    Ok(recorder.finish(&scenario, &machine, work, f64::NAN, None, Vec::new()))
+    Ok(recorder.finish(&scenario, &machine, &work, f64::NAN, None, Vec::new()))
 }

@@ -1,4 +1,4 @@
-//! The pages of a run in a real browser.
+//! The pages in a real browser.
 
 mod cli_common;
 mod webdriver;
@@ -50,7 +50,7 @@ fn the_pages_of_a_run_work_in_a_browser() {
     place.good("run --duration 0.1 --out r");
 
     browser.open(&place.path("r/index.html"));
-    assert_eq!(number(&browser, "document.querySelectorAll('figure svg').length"), 6.0);
+    assert_eq!(number(&browser, "document.querySelectorAll('figure svg').length"), 7.0);
     browser.click("a[href='player.html']");
     wait(
         &browser,
@@ -128,5 +128,131 @@ fn the_pages_of_a_run_work_in_a_browser() {
         ))
     };
     assert_eq!(differing(&at(1.0), &at(6.0)), 6);
+    assert_eq!(browser.errors(), [""; 0]);
+}
+
+/// Widths of a desk, a tablet and a phone in pixels.
+const WIDTHS: [u32; 3] = [1400, 820, 390];
+
+/// What is wrong with how a page is laid out, in words.
+const FLAWS: &str = r#"
+    const flaws = [];
+    const root = document.documentElement;
+    if (root.scrollWidth > root.clientWidth + 1) flaws.push(`scrolls sideways: ${root.scrollWidth} of ${root.clientWidth} px`);
+    const inside = (a, b) => a.left >= b.left - 1.5 && a.right <= b.right + 1.5 && a.top >= b.top - 1.5 && a.bottom <= b.bottom + 1.5;
+    const over = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1.5 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2.5;
+    const visible = (box) => box.width > 0 && box.height > 0;
+    for (const svg of document.querySelectorAll("svg.picture, #plot")) {
+        const frame = svg.getBoundingClientRect();
+        if (!visible(frame)) flaws.push("a figure of no size");
+        const texts = [...svg.querySelectorAll("text")].map((text) => [text.textContent.trim(), text.getBoundingClientRect()]).filter(([text, box]) => text && visible(box));
+        texts.forEach(([text, box], i) => {
+            if (!inside(box, frame)) flaws.push(`"${text}" is cut off`);
+            for (const [other, its] of texts.slice(i + 1)) if (over(box, its)) flaws.push(`"${text}" lies over "${other}"`);
+        });
+        if (svg.matches(".picture") && !svg.querySelector("polyline, polygon, circle, path")) flaws.push("an empty figure");
+        if (texts.some(([text]) => text === "no data")) flaws.push("a figure without data");
+    }
+    for (const cell of document.querySelectorAll("h1, h2, p, figcaption, td, th, nav a, button, label, .lead")) {
+        if (cell.clientWidth && cell.scrollWidth > cell.clientWidth + 2) flaws.push(`"${cell.textContent.trim().slice(0, 40)}" is wider than its place`);
+    }
+    const letters = [...document.querySelectorAll(".card svg text")].map((text) => text.getBoundingClientRect()).filter(visible);
+    const least = Math.min(...letters.map((box) => Math.min(box.height, box.width > 0 ? Math.max(box.height, box.width) : 99)));
+    if (least < 7) flaws.push(`letters of ${least} px`);
+    const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+    const light = (colour) => { const [r, g, b] = colour.match(/[0-9.]+/g).map(Number); return r + g + b > 384; };
+    for (const sheet of document.querySelectorAll("svg.picture > rect:first-of-type")) {
+        if (light(getComputedStyle(sheet).fill) === dark) flaws.push(dark ? "a light figure in the dark" : "a dark figure in the light");
+    }
+    return [...new Set(flaws)];
+"#;
+
+/// Every kind of page, as a user makes it, in a folder of its own.
+fn every_kind_of_page(place: &Place) -> Vec<&'static str> {
+    let rig = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs-planar/planar-1");
+    let lines = [
+        ("run", "run --duration 0.1".to_owned()),
+        ("ideal", "run --set contact.law=ideal --duration 0.1".to_owned()),
+        (
+            "sweep",
+            "sweep --vary joints.clearance=1e-8..1e-3:log:3 --vary motion.phase=0..4:3 --duration 0.1".to_owned(),
+        ),
+        ("compare", "compare --steps 5e-5,2e-5,1e-5 --starts 2 --duration 0.1".to_owned()),
+        ("by-law", "compare --laws hertz-step,flores,hunt-crossley --starts 2 --duration 0.1".to_owned()),
+        ("paper", "paper --phases 2 --duration 0.05".to_owned()),
+        ("record", format!("record {rig}/rig.toml --duration 1.2")),
+        ("predict", format!("predict {rig}/rig.toml --data {rig}/run-b.csv")),
+        (
+            "calibrate",
+            "calibrate --rig record/rig.toml --data record/run-a.csv --validate record/run-b.csv".to_owned(),
+        ),
+        ("diff", "diff run ideal".to_owned()),
+        ("models", "diff run/scenario.toml ideal/scenario.toml --starts 2".to_owned()),
+    ];
+    for (out, line) in &lines {
+        let done = place.freeplay(&format!("{line} --out {out}"));
+        // A study of a tenth of a second need not come out right.
+        assert!(done.code < 2, "{line}: {}", done.err);
+    }
+    lines.map(|(out, _)| out).into()
+}
+
+#[test]
+fn every_page_reads_well_on_a_desk_a_tablet_and_a_phone_by_day_and_by_night() {
+    let Some(browser) = Browser::start() else {
+        println!("skipped: chromium not found");
+        return;
+    };
+    let place = Place::new();
+    let mut pages: Vec<String> =
+        every_kind_of_page(&place).iter().map(|out| format!("{out}/index.html")).collect();
+    pages.push("run/player.html".to_owned());
+    let mut found = Vec::new();
+    for page in &pages {
+        for (width, dark) in WIDTHS.into_iter().flat_map(|width| [(width, false), (width, true)]) {
+            browser.look(width, dark);
+            browser.open(&place.path(page));
+            let figures = number(&browser, "document.querySelectorAll('svg').length");
+            if figures < 1.0 {
+                found.push(format!("{page}: no figure"));
+            }
+            for flaw in browser.run(FLAWS).as_array().unwrap() {
+                let light = if dark { "dark" } else { "light" };
+                found.push(format!("{page} at {width} px, {light}: {}", flaw.as_str().unwrap()));
+            }
+        }
+    }
+    assert!(found.is_empty(), "{} flaws:\n{}", found.len(), found.join("\n"));
+    assert_eq!(browser.errors(), [""; 0]);
+}
+
+#[test]
+fn a_pointer_reads_values_off_a_figure_and_a_button_makes_it_larger() {
+    let Some(browser) = Browser::start() else {
+        println!("skipped: chromium not found");
+        return;
+    };
+    let place = Place::new();
+    place.good("run --duration 0.1 --out r");
+    browser.look(820, false);
+    browser.open(&place.path("r/index.html"));
+    // In the middle of the plot of the path error.
+    let said = browser.run(
+        "const svg = document.querySelectorAll('svg[data-plots]')[1]; svg.scrollIntoView(); \
+         const { left, top, width, height } = svg.getBoundingClientRect(); \
+         svg.dispatchEvent(new PointerEvent('pointermove', { clientX: left + 0.55 * width, clientY: top + 0.4 * height, bubbles: true })); \
+         return document.querySelector('.readout').hidden ? '' : document.querySelector('.readout').innerText",
+    );
+    let said = said.as_str().unwrap();
+    assert!(said.starts_with("time (s): 0.0") && said.contains("distance: "), "{said}");
+    // What it says is what the figure was drawn from: between 0 and what six clearances leave.
+    let value: f64 = said.lines().nth(1).unwrap().rsplit(' ').next().unwrap().parse().unwrap();
+    assert!((0.05..1.5).contains(&value), "{said}");
+    let wide = "document.querySelector('.card svg').getBoundingClientRect().width";
+    let before = number(&browser, wide);
+    browser.click(".enlarge");
+    assert!(number(&browser, wide) > 1.15 * before);
+    browser.click(".enlarge");
+    assert!((number(&browser, wide) - before).abs() < 1.0);
     assert_eq!(browser.errors(), [""; 0]);
 }

@@ -56,7 +56,7 @@ fn a_comparison_writes_everything_that_was_promised() {
 
     let page = place.read("freeplay-compare-default/index.html");
     let answer = page.find("<section id=\"answer\">").unwrap();
-    assert!(page.rfind("<section").unwrap() == answer, "the page ends with the answer");
+    assert!(page.find("<section").unwrap() == answer, "the page begins with the answer");
     assert!(!page.contains("NaN"));
 }
 
@@ -143,7 +143,7 @@ fn a_pendulum_with_clearance_is_compared() {
 #[test]
 fn a_comparison_whose_runs_do_not_balance_says_so() {
     let place = Place::new();
-    let sets = "--set simulation.tolerance=0.1 --set simulation.settle=0.05";
+    let sets = "--set simulation.tolerance=0.03 --set simulation.settle=0.05";
     let line = format!("compare --duration 0.15 --steps 1e-4 --starts 2 --out c {sets}");
     let done = place.freeplay(&line);
     assert_eq!(done.code, 1, "{}", done.out);
@@ -152,10 +152,10 @@ fn a_comparison_whose_runs_do_not_balance_says_so() {
     let json: Value = serde_json::from_str(&place.read("c/compare.json")).unwrap();
     let mut rows = json["rows"].as_array().unwrap().iter();
     let loose = rows.find(|row| row["law"] == "hertz-step" && row["resolved"] == true).unwrap();
-    assert_eq!(loose["tolerance_m_s"], 0.1);
+    assert_eq!(loose["tolerance_m_s"], 0.03);
     let faulty = loose["faulty"].as_u64().unwrap();
     assert!(faulty >= 1, "{loose}");
-    assert!(place.read("c/index.html").contains(&format!("{faulty} with faults)")));
+    assert!(place.read("c/index.html").contains("with faults"));
 }
 
 #[test]
@@ -170,21 +170,21 @@ fn a_machine_without_revolute_joints_is_refused() {
     );
 }
 
-/// The table of the README, between its two comments.
-fn table_of_readme() -> &'static str {
-    let readme = include_str!("../README.md");
-    let (_, rest) = readme.split_once("<!-- table.md -->\n").expect("begins");
+/// The table of the docs, between its two comments.
+fn table_of_docs() -> &'static str {
+    let docs = include_str!("../docs/compare.md");
+    let (_, rest) = docs.split_once("<!-- table.md -->\n").expect("begins");
     rest.split_once("<!-- end of table.md -->").expect("ends").0
 }
 
 /// Its shape from a short comparison: what stands in the cells takes a whole one.
 #[test]
-fn the_readme_shows_the_table_that_compare_writes() {
+fn the_docs_show_the_table_that_compare_writes() {
     let place = Place::new();
     place.good("compare --duration 0.06 --starts 2 --out c --quiet");
     let table = place.read("c/table.md");
-    assert_eq!(table.lines().count(), table_of_readme().lines().count());
-    for (k, (ours, readme)) in table.lines().zip(table_of_readme().lines()).enumerate() {
+    assert_eq!(table.lines().count(), table_of_docs().lines().count());
+    for (k, (ours, readme)) in table.lines().zip(table_of_docs().lines()).enumerate() {
         let cells =
             |line: &str| line.split('|').map(str::trim).map(String::from).collect::<Vec<_>>();
         let (ours, readme) = (cells(ours), cells(readme));
@@ -206,8 +206,8 @@ fn the_readme_shows_the_table_that_compare_writes() {
 
 #[test]
 #[ignore = "a whole comparison: half a minute on two cores"]
-fn the_readmes_table_is_that_of_the_default_comparison() {
+fn the_docs_table_is_that_of_the_default_comparison() {
     let place = Place::new();
     place.good("compare --quiet");
-    assert_eq!(place.read("freeplay-compare-default/table.md"), table_of_readme());
+    assert_eq!(place.read("freeplay-compare-default/table.md"), table_of_docs());
 }

@@ -1,4 +1,4 @@
-//! The mechanism of the README and those in `assets/mechanisms`, as a user would try them.
+//! The mechanism of the docs and those in `assets/mechanisms`, as a user would try them.
 
 mod cli_common;
 
@@ -7,18 +7,19 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::fs;
 
-/// The TOML block of the README that is called "mine".
-fn of_the_readme() -> String {
-    let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
-    let blocks = readme.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+/// The TOML block of the docs that is called "mine".
+fn of_the_docs() -> String {
+    let docs =
+        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/mechanisms.md")).unwrap();
+    let blocks = docs.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
     let mine = blocks.filter(|block| block.starts_with("name = \"mine\""));
-    mine.map(str::to_owned).next().expect("the README has a mechanism of one's own")
+    mine.map(str::to_owned).next().expect("the docs have a mechanism of one's own")
 }
 
 #[test]
-fn the_mechanism_of_the_readme_runs() {
+fn the_mechanism_of_the_docs_runs() {
     let place = Place::new();
-    place.write("mine.toml", &of_the_readme());
+    place.write("mine.toml", &of_the_docs());
     let text = place.good("check mine.toml");
     for fragment in ["1 (Grübler counts 1), 1 driven", "loop B-A-O-D", "clearance 200 µm"] {
         assert!(text.contains(fragment), "{text}\nlacks: {fragment}");

@@ -152,8 +152,10 @@ fn a_sweep_goes_on_where_it_was_ended() {
     let place = Place::new();
     let line = "sweep --vary joints.clearance=1e-4..5e-4:12 --duration 0.05 --threads 2 --quiet";
     let mut takes = time(&place, &format!("{line} --out whole"));
-    for (i, (name, _, share)) in moments().enumerate() {
-        end_after(&place, &format!("{line} --out r"), name, 0.6 * share, &mut takes);
+    for (i, (name, code, share)) in moments().enumerate() {
+        let ended = end_after(&place, &format!("{line} --out r"), name, 0.6 * share, &mut takes);
+        // Told to end, it says that the same command goes on; before there is a row, the signal itself.
+        assert!(code.is_none() || [Some(0), Some(75), code].contains(&ended.code()), "{ended}");
         if let Ok(text) = std::fs::read_to_string(place.path("r/sweep.json")) {
             let json: Value = serde_json::from_str(&text).expect("half a file");
             assert!(json["complete"] == false || place.path("r/sweep.csv").exists());

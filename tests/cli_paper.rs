@@ -156,7 +156,7 @@ fn wrong_input_is_refused() {
 #[test]
 fn a_study_whose_runs_do_not_balance_says_so() {
     let place = Place::new();
-    let sets = "--set simulation.tolerance=0.1 --set simulation.settle=0.05";
+    let sets = "--set simulation.tolerance=0.01 --set simulation.settle=0.05";
     let done = place.freeplay(&format!("paper --duration 0.1 --phases 2 --out p {sets}"));
     assert_eq!(done.code, 1, "{}", done.out);
     assert!(done.err.contains("error: assumed at 5e-4 m of clearance: "), "{}", done.err);

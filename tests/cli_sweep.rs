@@ -87,7 +87,9 @@ fn lists_and_ranges_combine_as_a_product() {
     assert_eq!((varied[4].as_str(), varied[12].as_str()), ("hertz-step 3 1e-5", "ideal 3 0.001"));
     // What is no number has no axis.
     assert!(!names(&place.path("p")).contains(&"over-contact.law.svg".to_owned()));
-    assert!(place.read("p/over-joints.clearance.svg").contains("log10 of joints.clearance"));
+    // An axis over decades says the quantity, in its unit.
+    let svg = place.read("p/over-joints.clearance.svg");
+    assert!(svg.contains("clearance (m)") && svg.contains("µm"));
 }
 
 #[test]
@@ -292,7 +294,8 @@ fn runs_that_break_down_or_cannot_be_done_get_a_row() {
     let line = "sweep --duration 0.2 --out h --set contact.stiffness=10 --set contact.c_max=0 \
                 --vary joints.clearance=5e-4 --vary motion.radius=0.05,0.1";
     let done = place.freeplay(line);
-    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(done.code, 1, "{}", done.err);
+    assert!(done.err.contains("error: 1 of 2 runs halted; the column `status` of `h/sweep.csv`"));
     assert!(done.err.contains("warning: 1 of 2 runs are refused"), "{}", done.err);
     assert!(done.out.contains("0 ok, 1 halted, 1 refused"), "{}", done.out);
     let status = column(&table(&place, "h"), "status");
@@ -311,4 +314,48 @@ fn two_processes_do_not_share_a_folder() {
     journal.lock().unwrap();
     place.refused(&line, &["another freeplay is at work on `s`"]);
     place.refused(&format!("{line} --force"), &["another freeplay is at work on `s`"]);
+}
+
+/// Peaks of single runs were read as what a clearance does, where another start does as much.
+#[test]
+fn starts_give_means_with_intervals_group_by_group() {
+    let place = Place::new();
+    let sweep =
+        "sweep --vary joints.clearance=1e-4,5e-4 --vary motion.phase=0..5:4 --duration 0.1 --quiet";
+    place.good(&format!("{sweep} --out s"));
+    let statistics = place.read("s/statistics.csv");
+    let mut table = csv::Reader::from_reader(statistics.as_bytes());
+    let heads = table.headers().unwrap().clone();
+    let place_of = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let rows: Vec<csv::StringRecord> = table.records().map(|row| row.unwrap()).collect();
+    assert_eq!(rows.len(), 2, "a row for each clearance");
+    let runs = place.read("s/sweep.csv");
+    let mut runs = csv::Reader::from_reader(runs.as_bytes());
+    let column =
+        |heads: &csv::StringRecord, name: &str| heads.iter().position(|head| head == name).unwrap();
+    let heads_of_runs = runs.headers().unwrap().clone();
+    let peak = column(&heads_of_runs, "peak_contact_force_N");
+    let all: Vec<(String, f64)> = runs
+        .records()
+        .map(|row| row.unwrap())
+        .map(|row| (row[0].to_owned(), row[peak].parse().unwrap()))
+        .collect();
+    for row in &rows {
+        let of: Vec<f64> =
+            all.iter().filter(|(c, _)| c == &row[0]).map(|(_, force)| *force).collect();
+        assert_eq!((&row[place_of("runs")], of.len()), ("4", 4));
+        let mean = of.iter().sum::<f64>() / 4.0;
+        let variance = of.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / 3.0;
+        // Student's t of three degrees of freedom.
+        let half = 3.182 * (variance / 4.0).sqrt();
+        let figure = |name: &str| row[place_of(name)].parse::<f64>().unwrap();
+        assert!((figure("peak_contact_force_N_mean") - mean).abs() < 1e-9 * mean);
+        assert!((figure("peak_contact_force_N_ci95_low") - mean + half).abs() < 1e-9 * mean);
+        assert!((figure("peak_contact_force_N_ci95_high") - mean - half).abs() < 1e-9 * mean);
+    }
+    assert!(place.read("s/index.html").contains("Means over the starts"));
+    // Without starts there are no means, and the page says what that is worth.
+    place.good("sweep --vary joints.clearance=1e-4,5e-4 --duration 0.1 --quiet --out t");
+    assert!(!place.path("t/statistics.csv").exists());
+    assert!(place.read("t/index.html").contains("are one draw"));
 }

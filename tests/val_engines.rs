@@ -4,12 +4,14 @@ mod common;
 
 use common::{Case, Curve, SERVO, platform_error};
 use freeplay::effects::{ALL, Kind, Parameter, Setting};
-use freeplay::engine::{Schedule, StepControl, run};
+use freeplay::engine::{Schedule, StepControl, run, run_balanced};
 use freeplay::mechanism::Mechanism;
 use freeplay::model::{Machine, assemble};
 use freeplay::scenario::Scenario;
 use nalgebra::Vector2;
+use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// Positions of all bodies in m, row by row, and hits all in all.
 struct Track {
@@ -71,15 +73,53 @@ fn both_engines_follow_the_same_motion() {
     }
 }
 
-/// Steps do not depend on what is asked for: rows at common instants are the same to the bit.
+/// A four-bar with play in its coupler pins, and what stands in its `[contact]` and at its joint A.
+fn four_bar(contact: &str, joint: &str) -> Mechanism {
+    let text = format!(
+        "{}\n[contact]\n{contact}\n",
+        include_str!("four_bar_with_play.toml").replace("# of joint A", joint)
+    );
+    let scenario = Scenario::from_text(&text, "four-bar", &[]).unwrap_or_else(|p| panic!("{p}"));
+    assemble(&scenario).unwrap().mechanism
+}
+
+/// What stands beside the contact law in a joint acts alike in both: rings of any profile, oil films, friction that
+/// remembers; and both count the same rubbing.
 #[test]
-fn rows_do_not_depend_on_the_interval() {
-    let mechanism = Case::default().mechanism();
-    // Powers of two: times are the same to the bit, too.
-    let [fine, coarse] = [13, 10]
-        .map(|power| track(&mechanism, StepControl::Direct(1e-5), 0.125, 0.5f64.powi(power)));
-    for (row, states) in coarse.rows.iter().enumerate() {
-        assert_eq!(*states, fine.rows[8 * row], "row {row}");
+fn rings_films_and_bristles_act_alike_in_both() {
+    let profile = "profile = [0.0, 4e-5, -3e-5, 6e-5, 1e-5, -2e-5, 5e-5, 0.0]";
+    let oil = "viscosity = 0.02\nlength = 0.01\nfilm_eccentricity_max = 0.8";
+    let cases = [
+        ("profile", four_bar("", profile)),
+        ("squeeze", four_bar(&format!("film = \"squeeze\"\n{oil}"), "")),
+        ("short bearing", four_bar(&format!("film = \"short-bearing\"\n{oil}"), profile)),
+        ("bristles", four_bar("friction_law = \"lugre\"", "friction = 0.1")),
+        (
+            "bristles under a law that remembers",
+            four_bar("friction_law = \"lugre\"\nlaw = \"flores\"", "friction = 0.1"),
+        ),
+    ];
+    for (name, mechanism) in &cases {
+        let of = |control| {
+            let track = track(mechanism, control, 0.02, 1e-3);
+            let schedule = Schedule { duration: 0.02, interval: 1e-3 };
+            let never = AtomicBool::new(false);
+            let work = run_balanced(mechanism, control, schedule, &never, &mut |_| {
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+            let rubbed = work.rubbed.unwrap();
+            (track, rubbed.iter().map(|around| around.iter().sum::<f64>()).collect::<Vec<_>>())
+        };
+        let [(a, rubbed), (b, again)] =
+            [StepControl::Tolerance(1e-7), StepControl::Direct(1e-7)].map(of);
+        let far = apart(&a, &b);
+        println!("{name}: {far:.1e} m, hits {} {}, rubbed {rubbed:?} {again:?}", a.hits, b.hits);
+        assert!(a.hits > 0, "{name}");
+        assert!(far < 1e-7, "{name}: {far:.1e} m");
+        for (a, b) in rubbed.iter().zip(&again) {
+            assert!((a - b).abs() <= 0.01 * b + 1e-9, "{name}: {a} {b}");
+        }
     }
 }
 

@@ -37,7 +37,7 @@ fn the_drive_stage_is_found_and_predicts_another_recording() {
         .map(|name| present(emps::read(&place(&format!("emps/emps_{name}.csv")), &rig)));
     let (Some(train), Some(pulses)) = (train, pulses) else { return };
     let found = emps::study(&rig, &[train, pulses], &|_| ()).expect("usable");
-    println!("{}\n{}", found.table().text(), found.parameters().text());
+    println!("{:#?}\n{:#?}", found.table(), found.parameters());
     println!("{:?} {:?}", found.carried.inverse, found.carried.simulated);
     let [_, symmetric, asymmetric, .., last] = &found.steps[..] else { panic!("steps") };
     let near = |value: f64, published: f64, share: f64| {
@@ -74,7 +74,7 @@ fn the_pendulum_is_found_and_predicts_what_follows() {
     let rig = rig(pendulum::RIG);
     let Some(recordings) = present(pendulum::read(&place(file), &rig)) else { return };
     let found = pendulum::study(&rig, &recordings, &|_| ()).expect("usable");
-    println!("{}\n{}", found.table().text(), found.numbers().text());
+    println!("{:#?}\n{:#?}", found.table(), found.numbers());
     let [declared_friction, .., last] = &found.steps[..] else { panic!("steps") };
     let value = |kind: &str, name: &str| {
         let of = |(of, _): &(&'static str, _)| *of == name;

@@ -5,11 +5,13 @@
 //! the same (Y. Gonthier et al., Multibody Syst. Dyn. 11 (2004), eq. 22, with d = h e).
 
 use freeplay::contact::laws::{ALL, Given, Kind, Losses, named};
-use freeplay::contact::{Clearance, ForceLaw, Material, StiffnessForm, impact};
+use freeplay::contact::{Clearance, ForceLaw, impact};
 use freeplay::engine::{
     ClearanceJoint, ClearanceJoints, Schedule, StepControl, physics_world, run,
 };
 use freeplay::mechanism::{Attachment, Bearing, Body, BodyState, Mechanism, Revolute};
+use freeplay::model::assemble;
+use freeplay::scenario::Scenario;
 use nalgebra::{UnitComplex, Vector2, Vector3};
 use rapier2d_f64::dynamics::{MassProperties, RigidBodyBuilder};
 use rapier2d_f64::math::Vector;
@@ -22,28 +24,11 @@ const SPEED: f64 = 0.1;
 /// Restitutions that are asked for.
 const ASKED: [f64; 10] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
 
-fn given() -> Given {
-    Given {
-        bearing_radius: 10e-3,
-        journal_radius: 9.5e-3,
-        material: Material { youngs_modulus: 73e9, poisson_ratio: 0.3 },
-        stiffness_form: StiffnessForm::Printed,
-        stiffness: None,
-        exponent: 1.5,
-        length: None,
-        restitution: None,
-        damping: None,
-        c_max: 500.0,
-        d_max: 1e-5,
-        clip: true,
-    }
-}
-
 /// A law that is asked to return the share `e` of the speed [`SPEED`]: Hunt and Crossley's by their
 /// `e = 1 − α v`.
 fn asked(kind: &Kind, e: f64) -> Arc<dyn ForceLaw> {
-    let by_damping = Given { damping: Some((1.0 - e) / SPEED), ..given() };
-    let by_restitution = Given { restitution: Some(e), ..given() };
+    let by_damping = Given { damping: Some((1.0 - e) / SPEED), ..Given::default() };
+    let by_restitution = Given { restitution: Some(e), ..Given::default() };
     (kind.build)(if kind.losses == Losses::Damping { &by_damping } else { &by_restitution })
 }
 
@@ -147,7 +132,8 @@ fn conformal_laws_return_what_lankarani_and_nikravesh_return() {
 #[test]
 fn elastic_limits_keep_energy() {
     for kind in ALL {
-        let lossless = Given { restitution: Some(1.0), damping: Some(0.0), c_max: 0.0, ..given() };
+        let lossless =
+            Given { restitution: Some(1.0), damping: Some(0.0), c_max: 0.0, ..Given::default() };
         let law = (kind.build)(&lossless);
         let h = law.contact_time(MASS, SPEED) / 2e4;
         let slope = |[depth, rate]: [f64; 2]| {
@@ -226,7 +212,7 @@ const DISCONTINUOUS: [&str; 1] = ["kelvin-voigt"];
 #[test]
 fn fixed_steps_converge_in_every_law() {
     for kind in ALL {
-        let law = (kind.build)(&given());
+        let law = (kind.build)(&Given::default());
         let exact = impact(&*law, MASS, SPEED).rebound / SPEED;
         let longest = law.longest_step(MASS, SPEED);
         let errors =
@@ -242,7 +228,7 @@ fn fixed_steps_converge_in_every_law() {
 #[test]
 fn error_follows_the_tolerance_in_every_law() {
     for kind in ALL {
-        let law = (kind.build)(&given());
+        let law = (kind.build)(&Given::default());
         let exact = impact(&*law, MASS, SPEED).rebound / SPEED;
         let errors = [1e-4, 1e-5, 1e-6]
             .map(|tolerance| error(&law, exact, StepControl::Tolerance(tolerance)));
@@ -307,7 +293,8 @@ fn joints_of_other_worlds_remember_the_impact_speed() {
 #[test]
 fn kelvin_voigt_returns_its_closed_form() {
     for (stiffness, damping) in [(1e7, 50.0), (1e7, 243.0), (1e6, 200.0)] {
-        let given = Given { stiffness: Some(stiffness), damping: Some(damping), ..given() };
+        let given =
+            Given { stiffness: Some(stiffness), damping: Some(damping), ..Given::default() };
         let law = (named("kelvin-voigt").unwrap().build)(&given);
         let beta = damping / (2.0 * MASS);
         let omega = (stiffness / MASS - beta * beta).sqrt();
@@ -315,5 +302,46 @@ fn kelvin_voigt_returns_its_closed_form() {
         let expected = (-beta / omega * angle).exp();
         let found = impact(&*law, MASS, SPEED).rebound / SPEED;
         assert!((found / expected - 1.0).abs() < 2e-3, "{found}, closed form {expected}");
+    }
+}
+
+/// A disc that its weight presses on a ring, under half the torque that friction stands: bristles hold it, and it
+/// only rolls to where it rests; a law without a memory lets it creep at the speed where it has half of its friction.
+#[test]
+fn bristles_hold_what_other_friction_lets_creep() {
+    let slides = |law: &str, control: StepControl| {
+        let (mu, weight, radius) = (0.2, 2.0 * 9.81, 0.0099);
+        let text = format!(
+            "[environment]\ngravity = [0.0, -9.81]\n[ground.points]\nO = [0.0, 0.0]\n\
+             [[body]]\nname = \"disc\"\nmass = 2.0\ninertia = 1e-3\npoints = {{ O = [0.0, 0.0] }}\n\
+             [[joint]]\nname = \"O\"\nkind = \"revolute\"\nring = \"ground.O\"\njournal = \"disc.O\"\n\
+             clearance = 1e-4\nbearing_radius = 0.01\nfriction = {mu}\n\
+             [[drive]]\njoint = \"O\"\nkind = \"force\"\nvalue = {}\n\
+             [contact]\nc_max = 5000.0\nfriction_law = \"{law}\"\n",
+            0.5 * mu * weight * radius
+        );
+        let scenario = Scenario::from_text(&text, "disc", &[]).unwrap_or_else(|p| panic!("{p}"));
+        let mechanism = assemble(&scenario).unwrap().mechanism;
+        let mut speeds = Vec::new();
+        let schedule = Schedule { duration: 0.4, interval: 1e-3 };
+        run(&mechanism, control, schedule, &mut |instant| {
+            let [_, speed] = mechanism.revolutes[0].sliding(instant.states).unwrap();
+            if instant.t >= 0.2 {
+                speeds.push(speed);
+            }
+        })
+        .unwrap();
+        speeds.iter().sum::<f64>() / speeds.len() as f64
+    };
+    for control in [StepControl::Tolerance(1e-6), StepControl::Direct(1e-6)] {
+        let creep = 1e-3 * 0.5f64.atanh();
+        let found = slides("coulomb", control);
+        assert!(
+            (found / creep - 1.0).abs() < 0.05,
+            "{control:?}: {found:e} m/s, expected {creep:e}"
+        );
+        let held = slides("lugre", control);
+        // While it rolls the bristles bend on by some µm, a fortieth of the creep: 1.5e-5 m/s.
+        assert!(held.abs() < 0.05 * creep, "{control:?}: {held:e} m/s");
     }
 }

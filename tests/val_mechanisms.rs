@@ -252,6 +252,7 @@ fn slider_crank(bearing: Bearing, speed: f64) -> Mechanism {
         base: GROUND,
         slider: at(2, 0.0),
         axes: [UnitComplex::identity(); 2],
+        play: false,
     };
     Mechanism { prismatics: vec![guide], ..free(bodies, joints, 0.0) }
 }
@@ -343,6 +344,7 @@ fn a_chain_of_prismatic_joints_keeps_energy_and_momentum() {
         base: at(i, 0.0),
         slider: at(i + 1, 0.0),
         axes: [UnitComplex::identity(); 2],
+        play: false,
     };
     let spring = |i: usize| {
         let drive = Drive::Servo { stiffness, damping: 0.0 };

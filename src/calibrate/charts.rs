@@ -3,6 +3,7 @@
 use super::model::{Case, Segment};
 use super::outcome::Outcome;
 use super::recording::stem;
+use super::unnamed_picture;
 use crate::effects::Setting;
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log};
@@ -67,7 +68,8 @@ pub fn draw(case: &Case, outcome: &Outcome) -> Result<Charts, RunError> {
         ];
         runs.extend(of_run(&run.log, role, &models)?);
     }
-    let (over, shares) = dependence(case, outcome)?;
+    let (mut over, shares) = dependence(case, outcome)?;
+    over.extend(unnamed_picture::pictures(outcome.effects.iter().map(|(effect, _)| effect))?);
     Ok(Charts { runs, over, shares })
 }
 
@@ -141,12 +143,7 @@ pub(super) fn missed(channel: Channel, log: &Log, models: &[(&str, &Log, Style)]
 
 /// A chart over time.
 pub(super) fn panel(title: String, y_label: &str, curves: impl Iterator<Item = Curve>) -> Panel {
-    Panel {
-        title,
-        x_label: "time (s)".to_owned(),
-        y_label: y_label.to_owned(),
-        curves: curves.collect(),
-    }
+    Panel { title, x_label: "time (s)".into(), y_label: y_label.into(), curves: curves.collect() }
 }
 
 /// A signal of a log, low-passed and thinned.
@@ -208,8 +205,8 @@ fn dependence(case: &Case, outcome: &Outcome) -> Result<(Vec<Picture>, Shares), 
                 let curves = ["declared", "calibrated"].iter().zip(&residuals);
                 Panel {
                     title: format!("Actuator {}", leg + 1),
-                    x_label: (*label).to_owned(),
-                    y_label: "force (N)".to_owned(),
+                    x_label: (*label).into(),
+                    y_label: "force (N)".into(),
                     curves: curves.map(|(name, values)| dots(name, &values[leg])).collect(),
                 }
             })

@@ -1,6 +1,7 @@
-//! From a recorded run to the effect that the model lacks: [`outcome::calibrate`] is the method.
-//! Around it: [`recording`] and [`plausibility`] take files and refuse what cannot be right, [`rattle`]
-//! decides how often to simulate, [`result`] and [`predict`] write folders of results.
+//! From a recorded run to the effect that the model lacks: [`outcome::calibrate`] is the method. Around it:
+//! [`recording`] and [`plausibility`] take files and refuse what cannot be right, [`rattle`] decides how often
+//! to simulate, [`result`] and [`predict`] write folders of results; [`record`] makes the recordings that a rig
+//! would show.
 
 pub mod axes;
 pub mod baseline;
@@ -24,6 +25,7 @@ pub mod plausibility;
 pub mod predict;
 mod predict_page;
 pub mod rattle;
+pub mod record;
 pub mod recording;
 pub mod replica;
 pub mod report;
@@ -36,6 +38,7 @@ pub mod settle;
 pub mod spectrum;
 pub mod start;
 pub mod unnamed;
+mod unnamed_picture;
 pub mod way;
 pub mod whole;
 

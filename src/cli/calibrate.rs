@@ -2,8 +2,10 @@
 
 use super::failure::{Failure, say_how_written, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
+use super::parts::PartOptions;
 use super::progress::Spinner;
 use super::self_test::SelfTest;
+use super::table::{paragraph, table};
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::outcome::MOST;
 use crate::calibrate::report::EffectReport;
@@ -51,22 +53,40 @@ pub(super) struct Arguments {
     #[arg(long, conflicts_with_all = ["rig", "data", "validate", "without"])]
     self_test: bool,
     /// Hide this kind of effect only, or `nothing`, `noise`, or `a+b`; may be given many times
-    #[arg(long, value_name = "KIND", requires = "self_test")]
+    #[arg(long, value_name = "KIND", requires = "self_test", conflicts_with = "rig")]
     hidden: Vec<String>,
     /// Try this machine only; may be given many times
-    #[arg(long, value_name = "NAME", requires = "self_test")]
+    #[arg(long, value_name = "NAME", requires = "self_test", conflicts_with = "rig")]
     machine: Vec<String>,
     /// Number of trials; with 0 the rates of the table that --trials names
-    #[arg(long, value_name = "N", requires = "self_test", default_value_t = 100)]
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "self_test",
+        conflicts_with = "rig",
+        default_value_t = 100
+    )]
     count: usize,
     /// Another set of random machines, effects, motions and noise
-    #[arg(long, value_name = "N", requires = "self_test", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "self_test",
+        conflicts_with = "rig",
+        default_value_t = 1
+    )]
     seed: u64,
-    /// Keep finished trials in this file, one JSON object a line, and go on from there
-    #[arg(long, value_name = "FILE.jsonl", requires = "self_test")]
+    /// Keep finished trials in this file, one JSON object a line, and go on from there; a `{}` in its name is the number
+    /// of the part that --shard makes
+    #[arg(long, value_name = "FILE.jsonl", requires = "self_test", conflicts_with = "rig")]
     trials: Option<PathBuf>,
+    /// Take finished trials from these files, too, such as those of all parts
+    #[arg(long, value_name = "FILE.jsonl", requires = "self_test", conflicts_with = "rig", num_args = 1..)]
+    from: Vec<PathBuf>,
+    #[command(flatten)]
+    parts: PartOptions,
     /// Keep the rig and the recordings of each trial in a folder in this one, to calibrate them by themselves
-    #[arg(long, value_name = "DIR", requires = "self_test")]
+    #[arg(long, value_name = "DIR", requires = "self_test", conflicts_with = "rig")]
     keep: Option<PathBuf>,
     #[command(flatten)]
     sets: Sets,
@@ -81,18 +101,24 @@ Examples:
   freeplay calibrate --rig rig.toml --data run-a.csv --validate run-b.csv
   freeplay calibrate --rig rig.toml --data run-a.csv --without payload      is there another explanation?
   freeplay calibrate --rig rig.toml --data run-a.csv --set 'environment.gravity=[0,-9.81]'
-  freeplay calibrate --rig rig.toml --data run-a.csv --json --quiet | jq .verdict";
+  freeplay calibrate --rig rig.toml --data run-a.csv --json --quiet | jq .verdict
+  freeplay calibrate --self-test --count 100 --shard 1/4 --trials part-{}.jsonl
+  freeplay calibrate --self-test --count 100 --trials all.jsonl --from part-*.jsonl";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let (Some(rig), false) = (&arguments.rig, arguments.data.is_empty()) else {
         let PrintOptions { json, quiet } = arguments.print;
-        let Arguments { hidden: only, machine: machines, count, seed, trials, keep, .. } =
+        let Arguments { hidden: only, machine: machines, count, seed, trials, from, .. } =
             arguments;
-        let (count, seed) = (*count, *seed);
-        let (table, keep) = (trials.as_deref(), keep.as_deref());
-        let test = SelfTest { only, machines, count, seed, table, keep, json, quiet };
+        let (count, seed, parts) = (*count, *seed, &arguments.parts);
+        let (table, keep) = (trials.as_deref(), arguments.keep.as_deref());
+        let test = SelfTest { only, machines, count, seed, table, from, parts, keep, json, quiet };
         return super::self_test::main(&test);
     };
+    if let Some(flag) = arguments.parts.given().first() {
+        let message = format!("{flag}: is about the trials of --self-test; leave it out");
+        return Err(Failure::Input(vec![message]));
+    }
     let without = without(&arguments.without)?;
     let rig = Scenario::load(Some(rig), &arguments.sets.all())?;
     warn_of_unused(&rig);
@@ -202,7 +228,8 @@ fn without(names: &[String]) -> Result<Vec<&'static str>, Failure> {
 
 /// The result for people.
 fn text(report: &Shown) -> String {
-    let mut text = format!("{}: {}\n", report.scenario_name, report.summary);
+    let summary = format!("{}: {}", report.scenario_name, report.summary);
+    let mut text = paragraph("", "", &summary);
     // Writing to a string cannot fail, here and below.
     for effect in report.effects {
         let joint = effect.on.words();
@@ -213,31 +240,19 @@ fn text(report: &Shown) -> String {
             let _ = writeln!(text, "    {name:<20} {value:>10}  (95 %: {low} to {high})");
         }
         if !effect.evidence.is_empty() {
-            let _ = writeln!(text, "    {}", effect.evidence);
+            text += &paragraph("    ", "    ", &effect.evidence);
         }
     }
-    let _ = writeln!(
-        text,
-        "\n  {:<20}{:<13}{:<9}{:>14}{:>14}{:>14}",
-        "run", "role", "channel", "before", "after", "floor"
-    );
-    for e in report.errors {
-        let cell = |value: f64| quantity(value, e.unit);
-        let _ = writeln!(
-            text,
-            "  {:<20}{:<13}{:<9}{:>14}{:>14}{:>14}",
-            e.run,
-            e.role,
-            e.channel,
-            cell(e.before),
-            cell(e.after),
-            cell(e.floor)
-        );
-    }
+    let heads = ["run", "role", "channel", "before", "after", "floor"];
+    let rows = report.errors.iter().map(|e| {
+        let [before, after, floor] = [e.before, e.after, e.floor].map(|v| quantity(v, e.unit));
+        [e.run.clone(), e.role.to_owned(), e.channel.clone(), before, after, floor]
+    });
+    let _ = write!(text, "\n{}", table("lllrrr", heads, rows));
     let page = report.folder.join("index.html");
     let _ = writeln!(
         text,
-        "\n{}{} s. Written to {}; open {}",
+        "\n{}{} s\nWritten to {}; open {}",
         report.simulated,
         number(report.seconds),
         report.folder.display(),

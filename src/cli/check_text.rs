@@ -1,5 +1,6 @@
 //! The text of `freeplay check`.
 
+use super::table::paragraph;
 use crate::report::{length, number};
 use crate::study::{CheckedMachine, Engines};
 use std::fmt::Write as _;
@@ -51,7 +52,7 @@ impl Text {
     }
 
     fn entry(&mut self, label: &str, value: &str) {
-        self.line(&format!("  {label:<22}{value}"));
+        self.0 += &paragraph(&format!("  {label:<22}"), &" ".repeat(24), value);
     }
 }
 

@@ -4,6 +4,7 @@ use super::compare_laws::{self, figure};
 use super::failure::{Failure, refuse_errors, refuse_faults};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::progress::Progress;
+use super::table::{paragraph, table};
 use crate::report::number;
 use crate::scenario::Law;
 use crate::simulate::{assemble, findings};
@@ -18,7 +19,7 @@ use std::fmt::Write as _;
 ///
 /// One scenario is simulated under hertz-step, native and ideal joints, at every step of a list (and
 /// at its tolerance), from several starts. The results go into a new folder: index.html (look at this
-/// first; it ends with a plain answer: what native contacts may be used for in this machine, and what
+/// first; it begins with a plain answer: what native contacts may be used for in this machine, and what
 /// not), compare.json, compare.csv (a row per law and step, means over the starts with their standard
 /// errors, SI units), table.md (the main figures, to be pasted), scenario.toml and pictures (SVG).
 ///
@@ -100,7 +101,10 @@ impl From<CompareError> for Failure {
 }
 
 /// The list of steps, longest first, each once.
-fn steps(list: &str) -> Result<Vec<f64>, String> {
+///
+/// # Errors
+/// What is no list of steps, and what would be one.
+pub fn steps(list: &str) -> Result<Vec<f64>, String> {
     let range = format!("expected steps in s from {SHORTEST_STEP:e} to {SAMPLE_INTERVAL:e}");
     if list.trim().is_empty() {
         return Err(format!("--steps: is empty; {range}, such as 2e-5,1e-5"));
@@ -133,34 +137,39 @@ fn text(compared: &Compared) -> String {
         number(c.duration_s),
         number(c.wall_s)
     );
+    for sentence in &c.answer {
+        text += &(paragraph("", "", sentence) + "\n");
+    }
     let chosen = ["rms_path_error_m", "peak_contact_force_N", "contact_fraction", "impacts_per_s"];
-    // Writing to a string cannot fail, here and below.
-    let _ = writeln!(
-        text,
-        "  {:<12}{:<12}{:>14}{:>14}{:>12}{:>12}{:>14}",
-        "law", "step", "rms path err", "peak force", "in contact", "impacts/s", "s per sim. s"
-    );
-    for row in &c.rows {
+    let heads = [
+        "law",
+        "step",
+        "rms path error",
+        "peak force",
+        "in contact",
+        "impacts/s",
+        "s per sim. s",
+        "",
+    ];
+    let rows = c.rows.iter().map(|row| {
         let step = row.step_s.map_or("tolerance".to_owned(), |step| format!("{step:e} s"));
         let [path, peak, fraction, impacts] = chosen.map(|key| figure(&row.quantities, key));
-        let _ = writeln!(
-            text,
-            "  {:<12}{step:<12}{path:>14}{peak:>14}{fraction:>12}{impacts:>12}{:>14}{}",
-            row.law.name(),
-            number(row.wall_s_per_simulated_s),
-            if row.halted > 0 {
-                "  broke down"
-            } else if !row.resolved {
-                "  step too long"
-            } else if row.faulty > 0 {
-                "  has faults"
-            } else {
-                ""
-            }
-        );
-    }
+        let said = if row.halted > 0 {
+            "broke down"
+        } else if !row.resolved {
+            "step too long"
+        } else if row.faulty > 0 {
+            "has faults"
+        } else {
+            ""
+        };
+        let cost = number(row.wall_s_per_simulated_s);
+        [row.law.name().to_owned(), step, path, peak, fraction, impacts, cost, said.to_owned()]
+    });
+    text += &table("llrrrrrl", heads, rows);
     if let Some(chaos) = &c.chaos {
         let rate = chaos.lyapunov_exponent_1_s;
+        // Writing to a string cannot fail, here and below.
         let _ = writeln!(
             text,
             "\n  largest Lyapunov exponent {} ± {} 1/s",
@@ -171,10 +180,8 @@ fn text(compared: &Compared) -> String {
     text.push('\n');
     for verdict in c.verdicts.iter().filter(|v| v.usable == Use::No) {
         let label = QUANTITIES.iter().find(|q| q.key == verdict.quantity).map(|q| q.label);
-        let _ = writeln!(text, "  no: {}: {}", label.unwrap_or(verdict.quantity), verdict.reason);
-    }
-    for sentence in &c.answer {
-        let _ = writeln!(text, "\n{sentence}");
+        let why = format!("no: {}: {}", label.unwrap_or(verdict.quantity), verdict.reason);
+        text += &paragraph("  ", "    ", &why);
     }
     let folder = compared.folder.display();
     let page = compared.folder.join("index.html");

@@ -3,13 +3,13 @@
 use super::failure::{Failure, refuse_errors};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::progress::Progress;
+use super::table::{paragraph, table};
 use crate::contact::laws::{ALL, Kind, named};
 use crate::measure::spelling::nearest;
 use crate::report::number;
 use crate::simulate::{assemble, findings};
 use crate::study::compare::by_law::{Done, LAWS_COMPARED_FILE, compare_laws, simulated_time};
 use crate::study::compare::{Mean, QUANTITIES, in_words};
-use std::fmt::Write as _;
 
 /// The comparison of laws with each other.
 pub(super) fn main(
@@ -33,7 +33,10 @@ pub(super) fn main(
 }
 
 /// The laws of a list, each once.
-fn kinds(list: &str) -> Result<Vec<&'static Kind>, String> {
+///
+/// # Errors
+/// A name that is none, and what would be one.
+pub fn kinds(list: &str) -> Result<Vec<&'static Kind>, String> {
     if list.trim() == "all" {
         return Ok(ALL.to_vec());
     }
@@ -57,9 +60,9 @@ fn kinds(list: &str) -> Result<Vec<&'static Kind>, String> {
 /// The comparison of laws for people.
 fn text(done: &Done) -> String {
     let c = &done.compared;
-    let mut text = format!(
-        "{}: {} laws, {} starts of {} s, compared in {} s\n\
-         hits at {} m/s return {} of their speed under the first law; the others are matched to that\n\n",
+    let counted = format!(
+        "{}: {} laws, {} starts of {} s, compared in {} s; hits at {} m/s return {} of their speed under the \
+         first law, and the others are matched to that",
         c.provenance.scenario_name,
         c.rows.len(),
         c.starts,
@@ -68,24 +71,19 @@ fn text(done: &Done) -> String {
         number(c.speed_m_s),
         number(c.restitution)
     );
+    let mut text = paragraph("", "", &counted) + "\n";
     let chosen = ["rms_path_error_m", "peak_contact_force_N", "contact_fraction", "impacts_per_s"];
-    // Writing to a string cannot fail, here and below.
-    let _ = writeln!(
-        text,
-        "  {:<23}{:>10}{:>14}{:>14}{:>12}{:>12}",
-        "law", "returned", "rms path err", "peak force", "in contact", "impacts/s"
-    );
-    for row in &c.rows {
+    let heads = ["law", "returned", "rms path error", "peak force", "in contact", "impacts/s", ""];
+    let rows = c.rows.iter().map(|row| {
         let [path, peak, fraction, impacts] = chosen.map(|key| figure(&row.quantities, key));
-        let _ = writeln!(
-            text,
-            "  {:<23}{:>10}{path:>14}{peak:>14}{fraction:>12}{impacts:>12}{}{}",
-            row.law,
-            number(row.returned),
-            if row.matched { "" } else { "  not matched" },
-            if row.halted > 0 { "  broke down" } else { "" }
-        );
-    }
+        let said = match (row.matched, row.halted) {
+            (_, 1..) => "broke down",
+            (false, 0) => "not matched",
+            (true, 0) => "",
+        };
+        [row.law.to_owned(), number(row.returned), path, peak, fraction, impacts, said.to_owned()]
+    });
+    text += &table("lrrrrrl", heads, rows);
     text.push('\n');
     for (found, quantity) in c.dependences.iter().zip(&QUANTITIES) {
         let answer = match (found.depends, found.lowest, found.highest) {
@@ -94,11 +92,11 @@ fn text(done: &Done) -> String {
             }
             _ => "differs no more than by chance".to_owned(),
         };
-        let _ = writeln!(text, "  {}: {answer}", quantity.label);
+        text += &paragraph("  ", "    ", &format!("{}: {answer}", quantity.label));
     }
     let page = done.folder.join("index.html");
-    let _ = writeln!(text, "\nWritten to {}; open {}", done.folder.display(), page.display());
-    text
+    let folder = done.folder.display();
+    text + &format!("\nWritten to {folder}; open {}\n", page.display())
 }
 
 /// One of the means in words.

@@ -1,7 +1,9 @@
 //! `freeplay effects`: what can act on a machine beside what is declared.
 
+use super::catalogue::Catalogue;
 use super::failure::Failure;
-use super::output::{self, paragraph};
+use super::output;
+use super::table::paragraph;
 use crate::effects::{ALL, Joints, Kind, Parameter, Senses, Targets, named};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -38,20 +40,13 @@ const INTRODUCTION: &str = "An effect acts on a machine beside what its scenario
      each an [[effect]] with its kind and its parameters; they apply in their order, on top of each \
      other. What a run calls ideal is the machine as declared, without effects.";
 
+/// What is printed.
+const CATALOGUE: Catalogue<Kind> =
+    Catalogue { all: ALL, introduction: INTRODUCTION, explained, example, described };
+
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let one = arguments.name.as_deref().and_then(named);
-    let text = match (one, arguments.json) {
-        (Some(kind), false) => format!("{}\n{}", explained(kind), example(kind)),
-        (None, false) => {
-            let all: Vec<String> = ALL.iter().map(|kind| explained(kind)).collect();
-            format!("{}\n{}", paragraph("", "", INTRODUCTION), all.join("\n"))
-        }
-        (Some(kind), true) => format!("{:#}\n", described(kind)),
-        (None, true) => {
-            format!("{:#}\n", Value::Array(ALL.iter().map(|kind| described(kind)).collect()))
-        }
-    };
-    Ok(output::print(&text)?)
+    Ok(output::print(&CATALOGUE.text(one, arguments.json))?)
 }
 
 /// An effect for people.
@@ -198,7 +193,7 @@ fn rule(targets: Targets) -> &'static str {
 }
 
 /// An effect for programs.
-fn described(kind: &Kind) -> Value {
+pub fn described(kind: &Kind) -> Value {
     let joints = match kind.targets.joints() {
         None => "none",
         Some(Joints::Prismatic | Joints::DrivenPrismatic) => "prismatic",

@@ -15,6 +15,10 @@ const TOLD: usize = 50;
 /// Most faults of a result that are told: a study has hundreds of runs, and what ails one ails others.
 const FAULTS: usize = 5;
 
+/// The exit code of a command that was told to end and goes on where it was when started again: `EX_TEMPFAIL` of
+/// sysexits.h, "the user is invited to retry".
+pub(super) const GO_ON: u8 = 75;
+
 /// A command that did not do what was asked.
 #[derive(Debug)]
 pub(super) enum Failure {
@@ -24,6 +28,8 @@ pub(super) enum Failure {
     Other(String),
     /// It was told to end by this signal; what became of its work was said.
     Interrupted(u8),
+    /// It was told to end; what it made is kept, and the same command goes on from there.
+    GoOn(String),
 }
 
 impl Failure {
@@ -31,7 +37,7 @@ impl Failure {
     pub fn print(&self) {
         let messages = match self {
             Failure::Input(messages) => messages.as_slice(),
-            Failure::Other(message) => std::slice::from_ref(message),
+            Failure::Other(message) | Failure::GoOn(message) => std::slice::from_ref(message),
             Failure::Interrupted(_) => &[],
         };
         for message in messages.iter().take(TOLD) {
@@ -49,6 +55,7 @@ impl Failure {
             Failure::Other(_) => ExitCode::FAILURE,
             // As shells report a process that a signal ended.
             Failure::Interrupted(signal) => ExitCode::from(128 + signal),
+            Failure::GoOn(_) => ExitCode::from(GO_ON),
         }
     }
 }
@@ -90,6 +97,7 @@ impl From<SweepError> for Failure {
             SweepError::Input(message) => Failure::Input(vec![message]),
             SweepError::Scenario(problems) => problems.into(),
             SweepError::Write(error) => error.into(),
+            SweepError::Interrupted { .. } => Failure::GoOn(error.to_string()),
         }
     }
 }

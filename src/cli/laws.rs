@@ -1,8 +1,10 @@
 //! `freeplay laws`: the contact laws, what they are and what they do in one hit.
 
+use super::catalogue::Catalogue;
 use super::failure::Failure;
 use super::options::{FolderOptions, Sets};
-use super::output::{self, paragraph};
+use super::output;
+use super::table::paragraph;
 use crate::contact::laws::{ALL, Kind, Losses, Parameter, named};
 use crate::study::laws::{LAWS_FILE, LawFigures, figures, law_of, write_laws};
 use clap::Args;
@@ -49,6 +51,10 @@ const INTRODUCTION: &str = "A contact law is chosen by contact.law, for one join
      take an impact speed of at least 1e-3 m/s, and the fastest approach of a contact that lasts. Beside \
      these, law = \"native\" leaves contacts to the physics engine, and law = \"ideal\" has no clearance.";
 
+/// What is printed.
+const CATALOGUE: Catalogue<Kind> =
+    Catalogue { all: &ALL, introduction: INTRODUCTION, explained, example, described };
+
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let one = arguments.name.as_deref().and_then(named);
     let chosen: Vec<&'static Kind> = one.map_or_else(|| ALL.to_vec(), |kind| vec![kind]);
@@ -60,18 +66,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         let message = "--set and --force say what is drawn: give --out DIR, too";
         return Err(Failure::Input(vec![message.to_owned()]));
     }
-    let text = match (one, arguments.json) {
-        (Some(kind), false) => format!("{}\n{}", explained(kind), example(kind)),
-        (None, false) => {
-            let all: Vec<String> = ALL.iter().map(|kind| explained(kind)).collect();
-            format!("{}\n{}", paragraph("", "", INTRODUCTION), all.join("\n"))
-        }
-        (Some(kind), true) => format!("{:#}\n", described(kind)),
-        (None, true) => {
-            format!("{:#}\n", Value::Array(ALL.iter().map(|kind| described(kind)).collect()))
-        }
-    };
-    Ok(output::print(&text)?)
+    Ok(output::print(&CATALOGUE.text(one, arguments.json))?)
 }
 
 /// Writes the pictures.
@@ -130,7 +125,7 @@ fn example(kind: &Kind) -> String {
 }
 
 /// A law for programs.
-fn described(kind: &Kind) -> Value {
+pub fn described(kind: &Kind) -> Value {
     let parameters = kind.parameters.iter().map(|p| {
         json!({
             "name": p.name, "unit": p.unit, "range": p.range.in_words(), "default": p.default,

@@ -1,5 +1,6 @@
 //! Printing that survives a reader who has gone away.
 
+use super::table::{self, paragraph};
 use crate::measure::shown::shown;
 use std::fmt::Write as _;
 use std::io::{self, ErrorKind, Write};
@@ -24,28 +25,9 @@ pub(super) fn complain(line: &str) {
     let _ = writeln!(io::stderr(), "{}{cut}", shown(&line[..end]));
 }
 
-/// Columns of a line of text.
-const WIDTH: usize = 100;
-
-/// Words after `first`, lines after the first one after `next`.
-pub(super) fn paragraph(first: &str, next: &str, words: &str) -> String {
-    let (mut text, mut line) = (String::new(), first.to_owned());
-    let mut empty = true;
-    for word in words.split_whitespace() {
-        if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            text += line.trim_end();
-            text.push('\n');
-            next.clone_into(&mut line);
-            empty = true;
-        }
-        if !empty {
-            line.push(' ');
-        }
-        line += word;
-        empty = false;
-    }
-    text + line.trim_end() + "\n"
-}
+/// Columns that words need to be read beside what they are about, and where they begin below it.
+const LEAST_WORDS: usize = 35;
+const BELOW: usize = 8;
 
 /// Parameters in columns, and what each is about behind them.
 pub(super) fn parameters(rows: &[([String; 4], &str)]) -> String {
@@ -58,7 +40,12 @@ pub(super) fn parameters(rows: &[([String; 4], &str)]) -> String {
             let _ = write!(line, "{cell:<width$}  ", width = width(i));
         }
         let start = line.chars().count();
-        text += &paragraph(&line, &" ".repeat(start), about);
+        if start + LEAST_WORDS <= table::width() {
+            text += &paragraph(&line, &" ".repeat(start), about);
+        } else {
+            text += &format!("{}\n", line.trim_end());
+            text += &paragraph(&" ".repeat(BELOW), &" ".repeat(BELOW), about);
+        }
     }
     text
 }

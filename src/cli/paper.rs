@@ -3,11 +3,11 @@
 use super::failure::{Failure, refuse_faults};
 use super::options::{FolderOptions, Overrides, PrintOptions};
 use super::progress::Progress;
+use super::table::{paragraph, table};
 use crate::report::number;
 use crate::scenario::Source;
 use crate::study::paper::{PAPER_FILE, PaperError, Studied, paper, scenarios, simulated_time};
 use clap::Args;
-use std::fmt::Write as _;
 
 /// Repeat the paper's study: figures 4 to 9, the table, and every claim checked
 ///
@@ -65,38 +65,29 @@ impl From<PaperError> for Failure {
 /// The result for people.
 fn text(studied: &Studied) -> String {
     let p = &studied.paper;
-    let mut text = format!(
-        "{} claims of the paper, {} sets of assumptions, {} starts of {} s, in {} s\n\n",
+    let counted = format!(
+        "{} claims of the paper, {} sets of assumptions, {} starts of {} s, in {} s",
         p.claims.len(),
         p.variants.len(),
         p.phases,
         number(p.duration_s),
         number(p.wall_s)
     );
-    // Writing to a string cannot fail, here and below.
-    let _ = writeln!(
-        text,
-        "  {:<46}{:<14}{:>9}  {:<20}{:>12}  over the assumptions",
-        "claim", "verdict", "value", "95 % interval", "limit"
-    );
-    for claim in &p.claims {
+    let heads = ["claim", "verdict", "value", "95 % interval", "limit", "over the assumptions"];
+    let rows = p.claims.iter().map(|claim| {
         let (judged, moves) = (&claim.judged, &claim.over_variants);
         let [low, high] = judged.estimate.ci95.map(number);
-        let _ = writeln!(
-            text,
-            "  {:<46}{:<14}{:>9}  {:<20}{:>12}  {} yes, {} no, {} open",
-            claim.label,
-            judged.verdict.in_words(),
+        [
+            claim.label.to_string(),
+            judged.verdict.in_words().to_string(),
             number(judged.estimate.value),
             format!("{low} to {high}"),
-            claim.limit,
-            moves.supported,
-            moves.contradicted,
-            moves.undecided
-        );
-    }
+            claim.limit.to_string(),
+            format!("{} yes, {} no, {} open", moves.supported, moves.contradicted, moves.undecided),
+        ]
+    });
+    let (counted, rows) = (paragraph("", "", &counted), table("llrrrl", heads, rows));
     let folder = studied.folder.display();
     let page = studied.folder.join("index.html");
-    let _ = writeln!(text, "\nWritten to {folder}; open {}", page.display());
-    text
+    format!("{counted}\n{rows}\nWritten to {folder}; open {}\n", page.display())
 }

@@ -3,6 +3,7 @@
 use super::failure::{Failure, say_how_written, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
+use super::table::{paragraph, table};
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder};
 use crate::calibrate::result::CalibrateError;
@@ -107,7 +108,7 @@ fn shown(arguments: &Arguments, predicted: &Predicted, remarks: &[String]) -> Re
     let p = &predicted.prediction;
     Ok(arguments.print.result(&predicted.json, || {
         let text = text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder);
-        remarks.iter().fold(text, |text, remark| text + remark + "\n")
+        remarks.iter().fold(text, |text, remark| text + &paragraph("", "", remark))
     })?)
 }
 
@@ -132,29 +133,15 @@ fn by_windows(
                 "{} windows of {} s from {} s on, starts fitted to the first {} s:",
                 of.windows, horizon.window_s, horizon.from_s, horizon.fit_s
             );
-            for e in &of.errors {
-                let cell = |value: f64| quantity(value, e.unit);
-                let _ = writeln!(
-                    text,
-                    "  {:<9}{:>17}{:>14}{:>14}",
-                    e.channel,
-                    cell(e.before),
-                    cell(e.after),
-                    cell(e.floor)
-                );
-            }
+            text += &errors_table(&of.errors);
         }
         for remark in &p.remarks {
-            let _ = writeln!(text, "{remark}");
+            text += &paragraph("", "", remark);
         }
-        let heads = format!(
-            "  {:<9}{:>17}{:>14}{:>14}\n",
-            "channel", "without effects", "predicted", "floor"
-        );
         let page = predicted.folder.join("index.html");
         let name = &p.provenance.scenario_name;
         format!(
-            "{name} along {}\n{heads}{text}\nWritten to {}; open {}\n",
+            "{name} along {}\n\n{text}\nWritten to {}; open {}\n",
             p.run,
             predicted.folder.display(),
             page.display()
@@ -172,25 +159,19 @@ fn text(
 ) -> String {
     let effects = if effects.is_empty() { "none".to_owned() } else { effects.join(", ") };
     let name = &model.scenario_name;
-    let mut text = format!("{name} along {run}; effects: {effects}\n\n");
-    // Writing to a string cannot fail, here and below.
-    let _ = writeln!(
-        text,
-        "  {:<9}{:>17}{:>14}{:>14}",
-        "channel", "without effects", "predicted", "floor"
-    );
-    for e in errors {
-        let cell = |value: f64| quantity(value, e.unit);
-        let _ = writeln!(
-            text,
-            "  {:<9}{:>17}{:>14}{:>14}",
-            e.channel,
-            cell(e.before),
-            cell(e.after),
-            cell(e.floor)
-        );
-    }
+    let head = paragraph("", "", &format!("{name} along {run}; effects: {effects}"));
+    let mut text = format!("{head}\n{}", errors_table(errors));
     let page = folder.join("index.html");
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "\nWritten to {}; open {}", folder.display(), page.display());
     text
+}
+
+/// What a model misses, column by column.
+fn errors_table(errors: &[ChannelError]) -> String {
+    let rows = errors.iter().map(|e| {
+        let [before, after, floor] = [e.before, e.after, e.floor].map(|v| quantity(v, e.unit));
+        [e.channel.clone(), before, after, floor]
+    });
+    table("lrrr", ["channel", "without effects", "predicted", "floor"], rows)
 }

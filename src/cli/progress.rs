@@ -27,14 +27,20 @@ fn bar(length: u64, template: &str, quiet: bool) -> ProgressBar {
 pub(super) struct Progress {
     bar: ProgressBar,
     duration: f64,
+    unit: &'static str,
     ticks: u64,
 }
 
 impl Progress {
     /// A bar for a run of `duration` s.
     pub fn new(duration: f64, quiet: bool) -> Self {
+        Self::counted(duration, "s simulated", quiet)
+    }
+
+    /// A bar that counts to `duration` in another unit.
+    pub fn counted(duration: f64, unit: &'static str, quiet: bool) -> Self {
         let bar = bar(TICKS as u64, "{bar:40} {msg}, {eta} left", quiet);
-        Self { bar, duration, ticks: 0 }
+        Self { bar, duration, unit, ticks: 0 }
     }
 
     /// The run has reached `t` s.
@@ -42,7 +48,7 @@ impl Progress {
         let ticks = (TICKS * t / self.duration) as u64;
         if ticks > self.ticks {
             self.ticks = ticks;
-            self.bar.set_message(format!("{t:.3} of {} s simulated", self.duration));
+            self.bar.set_message(format!("{t:.3} of {} {}", self.duration, self.unit));
             self.bar.set_position(ticks);
         }
     }

@@ -5,6 +5,7 @@ use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::output;
 use super::progress::Progress;
 use super::signals;
+use super::table::paragraph;
 use crate::report::{length, number};
 use crate::simulate::{Summary, assemble, findings};
 use crate::study::{self, Outcome, RunError, SUMMARY_FILE, Terms};
@@ -17,8 +18,9 @@ use std::fmt::Write as _;
 /// its joints in slow motion), animation.svg (the first 0.15 s of that as a picture), timeseries.csv (one row each
 /// simulation.output_interval: pose, velocity, acceleration, actuator lengths and forces, and for
 /// each joint the eccentricity in m and the contact force in N), summary.json (the main figures),
-/// scenario.toml (the scenario with every default filled in: `freeplay run` on it repeats the run)
-/// and pictures (SVG).
+/// scenario.toml (the scenario with every default filled in: `freeplay run` on it repeats the run),
+/// wear.csv (normal force times sliding distance in J round each ring, degree by degree) and pictures
+/// (SVG).
 ///
 /// Ctrl-C and SIGTERM end a run early: what was computed is kept, and summary.json says
 /// `"interrupted": true`.
@@ -58,7 +60,9 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut progress = Progress::new(scenario.simulation.duration, arguments.print.quiet);
     let terms = Terms { stop: signals::looked_at(), at_any_cost: arguments.yes };
-    let outcome = study::run(&scenario, &mut machine, folder, terms, &mut |t| progress.reached(t));
+    let outcome = study::run(&scenario, &mut machine, folder, terms, &mut |_, instant| {
+        progress.reached(instant.t);
+    });
     progress.clear();
     let outcome = match outcome {
         Err(dropped @ RunError::Dropped) => {
@@ -68,12 +72,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         outcome => outcome?,
     };
     arguments.print.result(&outcome.json, || text(&outcome))?;
-    let watched = &outcome.summary.watched;
+    let summary = &outcome.recorded.summary;
+    let watched = &summary.watched;
     for doubt in &watched.doubts {
         output::complain(&format!("warning: {doubt}"));
     }
-    match outcome.summary.halted {
-        None if outcome.summary.interrupted => Err(signals::interrupted()),
+    match summary.halted.clone() {
+        None if summary.interrupted => Err(signals::interrupted()),
         None => refuse_faults(&watched.faults),
         Some(reason) => Err(Failure::Other(reason)),
     }
@@ -81,7 +86,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The result for people.
 fn text(outcome: &Outcome) -> String {
-    let s = &outcome.summary;
+    let s = &outcome.recorded.summary;
     let mut text = format!(
         "{}: {} s simulated in {} s, {} steps\n\n",
         s.provenance.scenario_name,
@@ -104,11 +109,18 @@ fn text(outcome: &Outcome) -> String {
     if s.has_figures() && s.settle_s > 0.0 {
         let _ = writeln!(text, "\n  (the first {} s left out)", number(s.settle_s));
     }
+    if s.lyapunov_exponent_1_s.is_some_and(|rate| rate > 0.0) {
+        text += &format!("\n{}", paragraph("  ", "  ", ONE_DRAW));
+    }
     let folder = outcome.folder.display();
     let page = outcome.folder.join("index.html");
     let _ = writeln!(text, "\nWritten to {folder}; open {}", page.display());
     text
 }
+
+/// What the peaks of a chaotic run are worth.
+const ONE_DRAW: &str = "(chaotic: peaks and counts are one draw; `freeplay sweep` over motion.phase and `freeplay \
+                        diff` of scenario files take means over starts)";
 
 fn figures(s: &Summary) -> Vec<(&'static str, String, String)> {
     if !s.has_figures() {

@@ -3,7 +3,7 @@
 //! A thread waits for them. By default it removes what the process has in the making and ends it; a run
 //! asks to be told instead, and keeps what was computed. The second signal always ends the process.
 
-use super::failure::Failure;
+use super::failure::{Failure, GO_ON};
 use super::output::complain;
 use crate::study::abandon;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
@@ -15,6 +15,9 @@ static LOOKS: AtomicBool = AtomicBool::new(false);
 
 /// The signal that came, or zero.
 static CAME: AtomicU8 = AtomicU8::new(0);
+
+/// The exit code where nothing is lost, or zero: then it is the signal's.
+static CODE: AtomicU8 = AtomicU8::new(0);
 
 /// What users are told of the work that was done.
 static WORK: Mutex<String> = Mutex::new(String::new());
@@ -45,8 +48,10 @@ pub(super) fn looked_at() -> &'static AtomicBool {
     &STOP
 }
 
-/// What users are to be told of the work that was done, should a signal come.
+/// Should a signal come, what was finished is kept: users are told where, and the exit code says that the same
+/// command goes on from there.
 pub(super) fn work_is(what: String) {
+    CODE.store(GO_ON, Ordering::Relaxed);
     *WORK.lock().unwrap_or_else(PoisonError::into_inner) = what;
 }
 
@@ -70,5 +75,8 @@ fn received(signal: u8) {
         ("", false) => complain("interrupted"),
         (work, _) => complain(&format!("interrupted: {work}")),
     }
-    std::process::exit(128 + i32::from(signal));
+    std::process::exit(match CODE.load(Ordering::Relaxed) {
+        0 => 128 + i32::from(signal),
+        code => i32::from(code),
+    });
 }

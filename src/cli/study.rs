@@ -1,16 +1,18 @@
 //! `freeplay study`: models against measured hardware.
 
 use super::failure::Failure;
-use super::options::FolderOptions;
-use super::output;
+use super::options::{FolderOptions, PrintOptions};
 use super::progress::Spinner;
+use super::table::{paragraph, words_and_numbers};
 use crate::calibrate::hardware::{
     Missing, STUDY_FILE, StudyError, Table, emps, emps_page, folder, pendulum, pendulum_page,
     skipped,
 };
 use crate::scenario::Scenario;
 use clap::{Args, ValueEnum};
-use std::path::PathBuf;
+use serde_json::json;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Identify measured hardware and judge the models on what they were not fitted to
 ///
@@ -36,6 +38,8 @@ pub(super) struct Arguments {
     rig: Option<PathBuf>,
     #[command(flatten)]
     folder: FolderOptions,
+    #[command(flatten)]
+    print: PrintOptions,
 }
 
 const EXAMPLES: &str = "\
@@ -65,12 +69,15 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         Some(path) => Scenario::load(Some(path), &[])?,
         None => Scenario::from_text(built_in, "built-in rig", &[])?,
     };
+    let quiet = arguments.print.quiet;
     let prepare = || arguments.folder.prepare("study", name, STUDY_FILE);
     let data = folder(arguments.data.as_deref()).join(name);
     let absent = |missing: Missing| match missing {
         // A folder that somebody names has to be there.
         Missing::Absent(path) if arguments.data.is_none() => {
-            Ok(output::print(&(skipped(source, &path) + "\n"))?)
+            let said = skipped(source, &path);
+            let json = json!({"program": env!("CARGO_PKG_NAME"), "skipped": said});
+            Ok(arguments.print.result(&format!("{json:#}\n"), || paragraph("", "", &said))?)
         }
         Missing::Absent(path) => {
             Err(Failure::Input(vec![format!("--data: there is no `{}`; {source}", path.display())]))
@@ -85,7 +92,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
                 (Err(missing), _) | (_, Err(missing)) => return absent(missing),
             };
             let folder = prepare()?;
-            let found = Spinner::during(false, |tell| emps::study(&rig, &recordings, tell))?;
+            let found = Spinner::during(quiet, |tell| emps::study(&rig, &recordings, tell))?;
             let (lead, folder) = emps_page(&found, folder)?;
             (lead, vec![found.table(), found.parameters(), found.second_half()], folder)
         }
@@ -96,20 +103,27 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
                 Err(missing) => return absent(missing),
             };
             let folder = prepare()?;
-            let found = Spinner::during(false, |tell| pendulum::study(&rig, &recordings, tell))?;
+            let found = Spinner::during(quiet, |tell| pendulum::study(&rig, &recordings, tell))?;
             let (lead, folder) = pendulum_page(&found, folder)?;
             (lead, vec![found.table(), found.numbers()], folder)
         }
     };
-    let tables: Vec<String> = tables.iter().map(Table::text).collect();
-    let page = folder.join("index.html");
-    let text = format!(
-        "{lead}\n\n{}\nWritten to {}; open {}\n",
+    // What --json prints is what the folder holds.
+    let json = fs::read_to_string(folder.join(STUDY_FILE))?;
+    Ok(arguments.print.result(&json, || text(&lead, &tables, &folder))?)
+}
+
+/// The result for people.
+fn text(lead: &str, tables: &[Table], folder: &Path) -> String {
+    let tables = tables.iter().map(|table| words_and_numbers(&table.header, &table.rows));
+    let tables: Vec<String> = tables.collect();
+    format!(
+        "{}\n{}\nWritten to {}; open {}\n",
+        paragraph("", "", lead),
         tables.join("\n"),
         folder.display(),
-        page.display()
-    );
-    Ok(output::print(&text)?)
+        folder.join("index.html").display()
+    )
 }
 
 impl From<Missing> for Failure {

@@ -1,5 +1,7 @@
-//! Friction between journal and bearing: laws without a memory, as shares of the normal force over the sliding
-//! speed.
+//! Friction between journal and bearing, as shares of the normal force over the sliding speed; one law remembers how far
+//! its bristles have bent.
+
+use super::After;
 
 /// Coulomb friction, smoothed around rest: `F_t = μ F_N tanh(v_t/v_s)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +69,22 @@ pub enum Friction {
         /// v_f in m/s.
         fall: f64,
     },
+    /// Bristles, which hold at rest: `F_N (σ₀ z + σ₁ e^(−(v/v_s)²) ż)`, `ż = v − σ₀ |v| z/g`, with Stribeck's
+    /// `g = μ + (μ_s − μ) e^(−(v/v_f)²)`, σ₀ = μ/d and σ₁ = μ/v_s, so that fast changes near rest meet the slope of
+    /// [`CoulombFriction`] (C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky, IEEE Trans. Autom. Control 40 (1995)
+    /// 419–425; the fading of σ₁: H. Olsson et al., European J. of Control 4 (1998) 176–195).
+    LuGre {
+        /// μ of sliding.
+        coefficient: f64,
+        /// Static over sliding friction, μ_s/μ.
+        ratio: f64,
+        /// v_s in m/s.
+        velocity: f64,
+        /// v_f in m/s.
+        fall: f64,
+        /// d in m: how far bristles bend before the surfaces slide.
+        presliding: f64,
+    },
 }
 
 impl From<CoulombFriction> for Friction {
@@ -102,8 +120,58 @@ impl Friction {
                 let falling = (ratio - 1.0) * (-(speed / fall).powi(2)).exp();
                 (coefficient, (1.0 + falling) * (speed / velocity).tanh())
             }
+            // As it has long slid like that.
+            Friction::LuGre { coefficient, ratio, velocity, fall, .. } => {
+                return Friction::Stribeck { coefficient, ratio, velocity, fall }
+                    .force(normal_force, sliding);
+            }
         };
         (coefficient * share * normal_force).copysign(sliding)
+    }
+
+    /// Whether the force depends on how the surfaces have slid before.
+    pub fn remembers(&self) -> bool {
+        matches!(self, Friction::LuGre { .. })
+    }
+
+    /// The same force of a law that remembers, in a contact with this penetration in m.
+    pub fn force_after(
+        &self,
+        memory: After,
+        penetration: f64,
+        normal_force: f64,
+        sliding: f64,
+    ) -> f64 {
+        let Friction::LuGre { coefficient, velocity, presliding, .. } = *self else {
+            return self.force(normal_force, sliding);
+        };
+        let bent = self.bent(memory, penetration, sliding);
+        let most = self.most_bent(sliding);
+        let bending = sliding - sliding.abs() * bent / most;
+        let damping = (-(sliding / velocity).powi(2)).exp() * bending / velocity;
+        coefficient * normal_force * (bent / presliding + damping)
+    }
+
+    /// How far bristles have bent in m: `dz/ds = 1 − z/(± g/σ₀)` solved exactly over what the surfaces have slid since, at
+    /// the mean of both speeds, as long as they have touched. They stand upright in flight.
+    pub(super) fn bent(&self, memory: After, penetration: f64, sliding: f64) -> f64 {
+        if penetration <= 0.0 || !self.remembers() {
+            return 0.0;
+        }
+        let touch = memory.touch;
+        let slid = 0.5 * (touch.sliding + sliding) * memory.touching(penetration);
+        let end = self.most_bent(sliding).copysign(slid);
+        touch.bent + (touch.bent - end) * (-(slid / end)).exp_m1()
+    }
+
+    /// z of bristles that have long slid at a speed, in m.
+    fn most_bent(&self, sliding: f64) -> f64 {
+        match *self {
+            Friction::LuGre { ratio, fall, presliding, .. } => {
+                presliding * (1.0 + (ratio - 1.0) * (-(sliding / fall).powi(2)).exp())
+            }
+            _ => 0.0,
+        }
     }
 
     /// The same law with the coefficient μ of sliding, and that of rest in proportion.
@@ -113,7 +181,8 @@ impl Friction {
             | Friction::Threlfall { coefficient, .. }
             | Friction::BengisuAkay { coefficient, .. }
             | Friction::Ambrosio { coefficient, .. }
-            | Friction::Stribeck { coefficient, .. } => *coefficient = mu,
+            | Friction::Stribeck { coefficient, .. }
+            | Friction::LuGre { coefficient, .. } => *coefficient = mu,
         }
         self
     }
@@ -121,10 +190,39 @@ impl Friction {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Touch;
     use super::*;
 
     const MU: f64 = 0.2;
     const V: f64 = 1e-3;
+
+    const LUGRE: Friction =
+        Friction::LuGre { coefficient: MU, ratio: 1.5, velocity: V, fall: 1e-2, presliding: 1e-6 };
+
+    /// Bristles that are bent by 0.1 µm push back like a spring; those of surfaces that have slid far carry the law's full
+    /// friction, whatever steps they were followed in.
+    #[test]
+    fn bristles_hold_first_and_slide_then() {
+        let rest = Touch::begin(1e-6, 0.0);
+        let slow = 1e-4;
+        let force = LUGRE.force_after(rest.after(1e-3), 1e-6, 50.0, slow);
+        // Half of the way at the mean speed; d grows with the static friction.
+        let bent = 1.5e-6 * (-(-0.5 * slow * 1e-3 / 1.5e-6f64).exp_m1());
+        let damped = MU * 50.0 * (slow - slow * bent / 1.5e-6) / V * (-0.01f64).exp();
+        let expected = MU * 50.0 * bent / 1e-6 + damped;
+        assert!((force / expected - 1.0).abs() < 1e-3, "{force} {expected}");
+        for steps in [10, 1000] {
+            let (mut touch, h) = (rest, 1e-3 / f64::from(steps));
+            for _ in 0..steps {
+                let after = touch.after(h);
+                touch.bent = LUGRE.bent(after, 1e-6, 0.05);
+                touch.sliding = 0.05;
+            }
+            let force = LUGRE.force_after(touch.after(0.0), 1e-6, 50.0, 0.05);
+            assert!((force / LUGRE.force(50.0, 0.05) - 1.0).abs() < 1e-9, "{force}");
+        }
+        assert_eq!(LUGRE.bent(rest.after(1.0), -1e-9, 1.0), 0.0);
+    }
 
     fn all() -> [Friction; 5] {
         let (coefficient, velocity, ratio, fall) = (MU, V, 1.5, 1e-2);

@@ -1,8 +1,8 @@
 //! One clearance joint: a round journal inside a round bearing ring, both of them rigid apart from
 //! the local give that the force law describes.
 
-use super::{After, ForceLaw, Friction};
-use nalgebra::{Vector2, Vector3};
+use super::{After, ForceLaw, Friction, RingShape, Touch};
+use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::sync::Arc;
 
 /// Largest half width a of a contact as a share of the journal's radius R for which laws after Hertz hold
@@ -86,6 +86,7 @@ impl Clearance {
     /// its memory.
     pub fn forces(&self, bearing: &Frame, journal: &Frame) -> (Contact, Option<[Vector3<f64>; 2]>) {
         self.forces_by(
+            None,
             |penetration, rate| self.law.normal_force(penetration, rate),
             bearing,
             journal,
@@ -100,12 +101,35 @@ impl Clearance {
         journal: &Frame,
     ) -> (Contact, Option<[Vector3<f64>; 2]>) {
         let force = |penetration, rate| self.normal_force_after(memory, penetration, rate);
-        self.forces_by(force, bearing, journal)
+        self.forces_by(Some(memory), force, bearing, journal)
+    }
+
+    /// Whether what acts in the joint depends on what has happened in its contact: the force law or the friction remembers.
+    pub fn remembers(&self) -> bool {
+        self.law.remembers() || self.friction.is_some_and(|friction| friction.remembers())
+    }
+
+    /// What is remembered of a contact that has been reached since `memory`; `sliding` says how fast the journal
+    /// [slides](Self::slide) there, and is asked for only where friction remembers.
+    pub fn reached(
+        &self,
+        memory: After,
+        contact: &Contact,
+        sliding: impl FnOnce() -> f64,
+    ) -> Touch {
+        let Contact { penetration, rate, .. } = *contact;
+        let mut touch = memory.reached(penetration, rate);
+        if let Some(friction) = self.friction.filter(Friction::remembers) {
+            touch.sliding = sliding();
+            touch.bent = friction.bent(memory, penetration, touch.sliding);
+        }
+        touch
     }
 
     #[inline(always)]
     fn forces_by(
         &self,
+        memory: Option<After>,
         normal_force: impl FnOnce(f64, f64) -> f64,
         bearing: &Frame,
         journal: &Frame,
@@ -119,10 +143,33 @@ impl Clearance {
             return (contact, None);
         }
         contact.normal_force = normal_force(penetration, rate);
-        let to_surface = [self.journal_radius + penetration + self.radial(), self.journal_radius];
+        let to_surface = self.to_surface(penetration);
         let arms = to_surface.map(|radius| normal * radius);
-        let wrenches = self.press(&mut contact, [bearing, journal], normal, to_surface, arms);
+        let wrenches =
+            self.press(memory, &mut contact, [bearing, journal], normal, to_surface, arms);
         (contact, Some(wrenches))
+    }
+
+    /// Outward normal where the journal touches the ring, of this shape if it is not a circle (its body turned so far),
+    /// and how fast in m/s the journal slides there along the normal turned by +90°.
+    pub fn slide(
+        &self,
+        shape: Option<(&RingShape, UnitComplex<f64>)>,
+        bearing: &Frame,
+        journal: &Frame,
+    ) -> (Vector2<f64>, f64) {
+        if let Some((shape, turned)) = shape {
+            return shape.slide(self, turned, [bearing, journal]);
+        }
+        let (penetration, normal) = circle_in_ring(journal.centre - bearing.centre, self.radial());
+        let to_surface = self.to_surface(penetration);
+        (normal, sliding([bearing, journal], normal, to_surface))
+    }
+
+    /// From the centres of ring and journal to where the journal's surface touches, in m.
+    #[inline(always)]
+    fn to_surface(&self, penetration: f64) -> [f64; 2] {
+        [self.journal_radius + penetration + self.radial(), self.journal_radius]
     }
 
     /// Force in N of a law that remembers, at a penetration (m) and its rate (m/s).
@@ -137,6 +184,7 @@ impl Clearance {
     #[inline]
     pub(super) fn press(
         &self,
+        memory: Option<After>,
         contact: &mut Contact,
         [bearing, journal]: [&Frame; 2],
         normal: Vector2<f64>,
@@ -145,15 +193,30 @@ impl Clearance {
     ) -> [Vector3<f64>; 2] {
         let tangent = Vector2::new(-normal.y, normal.x);
         if let Some(friction) = &self.friction {
-            let relative = journal.velocity - bearing.velocity;
-            let sliding = relative.dot(&tangent) + journal.spin * to_surface[1]
-                - bearing.spin * to_surface[0];
-            contact.friction_force = friction.force(contact.normal_force, sliding);
+            let sliding = sliding([bearing, journal], normal, to_surface);
+            let (force, penetration) = (contact.normal_force, contact.penetration);
+            contact.friction_force = match memory {
+                None => friction.force(force, sliding),
+                Some(memory) => friction.force_after(memory, penetration, force, sliding),
+            };
         }
         let force = normal * contact.normal_force + tangent * contact.friction_force;
         let wrench = |arm: Vector2<f64>, f: Vector2<f64>| Vector3::new(f.x, f.y, arm.perp(&f));
         [wrench(bearing.arm + arms[0], force), wrench(journal.arm + arms[1], -force)]
     }
+}
+
+/// How fast the journal slides on its ring in m/s: along the normal turned by +90°, at surface points `to_surface` (m)
+/// along it from the centres of ring and journal.
+#[inline(always)]
+pub(super) fn sliding(
+    [bearing, journal]: [&Frame; 2],
+    normal: Vector2<f64>,
+    to_surface: [f64; 2],
+) -> f64 {
+    let tangent = Vector2::new(-normal.y, normal.x);
+    let relative = journal.velocity - bearing.velocity;
+    relative.dot(&tangent) + journal.spin * to_surface[1] - bearing.spin * to_surface[0]
 }
 
 #[cfg(test)]

@@ -3,24 +3,32 @@
 //!
 //! Nothing here knows an engine, a mechanism or a file.
 
+mod film;
 mod friction;
 mod hertz_step;
 mod impact;
 mod joint;
 pub mod laws;
 mod out_of_round;
+mod ring_shape;
+mod ring_table;
 mod stiffness;
 mod touch;
+mod worn;
 
 use std::sync::Arc;
 
+pub use film::{Extent, Film};
 pub use friction::{CoulombFriction, Friction};
 pub use hertz_step::{HertzStep, step};
 pub use impact::{Impact, Moment, hit, impact};
 pub use joint::{Clearance, Contact, Frame, circle_in_ring, valid_penetration};
 pub use out_of_round::OutOfRound;
-pub use stiffness::{Material, StiffnessForm, hertz_stiffness, power_force};
+pub use ring_shape::RingShape;
+pub use ring_table::{FEWEST_SAMPLES, RingTable};
+pub use stiffness::{Material, StiffnessForm, corner_stiffness, hertz_stiffness, power_force};
 pub use touch::{After, SLOWEST_IMPACT, Touch};
+pub use worn::Play;
 
 /// Normal force of a contact as a function of how deep and how fast the surfaces interpenetrate.
 ///

@@ -1,5 +1,6 @@
 //! Hertz stiffness of two round bodies, paper eq. 5, in its two readings.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Elastic constants of one body.
@@ -12,7 +13,7 @@ pub struct Material {
 }
 
 /// Which radius enters the stiffness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StiffnessForm {
     /// `R_i + R_j`, as the paper prints it: two convex bodies.
@@ -42,6 +43,12 @@ pub fn hertz_stiffness(
     4.0 / (3.0 * PI * 2.0 * h) * (bearing_radius * journal_radius / sum).sqrt()
 }
 
+/// Stiffness K in N/m^1.5 of a corner rounded with `radius` (m) on a flat guide of the same material: Hertz' for a ball
+/// on a plane, `4/3 E* √R`, as between two balls of twice the radius.
+pub fn corner_stiffness(material: Material, radius: f64) -> f64 {
+    hertz_stiffness(StiffnessForm::Printed, material, 2.0 * radius, 2.0 * radius)
+}
+
 /// `K δⁿ` in N, K in N/mⁿ, δ > 0 in m.
 #[inline]
 pub fn power_force(stiffness: f64, exponent: f64, penetration: f64) -> f64 {
@@ -63,6 +70,13 @@ mod tests {
     fn printed_form_gives_the_papers_stiffness() {
         let k = hertz_stiffness(StiffnessForm::Printed, PAPER, 10e-3, 9.5e-3);
         assert!((k / 3.7327999e9 - 1.0).abs() < 1e-7, "{k}");
+    }
+
+    #[test]
+    fn a_corner_is_a_ball_on_a_plane() {
+        let modulus = PAPER.youngs_modulus / (2.0 * (1.0 - 0.3f64.powi(2)));
+        let expected = 4.0 / 3.0 * modulus * 1e-3f64.sqrt();
+        assert!((corner_stiffness(PAPER, 1e-3) / expected - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -19,6 +19,10 @@ pub struct Touch {
     rate: f64,
     /// Fastest approach since the surfaces touched in m/s; 0 in flight.
     impact_speed: f64,
+    /// How far bristles between the surfaces have bent, in m, and how fast the surfaces slide, in m/s: of friction that
+    /// remembers.
+    pub(super) bent: f64,
+    pub(super) sliding: f64,
 }
 
 /// A [`Touch`] and the time in s that has passed since.
@@ -33,7 +37,7 @@ pub struct After {
 impl Touch {
     /// The memory of a run that begins with penetration δ (m) and rate δ̇ (m/s).
     pub fn begin(penetration: f64, rate: f64) -> Self {
-        let flying = Touch { penetration: penetration.min(0.0), rate, impact_speed: 0.0 };
+        let flying = Touch { penetration: penetration.min(0.0), rate, ..Touch::default() };
         flying.after(0.0).reached(penetration, rate)
     }
 
@@ -63,7 +67,15 @@ impl After {
     pub fn reached(&self, penetration: f64, rate: f64) -> Touch {
         let touching = penetration > 0.0;
         let impact_speed = if touching { self.impact_speed(penetration, rate) } else { 0.0 };
-        Touch { penetration, rate, impact_speed }
+        Touch { penetration, rate, impact_speed, ..Touch::default() }
+    }
+
+    /// How much of the time since then surfaces have touched that now have the penetration δ > 0 (m), in s: those that
+    /// flew then touched when a straight line through both penetrations does.
+    pub(super) fn touching(&self, penetration: f64) -> f64 {
+        let before = self.touch.penetration;
+        let share = if before < 0.0 { penetration / (penetration - before) } else { 1.0 };
+        share * self.elapsed
     }
 
     fn crossing_rate(&self, penetration: f64, rate: f64) -> f64 {

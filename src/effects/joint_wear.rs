@@ -60,11 +60,11 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
                 help: format!("expected below the bearing's radius, {bearing_radius} m"),
             });
         }
-        if let Some(shape) = joint.out_of_round.filter(|shape| worn <= shape.amplitude) {
+        if let Some(shape) = joint.out_of_round.as_ref().filter(|shape| worn <= shape.narrowing()) {
             return Err(Wrong {
                 key: "clearance_m".to_owned(),
                 message: format!("is {worn}"),
-                help: format!("expected above the ring's out-of-round, {} m", shape.amplitude),
+                help: format!("expected above the ring's out-of-round, {} m", shape.narrowing()),
             });
         }
         *journal_radius = bearing_radius - worn;

@@ -2,7 +2,7 @@
 
 use super::kind::defaults;
 use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
-use crate::contact::OutOfRound;
+use crate::contact::{OutOfRound, RingShape};
 use crate::mechanism::{Bearing, Mechanism};
 use std::f64::consts::TAU;
 
@@ -76,8 +76,16 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
                 let help = format!("expected below the joint's clearance, {radial:.3e} m");
                 return wrong("amplitude_m", format!("is {amplitude}"), help);
             }
+            Bearing::Clearance(_) if matches!(joint.out_of_round, Some(RingShape::Table(_))) => {
+                let help = "take one out: the profile can have the waves in it";
+                return wrong(
+                    "kind",
+                    "is not possible on a ring that has a profile".to_owned(),
+                    help.to_owned(),
+                );
+            }
             Bearing::Clearance(_) => {
-                joint.out_of_round = Some(OutOfRound { amplitude, lobes, direction });
+                joint.out_of_round = Some(OutOfRound { amplitude, lobes, direction }.into());
             }
         }
     }

@@ -105,7 +105,9 @@ impl ClearanceJoints {
             };
             *contact = state;
             *touch = Some(match memory {
-                Some(memory) => memory.reached(state.penetration, state.rate),
+                Some(memory) => joint.clearance.reached(memory, &state, || {
+                    joint.clearance.slide(None, &ring_frame, &journal_frame).1
+                }),
                 None => Touch::begin(state.penetration, state.rate),
             });
             if let Some([on_ring, on_journal]) = forces {

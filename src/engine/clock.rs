@@ -1,5 +1,6 @@
 //! When sampled controllers take their samples.
 
+use super::stepper::meant;
 use crate::mechanism::{Actuator, Drive, Mechanism};
 
 /// When controllers take samples: each at multiples of its own interval.
@@ -36,7 +37,7 @@ impl Clock {
     /// The end of steps that may go as far as `until`: there, or at the next sample.
     pub fn end(&self, until: f64) -> f64 {
         self.intervals.iter().flatten().fold(until, |end, &(dt, samples)| {
-            let next = samples as f64 * dt;
+            let next = meant(samples as f64 * dt);
             // Samples that mean the same time as a row, or as another's, differ from it by rounding.
             if next < end - 1e-9 * dt { next } else { end }
         })

@@ -111,8 +111,8 @@ impl Ledger {
         });
     }
 
-    /// Draws the balance of a row.
-    pub fn row(&mut self, mechanism: &Mechanism, states: &[BodyState]) -> Option<Energy> {
+    /// Draws the balance at the end of a step.
+    pub fn draw(&mut self, mechanism: &Mechanism, states: &[BodyState]) -> Option<Energy> {
         let Exchange { total, drives, turned_over } = self.done?;
         let now = kinetic(mechanism, states);
         let gained = now - self.start[0];
@@ -154,7 +154,8 @@ pub(super) fn drift(mechanism: &Mechanism, states: &[BodyState]) -> f64 {
         mechanism.revolutes.iter().filter(ideal).map(|joint| {
             (joint.journal.frame(states).centre - joint.ring.frame(states).centre).norm()
         });
-    let slides = mechanism.prismatics.iter().map(|joint| joint.drift(states));
+    let rigid = mechanism.prismatics.iter().filter(|joint| !joint.play);
+    let slides = rigid.map(|joint| joint.drift(states));
     gaps.chain(slides).fold(0.0, f64::max)
 }
 

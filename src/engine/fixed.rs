@@ -10,7 +10,8 @@
 //! seventh of the extrapolation's, and a tenth in the rebound of one hit.
 
 use super::energy::{Books, Exchange, Power};
-use super::stepper::{Stepper, even_step, meant};
+use super::looks::Looks;
+use super::stepper::{Stepper, even_step};
 use super::world::{Target, World, joint_advance};
 use crate::mechanism::{BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
@@ -42,7 +43,7 @@ pub(super) struct Fixed {
     inside_states: Vec<BodyState>,
     inside: Evaluation,
     touched: bool,
-    peaks: Vec<f64>,
+    looks: Looks,
     /// Kept only where somebody asked for the balance.
     books: Option<Books>,
 }
@@ -69,7 +70,7 @@ impl Fixed {
             turns: vec![0.0; mechanism.bodies.len()],
             inside: Evaluation::new(mechanism),
             touched: false,
-            peaks: vec![0.0; mechanism.revolutes.len()],
+            looks: Looks::new(LOOKS.len(), mechanism.revolutes.len()),
             books,
         }
     }
@@ -82,13 +83,13 @@ impl Fixed {
         }
     }
 
-    /// Largest contact forces inside the step that ends at `t`.
+    /// Looks at the contact forces inside the step that ends at `t`.
     fn look_inside(&mut self, mechanism: &Mechanism, t: f64) {
-        self.peaks.fill(0.0);
+        self.looks.none();
         let touching = self.now.contacts.iter().any(|contact| contact.penetration > 0.0);
         if touching || self.touched {
             let h = self.previous_step;
-            for s in LOOKS {
+            for (k, s) in LOOKS.into_iter().enumerate() {
                 let back = (s - 1.0) * h;
                 for (i, point) in self.inside_states.iter_mut().enumerate() {
                     let a = self.now.accelerations[i];
@@ -96,9 +97,7 @@ impl Fixed {
                 }
                 let inside = &mut self.inside;
                 self.dynamics.forces(mechanism, t + back, &self.inside_states, inside);
-                for (peak, contact) in self.peaks.iter_mut().zip(&inside.contacts) {
-                    *peak = peak.max(contact.normal_force);
-                }
+                self.looks.set(k, t + back, &inside.contacts);
             }
         }
         self.touched = touching;
@@ -137,16 +136,12 @@ impl Stepper for Fixed {
         &self.states
     }
 
-    fn instant(&self, t: f64) -> f64 {
-        meant(t)
-    }
-
     fn evaluation(&self) -> &Evaluation {
         &self.now
     }
 
-    fn peaks_inside(&self) -> &[f64] {
-        &self.peaks
+    fn looks(&self) -> Option<&Looks> {
+        Some(&self.looks)
     }
 
     fn exchange(&self) -> Option<Exchange> {

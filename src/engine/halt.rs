@@ -51,9 +51,14 @@ pub(super) fn impossible(
         let deepest = valid_penetration(journal_radius);
         if contact.penetration.is_nan() || contact.penetration >= deepest {
             let what = if contact.penetration.is_finite() {
+                let parts = if joint.is_corner() {
+                    "corner is in its guide"
+                } else {
+                    "journal has left its ring"
+                };
                 format!(
-                    "the journal has left its ring by {:.3e} m, and contacts are understood up to \
-                     {deepest:.1e} m in a joint of its radius",
+                    "the {parts} by {:.3e} m, and contacts are understood up to {deepest:.1e} m in a \
+                     joint of its radius",
                     contact.penetration
                 )
             } else {

@@ -6,6 +6,7 @@
 //! * [`run`]: a whole [`Mechanism`](crate::mechanism::Mechanism) from start to end.
 
 mod adaptive;
+mod between;
 mod clearance_joints;
 mod clock;
 mod colliders;
@@ -16,6 +17,7 @@ mod fixed;
 mod halt;
 mod inserter;
 mod leapfrog;
+mod looks;
 mod native;
 mod ring;
 mod run;
@@ -23,6 +25,7 @@ mod stepper;
 #[cfg(test)]
 mod tests;
 mod watch;
+mod wear;
 mod world;
 
 pub use adaptive::LONGEST_STEP;
@@ -37,6 +40,7 @@ pub use run::{
     run_while,
 };
 pub use watch::{Peaks, Tally};
+pub use wear::WEAR_DIRECTIONS;
 
 use nalgebra::Vector2;
 use rapier2d_f64::dynamics::IntegrationParameters;

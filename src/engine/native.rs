@@ -15,7 +15,7 @@
 //! [`predictive`](crate::mechanism::NativeContacts::predictive) off a hook drops the rigid rows, and
 //! the spring alone has limits like any law.
 
-use super::stepper::{Stepper, equal_step};
+use super::stepper::{Stepper, even_step};
 use super::world::{Target, World, joint_advance};
 use crate::mechanism::{BodyState, Command, Drive, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
@@ -81,13 +81,9 @@ impl Stepper for Native {
         &self.now
     }
 
+    /// Impulses are means over the step: there is nothing to look for inside it.
     fn mean_forces(&self) -> bool {
         true
-    }
-
-    /// Impulses are means over the step already.
-    fn peaks_inside(&self) -> &[f64] {
-        &[]
     }
 
     fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]) {
@@ -97,7 +93,7 @@ impl Stepper for Native {
 
     fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
         self.dynamics.remember(mechanism, t, &self.states);
-        let (dt, reached) = equal_step(self.step, t, until);
+        let (dt, reached) = even_step(self.step, t, until);
         mechanism.true_commands(reached, &mut self.targets);
         let before: Vec<Vector3<f64>> = self.states.iter().map(|s| s.twist).collect();
         let targets = |i: usize| {

@@ -7,9 +7,11 @@ use super::energy::{Books, Energy, Ledger, drift};
 use super::fixed::Fixed;
 use super::halt::{Halt, Pace, TOO_MANY_STEPS, impossible, likely_cause};
 use super::native::Native;
-use super::stepper::Stepper;
+use super::stepper::{Stepper, meant};
 use super::watch::{Peaks, Tally, Watch};
+use super::wear::Rubbing;
 use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -28,7 +30,7 @@ pub enum StepControl {
 }
 
 /// What steps a machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
     /// The physics engine: every step is one of rapier's.
@@ -76,6 +78,9 @@ impl StepControl {
 /// the paper's machine come at 0.1–0.3 m/s, and the longest step falls with its fifth root only.
 pub const TYPICAL_IMPACT_SPEED: f64 = 0.2;
 
+/// By how much, as a share, times that mean the same instant differ at most: as sums of a million numbers do.
+const ROUNDING: f64 = 1e-10;
+
 /// Which instants a run hands out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
@@ -94,7 +99,7 @@ impl Schedule {
 
     /// Time of row `k` in s.
     pub fn time(&self, k: usize) -> f64 {
-        if k >= self.intervals() { self.duration } else { k as f64 * self.interval }
+        if k >= self.intervals() { self.duration } else { meant(k as f64 * self.interval) }
     }
 }
 
@@ -114,10 +119,12 @@ pub struct Instant<'a> {
     pub tallies: &'a [Tally],
     /// Largest values since the row before.
     pub peaks: Peaks,
+    /// What [`Work::rubbed`] has come to.
+    pub rubbed: Option<&'a [Vec<f64>]>,
 }
 
 /// What a run took.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Work {
     /// Steps of the physics engine.
     pub steps: u64,
@@ -136,9 +143,12 @@ pub struct Work {
     pub forced_steps: u64,
     /// How far rigid joints had come apart in a row, in m.
     pub drift: f64,
-    /// Where the energy went, up to the last row; none where nobody asked ([`run_balanced`]), and of native contacts,
-    /// whose forces are known as impulses only.
+    /// Where the energy went, up to the end of the step that reached the last row; none where nobody asked ([`run_balanced`]), and of native contacts, whose forces are known as impulses only.
     pub energy: Option<Energy>,
+    /// Normal force times sliding distance in J, of each revolute joint, in [`WEAR_DIRECTIONS`](super::WEAR_DIRECTIONS)
+    /// directions of the ring's surface from the x axis of its body on; none where nobody asked ([`run_balanced`]), and
+    /// nothing but zeros in joints without a contact law.
+    pub rubbed: Option<Vec<Vec<f64>>>,
 }
 
 impl Work {
@@ -183,10 +193,12 @@ pub fn run_while(
     stop: &AtomicBool,
     observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
-    drive(&mut *stepper(mechanism, control, None), mechanism, control, schedule, stop, observe)
+    let mut stepper = stepper(mechanism, control, None);
+    drive(&mut *stepper, mechanism, None, control, schedule, stop, observe)
 }
 
-/// [`run_while`] that also keeps the balance of energy ([`Work::energy`]). That takes up to 7 % more instructions.
+/// [`run_while`] that also keeps the balance of energy ([`Work::energy`]) and counts where journals rub
+/// ([`Work::rubbed`]). That takes up to 7 % more instructions.
 ///
 /// # Errors
 /// [`Halt`] when a state turns impossible or steps too short; the rows handed out before stand.
@@ -198,7 +210,8 @@ pub fn run_balanced(
     observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
     let mut stepper = stepper(mechanism, control, Some(Books::default()));
-    drive(&mut *stepper, mechanism, control, schedule, stop, observe)
+    let rubbing = Some(Rubbing::new(mechanism));
+    drive(&mut *stepper, mechanism, rubbing, control, schedule, stop, observe)
 }
 
 /// The way of stepping that a mechanism and its control ask for.
@@ -217,66 +230,137 @@ fn stepper(mechanism: &Mechanism, control: StepControl, books: Option<Books>) ->
 fn drive(
     stepper: &mut dyn Stepper,
     mechanism: &Mechanism,
+    rubbing: Option<Rubbing>,
     control: StepControl,
     schedule: Schedule,
     stop: &AtomicBool,
     observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
-    let mut work = Work { smallest_step: f64::INFINITY, ..Work::default() };
-    let mut watch = Watch::new(mechanism);
-    let mut t = 0.0;
-    let mut clock = Clock::new(mechanism);
-    let mut pace = Pace::new(control);
-    let mut ledger = Ledger::new(mechanism, stepper.exchange());
-    let mut stepped = false;
+    stepper.synchronise(mechanism, 0.0);
+    let mut drive = Drive {
+        work: Work { smallest_step: f64::INFINITY, ..Work::default() },
+        watch: Watch::new(mechanism, rubbing),
+        t: 0.0,
+        clock: Clock::new(mechanism),
+        pace: Pace::new(control),
+        ledger: Ledger::new(mechanism, stepper.exchange()),
+        stepper,
+        mechanism,
+        control,
+        end: schedule.duration,
+    };
+    drive.work.energy = drive.ledger.draw(mechanism, drive.stepper.states());
+    drive.watch.reach(mechanism, 0.0, drive.stepper);
     for row in 0..=schedule.intervals() {
-        let until = stepper.instant(schedule.time(row));
-        loop {
-            stepper.synchronise(mechanism, t);
-            let (states, now) = (stepper.states(), stepper.evaluation());
-            if let Some(what) = impossible(mechanism, states, now, t >= until) {
-                let cause = likely_cause(mechanism, control);
-                return Err(Halt { t, what, cause, work: work.into() });
-            }
-            // A row's instant is looked at twice: the step that ended there counts once.
-            if std::mem::take(&mut stepped) {
-                ledger.add(stepper.exchange());
-            }
-            watch.account(&now.contacts, stepper);
-            watch.record(mechanism, states, now, stepper);
-            if t >= until {
-                break;
-            }
+        let at = schedule.time(row);
+        while at - drive.t > ROUNDING * at {
             if stop.load(Ordering::Relaxed) {
-                work.stopped = true;
-                return Ok(work);
+                drive.work.stopped = true;
+                drive.work.rubbed = drive.watch.rubbed().map(<[_]>::to_vec);
+                return Ok(drive.work);
             }
-            if clock.due(t) {
-                stepper.sample(mechanism, t, &clock.due);
-            }
-            let end = stepper.instant(clock.end(until));
-            let reached = stepper.advance(mechanism, t, end);
-            let dt = reached - t;
-            stepped = true;
-            watch.elapse(dt);
-            t = reached;
-            work.step(dt, t, stepper);
-            if let Some(what) = pace.exceeded(t, work.steps) {
-                return Err(Halt { t, what, cause: TOO_MANY_STEPS.to_owned(), work: work.into() });
-            }
+            drive.step(at)?;
         }
-        watch.look_at_angles(stepper.states(), |_, _| true);
-        let Watch { tallies, peaks, angles, .. } = &watch;
-        let (states, evaluation) = (stepper.states(), stepper.evaluation());
-        work.energy = ledger.row(mechanism, states);
-        work.drift = work.drift.max(drift(mechanism, states));
-        let instant = Instant { t, states, angles, evaluation, tallies, peaks: *peaks };
-        if observe(&instant).is_break() {
+        if drive.row(at, observe)?.is_break() {
             break;
         }
-        watch.new_row();
     }
-    Ok(work)
+    Ok(drive.work)
+}
+
+/// A run on its way.
+struct Drive<'a> {
+    stepper: &'a mut dyn Stepper,
+    mechanism: &'a Mechanism,
+    control: StepControl,
+    /// Time of the last row, and that at which the last step ended, in s.
+    end: f64,
+    t: f64,
+    clock: Clock,
+    work: Work,
+    watch: Watch,
+    pace: Pace,
+    ledger: Ledger,
+}
+
+impl Drive<'_> {
+    /// One step towards the row at `at` s, or beyond; never beyond the last row, where nothing may be commanded.
+    fn step(&mut self, at: f64) -> Result<(), Halt> {
+        self.settle();
+        let Self { stepper, mechanism, t, clock, work, .. } = self;
+        if clock.due(*t) {
+            stepper.sample(mechanism, *t, &clock.due);
+        }
+        let until = clock.end(if stepper.ends_at_rows() { at } else { self.end });
+        let reached = stepper.advance(mechanism, *t, until);
+        work.step(reached - *t, reached, *stepper);
+        *t = reached;
+        if let Some(what) = self.pace.exceeded(*t, work.steps) {
+            let (cause, work) = (TOO_MANY_STEPS.to_owned(), work.clone().into());
+            return Err(Halt { t: *t, what, cause, work });
+        }
+        stepper.synchronise(mechanism, *t);
+        self.look_for_the_impossible(self.t, false)?;
+        self.ledger.add(self.stepper.exchange());
+        // The balance of each row is that of the end of the step that reached it.
+        if at - self.t <= ROUNDING * at {
+            self.work.energy = self.ledger.draw(self.mechanism, self.stepper.states());
+        }
+        Ok(())
+    }
+
+    /// Takes account of the last step once nothing inside it is asked for any more.
+    fn settle(&mut self) {
+        if self.watch.t < self.t {
+            self.stepper.read(self.mechanism, self.t);
+            self.watch.reach(self.mechanism, self.t, self.stepper);
+        }
+    }
+
+    /// Hands out the row at `at` s, which the last step has reached.
+    fn row(
+        &mut self,
+        at: f64,
+        observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, Halt> {
+        // Rows and steps that mean the same time differ by rounding.
+        let inside = self.t - at > ROUNDING * at;
+        if inside {
+            self.stepper.read(self.mechanism, at);
+        } else {
+            self.settle();
+        }
+        self.look_for_the_impossible(at, true)?;
+        let (stepper, mechanism) = (&*self.stepper, self.mechanism);
+        let mut seen = self.watch.clone();
+        if inside {
+            seen.look(mechanism, at, stepper);
+        }
+        let (states, evaluation) = (stepper.states(), stepper.evaluation());
+        seen.look_at_angles(states, |_, _| true);
+        self.work.drift = self.work.drift.max(drift(mechanism, states));
+        let Watch { tallies, peaks, angles, .. } = &seen;
+        let rubbed = seen.rubbed();
+        self.watch.new_row(mechanism, at, stepper);
+        let peaks = *peaks;
+        let go_on = observe(&Instant { t: at, states, angles, evaluation, tallies, peaks, rubbed });
+        if go_on.is_break() || at >= self.end {
+            self.work.rubbed = rubbed.map(<[_]>::to_vec);
+        }
+        Ok(go_on)
+    }
+
+    /// Stops where the present instant, `t` s, holds what cannot be.
+    fn look_for_the_impossible(&self, t: f64, row: bool) -> Result<(), Halt> {
+        let Self { stepper, mechanism, control, work, .. } = self;
+        match impossible(mechanism, stepper.states(), stepper.evaluation(), row) {
+            None => Ok(()),
+            Some(what) => {
+                let cause = likely_cause(mechanism, *control);
+                Err(Halt { t, what, cause, work: work.clone().into() })
+            }
+        }
+    }
 }
 
 #[cfg(test)]

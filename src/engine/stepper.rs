@@ -1,46 +1,50 @@
 //! What a way of stepping has to do for a run.
 
 use super::energy::Exchange;
+use super::looks::Looks;
 use crate::mechanism::{BodyState, Evaluation, Mechanism};
 
-/// A way of stepping. The driver asks it for the present instant, then for a step towards the next
-/// row, in turn.
+/// A way of stepping. The driver asks it for a step, for the instant at which that ended, and for rows between the
+/// step's ends, in turn.
 pub(super) trait Stepper {
-    /// Makes states and evaluation those of time `t` in s.
+    /// Makes the present instant that at which the last step ended, `t` in s.
     fn synchronise(&mut self, mechanism: &Mechanism, t: f64);
-    /// States at the instant last synchronised.
+    /// Whether steps have to end where rows are; if not, rows are [read](Self::read).
+    fn ends_at_rows(&self) -> bool {
+        true
+    }
+    /// Makes the present instant one of the last step, `t` in s: inside it, or its end. The next step goes on from
+    /// that end all the same, and is the same step. Ways of stepping that end at rows are asked for their end only.
+    fn read(&mut self, _: &Mechanism, _: f64) {}
+    /// States at the present instant.
     fn states(&self) -> &[BodyState];
     /// Forces, accelerations, contacts at that instant.
     fn evaluation(&self) -> &Evaluation;
-    /// Largest normal force (N) of each joint inside the step that ended at that instant, where the
-    /// way of stepping looks there.
-    fn peaks_inside(&self) -> &[f64];
-    /// Joints whose journals hit and flew again inside the step, touching at neither end; none where steps
-    /// are too short for that.
-    fn brushes(&self) -> &[bool] {
-        &[]
+    /// Normal forces inside the last step, where the way of stepping looks there.
+    fn looks(&self) -> Option<&Looks> {
+        None
     }
-    /// What the normal force of each joint took in the step in J, where the way of stepping integrates it.
+    /// What the normal force of each joint took since the last step began, in J, where the way of stepping
+    /// integrates it.
     fn joint_work(&self) -> Option<&[f64]> {
         None
     }
-    /// Lets the sampled controllers that are due compute what they hold from the instant last
-    /// synchronised on.
-    fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]);
-    /// Makes one step from `t` of at most `until − t` s; returns the time reached, exactly `until`
-    /// if it got there.
-    fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
-    /// The instant at which steps end where `t` (s), the time of a row or a sample, is asked for: where its steps are
-    /// on a grid, that of the grid, which differs by rounding at most.
-    fn instant(&self, t: f64) -> f64 {
-        t
+    /// Normal force times sliding distance of each joint since the last step began, in J, where the way of stepping
+    /// integrates it.
+    fn slid(&self) -> Option<&[f64]> {
+        None
     }
+    /// Lets the sampled controllers that are due compute what they hold from the instant `t` (s) on at which the
+    /// last step ended.
+    fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]);
+    /// Makes one step from `t`, where the last one ended, of at most `until − t` s; returns the time reached,
+    /// exactly `until` if it got there.
+    fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64;
     /// Estimated velocity error of the last step in m/s, if there is an estimate.
     fn step_error(&self) -> Option<f64> {
         None
     }
-    /// What forces did to the bodies in the step that ended at the instant last synchronised, where the
-    /// way of stepping knows them.
+    /// What forces did to the bodies in the last step, where the way of stepping knows them.
     fn exchange(&self) -> Option<Exchange> {
         None
     }
@@ -58,7 +62,7 @@ pub(super) trait Stepper {
 /// Length of the next step from `t` so that steps of equal length, at most `step` s, end exactly at
 /// `until`; and the time reached. (A sliver left over by rounding would give a prescribed drive an
 /// endless force.)
-pub(super) fn equal_step(step: f64, t: f64, until: f64) -> (f64, f64) {
+fn equal_step(step: f64, t: f64, until: f64) -> (f64, f64) {
     let span = until - t;
     let count = (span / step * (1.0 - 1e-9)).ceil().max(1.0);
     let dt = span / count;

@@ -1,8 +1,9 @@
 //! What happens between the rows of a run: hits, energy, largest values, whole turns.
 
 use super::stepper::Stepper;
+use super::wear::Rubbing;
 use crate::contact::Contact;
-use crate::mechanism::{BodyState, Evaluation, JointIndex, Mechanism, angle_near};
+use crate::mechanism::{BodyState, JointIndex, Mechanism, angle_near};
 use nalgebra::UnitComplex;
 
 /// What one joint has gone through.
@@ -33,71 +34,109 @@ pub struct Peaks {
 }
 
 /// Keeps account of what happens between rows.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Watch {
     pub tallies: Vec<Tally>,
     pub peaks: Peaks,
     /// Angle of each body in rad, whole turns counted, when it was looked at last, and its rotation then.
     pub angles: Vec<f64>,
     rotations: Vec<UnitComplex<f64>>,
-    /// Contacts at the instant before, and the time in s since then.
+    /// Time in s until which account is kept, contacts then, and the time of the last row.
+    pub t: f64,
     before: Vec<Contact>,
-    dt: f64,
+    row: f64,
+    /// Where journals rub, if somebody wants to know.
+    rubbing: Option<Rubbing>,
 }
 
 impl Watch {
-    pub fn new(mechanism: &Mechanism) -> Self {
+    pub fn new(mechanism: &Mechanism, rubbing: Option<Rubbing>) -> Self {
         let joints = mechanism.revolutes.len();
         Self {
             tallies: vec![Tally::default(); joints],
             peaks: Peaks::default(),
             angles: mechanism.bodies.iter().map(|body| body.angle).collect(),
             rotations: mechanism.bodies.iter().map(|body| body.start.rotation).collect(),
+            t: 0.0,
             before: vec![Contact::default(); joints],
-            dt: 0.0,
+            row: f64::NEG_INFINITY,
+            rubbing,
         }
+    }
+
+    /// Goes on to the present instant of `stepper`, `t` in s: the end of a step.
+    pub fn reach(&mut self, mechanism: &Mechanism, t: f64, stepper: &dyn Stepper) {
+        self.take(mechanism, t, stepper, true);
+    }
+
+    /// Goes on to an instant `t` (s) inside the step that begins where it stands, only to be looked at: where rows
+    /// are must not change what is counted, so that hits are those that the step itself saw.
+    pub fn look(&mut self, mechanism: &Mechanism, t: f64, stepper: &dyn Stepper) {
+        self.take(mechanism, t, stepper, false);
+    }
+
+    /// See [`Work::rubbed`](super::Work::rubbed).
+    pub fn rubbed(&self) -> Option<&[Vec<f64>]> {
+        self.rubbing.as_ref().map(|rubbing| &rubbing.around[..])
+    }
+
+    fn take(&mut self, mechanism: &Mechanism, t: f64, stepper: &dyn Stepper, end: bool) {
+        if let Some(rubbing) = &mut self.rubbing {
+            rubbing.count(mechanism, stepper, t - self.t);
+        }
+        let contacts = &stepper.evaluation().contacts;
+        self.take_work(t, contacts, stepper);
+        let row = self.row;
+        for (j, (tally, contact)) in self.tallies.iter_mut().zip(contacts).enumerate() {
+            let touching = contact.normal_force > 0.0;
+            let mut seen = end && touching;
+            tally.peak = tally.peak.max(contact.normal_force);
+            for (at, forces) in
+                stepper.looks().into_iter().flat_map(|looks| looks.within(self.t, t))
+            {
+                seen |= forces[j] > 0.0;
+                if at > row {
+                    tally.peak = tally.peak.max(forces[j]);
+                }
+            }
+            if tally.touching {
+                tally.contact_time += t - self.t;
+            } else {
+                tally.impacts += u64::from(seen);
+            }
+            tally.touching = touching;
+        }
+        self.take_drives(mechanism, stepper);
+        // An arc tangent a step is dear; whole turns are counted as well every quarter of a turn.
+        let due = |before: &UnitComplex<f64>, now: &UnitComplex<f64>| {
+            before.re * now.re + before.im * now.im <= 0.0
+        };
+        self.look_at_angles(stepper.states(), due);
+        self.t = t;
     }
 
     /// Keeps account of energy. An impulse J between the rates a and b takes `J (a + b)/2`, exactly;
     /// for a force that varies over the step this is the trapezoidal rule. A way of stepping that integrates the
     /// work itself knows better.
-    pub fn account(&mut self, contacts: &[Contact], stepper: &dyn Stepper) {
-        let mean_forces = stepper.mean_forces();
+    fn take_work(&mut self, t: f64, contacts: &[Contact], stepper: &dyn Stepper) {
         if let Some(work) = stepper.joint_work() {
             for (tally, work) in self.tallies.iter_mut().zip(work) {
                 tally.energy += work;
             }
             return;
         }
+        let (mean_forces, dt) = (stepper.mean_forces(), t - self.t);
         for ((tally, now), before) in self.tallies.iter_mut().zip(contacts).zip(&mut self.before) {
             let [was, is] = [before.normal_force, now.normal_force];
             let force = if mean_forces { is } else { 0.5 * (was + is) };
-            tally.energy += force * 0.5 * (before.rate + now.rate) * self.dt;
+            tally.energy += force * 0.5 * (before.rate + now.rate) * dt;
             *before = *now;
         }
-        // A row's instant is looked at twice: the step that ended there counts once.
-        self.dt = 0.0;
     }
 
-    pub fn record(
-        &mut self,
-        mechanism: &Mechanism,
-        states: &[BodyState],
-        now: &Evaluation,
-        stepper: &dyn Stepper,
-    ) {
-        for (tally, peak) in self.tallies.iter_mut().zip(stepper.peaks_inside()) {
-            tally.peak = tally.peak.max(*peak);
-        }
-        for (tally, brush) in self.tallies.iter_mut().zip(stepper.brushes()) {
-            tally.impacts += u64::from(*brush);
-        }
-        for (tally, contact) in self.tallies.iter_mut().zip(&now.contacts) {
-            let touching = contact.normal_force > 0.0;
-            tally.peak = tally.peak.max(contact.normal_force);
-            tally.impacts += u64::from(touching && !tally.touching);
-            tally.touching = touching;
-        }
+    /// Keeps the largest acceleration and drive forces.
+    fn take_drives(&mut self, mechanism: &Mechanism, stepper: &dyn Stepper) {
+        let (states, now) = (stepper.states(), stepper.evaluation());
         let acceleration = mechanism.output_acceleration(states, &now.accelerations).xy().norm();
         self.peaks.acceleration = self.peaks.acceleration.max(acceleration);
         for (actuator, effort) in mechanism.actuators.iter().zip(&now.drive_forces) {
@@ -107,8 +146,6 @@ impl Watch {
             };
             *peak = peak.max(effort.abs());
         }
-        // An arc tangent a step is dear; whole turns are counted as well every quarter of a turn.
-        self.look_at_angles(states, |before, now| before.re * now.re + before.im * now.im <= 0.0);
     }
 
     /// Brings angles up to date, those of bodies for whose rotations then and now it is `due`.
@@ -126,18 +163,14 @@ impl Watch {
         }
     }
 
-    pub fn elapse(&mut self, dt: f64) {
-        self.dt = dt;
-        for tally in self.tallies.iter_mut().filter(|tally| tally.touching) {
-            tally.contact_time += dt;
-        }
-    }
-
-    /// Called after a row was handed out.
-    pub fn new_row(&mut self) {
+    /// Called after the row at `t` (s), the present instant of `stepper`, was handed out: the next one's largest
+    /// values begin with those of this one.
+    pub fn new_row(&mut self, mechanism: &Mechanism, t: f64, stepper: &dyn Stepper) {
+        self.row = t;
         self.peaks = Peaks::default();
-        for tally in &mut self.tallies {
-            tally.peak = 0.0;
+        self.take_drives(mechanism, stepper);
+        for (tally, contact) in self.tallies.iter_mut().zip(&stepper.evaluation().contacts) {
+            tally.peak = contact.normal_force;
         }
     }
 }

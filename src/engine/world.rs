@@ -71,7 +71,8 @@ pub(super) struct World {
     /// By how much rapier's angular velocities exceed the mean ones of the last step, in rad/s.
     excess: Vec<f64>,
     pub handles: Vec<RigidBodyHandle>,
-    prismatics: Vec<Slide>,
+    /// None of those that nothing holds but contacts.
+    prismatics: Vec<Option<Slide>>,
     /// The joint and the axis of each prescribed drive's motor.
     motors: Vec<Option<(ImpulseJointHandle, JointAxis)>>,
     /// The ideal revolute joints.
@@ -86,8 +87,11 @@ impl World {
     /// contacts need them.
     pub fn new(mechanism: &Mechanism, colliders: bool) -> Self {
         let mut inserter = Inserter::new(mechanism);
-        let mut prismatics: Vec<Slide> =
-            mechanism.prismatics.iter().map(|joint| inserter.prismatic(joint)).collect();
+        let mut prismatics: Vec<Option<Slide>> = mechanism
+            .prismatics
+            .iter()
+            .map(|joint| (!joint.play).then(|| inserter.prismatic(joint)))
+            .collect();
         let revolutes: Vec<Solved> = mechanism
             .revolutes
             .iter()
@@ -97,10 +101,14 @@ impl World {
             .actuators
             .iter()
             .map(|actuator| {
-                (actuator.drive == Drive::Prescribed).then(|| match actuator.joint {
+                if actuator.drive != Drive::Prescribed {
+                    return None;
+                }
+                Some(match actuator.joint {
                     JointIndex::Prismatic(i) => {
-                        prismatics[i].prescribed = true;
-                        (prismatics[i].handle, JointAxis::LinX)
+                        let slide = prismatics[i].as_mut()?;
+                        slide.prescribed = true;
+                        (slide.handle, JointAxis::LinX)
                     }
                     JointIndex::Revolute(i) => {
                         (inserter.motor(&mechanism.revolutes[i], revolutes[i]), JointAxis::AngX)
@@ -184,6 +192,7 @@ impl World {
         }
         let joints = &mut self.physics.impulse_joints;
         for (i, slide) in self.prismatics.iter().enumerate() {
+            let Some(slide) = slide else { continue };
             if let (Some(target), Some(joint)) = (targets(i), joints.get_mut(slide.handle, false)) {
                 if slide.prescribed {
                     // A stiffness far beyond any mass over dt² makes the spring a constraint.

@@ -4,6 +4,7 @@ use super::bounded;
 use super::dialect::Rows;
 use super::shown::shown;
 use super::spelling::nearest;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fmt::Write as _;
@@ -57,7 +58,7 @@ impl fmt::Display for Channel {
 }
 
 /// Where a quantity stands in somebody's file, and how it gets the unit of its channel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Source {
     /// Head of the column.

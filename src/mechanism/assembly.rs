@@ -141,7 +141,7 @@ impl Mechanism {
         let closure = self.closure(&states, &vec![Command::default(); self.actuators.len()]);
         let rigid = |i: usize| match (closure.driven[i], closure.joints[i]) {
             (Some(drive), _) => self.actuators[drive].drive == Drive::Prescribed,
-            (None, JointIndex::Prismatic(_)) => true,
+            (None, JointIndex::Prismatic(i)) => !self.prismatics[i].play,
             (None, JointIndex::Revolute(i)) => matches!(self.revolutes[i].bearing, Bearing::Ideal),
         };
         let rows: Vec<Row> =
@@ -197,12 +197,14 @@ impl Mechanism {
                 closure.push(index, Some(drive), [along]);
             }
         }
-        for (i, joint) in self.revolutes.iter().enumerate() {
+        let revolutes =
+            || self.revolutes.iter().enumerate().filter(|(_, joint)| !joint.is_corner());
+        for (i, joint) in revolutes() {
             let gap = joint.journal.frame(states).centre - joint.ring.frame(states).centre;
             gaps.extend([gap.x, gap.y]);
             closure.push(JointIndex::Revolute(i), None, revolute_rows(joint, states));
         }
-        for (i, joint) in self.revolutes.iter().enumerate() {
+        for (i, joint) in revolutes() {
             let index = JointIndex::Revolute(i);
             if let Some(drive) = follows(index) {
                 let commanded = UnitComplex::new(commands[drive].position);

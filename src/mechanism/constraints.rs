@@ -211,7 +211,7 @@ fn smallest_solution(
 /// What holds bodies rigidly, grouped by the bodies that it connects. The ground connects nothing: it
 /// does not move.
 pub(super) fn groups(mechanism: &Mechanism) -> Vec<Vec<Rigid>> {
-    let prismatics = mechanism.prismatics.iter().enumerate();
+    let prismatics = mechanism.prismatics.iter().enumerate().filter(|(_, joint)| !joint.play);
     let revolutes = mechanism.revolutes.iter().enumerate();
     let angles = mechanism.actuators.iter().enumerate().filter_map(|(drive, actuator)| {
         let JointIndex::Revolute(joint) = actuator.joint else { return None };

@@ -33,6 +33,10 @@ impl Mechanism {
     /// gives way.
     pub fn without_clearance(&self) -> Self {
         let mut ideal = self.clone();
+        ideal.revolutes.retain(|joint| !joint.is_corner());
+        for joint in &mut ideal.prismatics {
+            joint.play = false;
+        }
         for joint in &mut ideal.revolutes {
             joint.bearing = Bearing::Ideal;
             joint.out_of_round = None;

@@ -1,7 +1,7 @@
 //! Joints between two bodies: revolute ones with or without clearance, and prismatic ones.
 
 use super::{Attachment, BodyState};
-use crate::contact::{Clearance, OutOfRound};
+use crate::contact::{Clearance, Contact, RingShape};
 use nalgebra::{UnitComplex, Vector2};
 use std::f64::consts::TAU;
 
@@ -66,7 +66,7 @@ pub struct Revolute {
     /// What the joint does.
     pub bearing: Bearing,
     /// How its ring departs from a circle, if it does; [`Bearing::Clearance`] alone looks at it.
-    pub out_of_round: Option<OutOfRound>,
+    pub out_of_round: Option<RingShape>,
 }
 
 /// A prismatic joint: a slider that moves along an axis of its base, both keeping the angle between
@@ -83,6 +83,9 @@ pub struct Prismatic {
     /// Direction of the axis in the axes of the base's body and of the slider's body. The two directions
     /// coincide in the world: that is the angle that the joint keeps.
     pub axes: [UnitComplex<f64>; 2],
+    /// Whether nothing holds it but the contacts of the slider's corners with two guides, which are among the
+    /// [revolute joints](super::Mechanism::revolutes) as [corners](Revolute::is_corner).
+    pub play: bool,
 }
 
 impl Prismatic {
@@ -107,6 +110,11 @@ pub enum JointIndex {
 }
 
 impl Revolute {
+    /// Whether it is no joint of its own but a corner of a slider at its guide: the ring is that, the journal the corner.
+    pub fn is_corner(&self) -> bool {
+        self.out_of_round.as_ref().is_some_and(RingShape::is_guide)
+    }
+
     /// The two bodies, the ring's first; the ground has none.
     pub fn bodies(&self) -> [Option<usize>; 2] {
         [self.ring.body, self.journal.body]
@@ -115,6 +123,29 @@ impl Revolute {
     /// Rotation of the journal's body against the ring's.
     pub fn rotation(&self, states: &[BodyState]) -> UnitComplex<f64> {
         self.ring.rotation(states).rotation_to(&self.journal.rotation(states))
+    }
+
+    /// Where the contact of a journal that touches rubs its ring, as the direction of the surface's normal in the axes of
+    /// the ring's body (rad), and the friction power that a coefficient of 1 would have there, `F_N |v_t|` in W. None in
+    /// flight, and where no law acts.
+    pub fn rubbing(&self, states: &[BodyState], contact: &Contact) -> Option<[f64; 2]> {
+        if contact.normal_force <= 0.0 {
+            return None;
+        }
+        let [direction, speed] = self.sliding(states)?;
+        Some([direction, contact.normal_force * speed.abs()])
+    }
+
+    /// That direction (rad), whether the journal touches or not, and how fast it slides there in m/s, positive where it
+    /// goes on along the normal turned by +90°. None where no law acts.
+    pub fn sliding(&self, states: &[BodyState]) -> Option<[f64; 2]> {
+        let Bearing::Clearance(clearance) = &self.bearing else { return None };
+        let turned = self.ring.rotation(states);
+        let shape = self.out_of_round.as_ref().map(|shape| (shape, turned));
+        let (normal, speed) =
+            clearance.slide(shape, &self.ring.frame(states), &self.journal.frame(states));
+        let own = turned.inverse() * normal;
+        Some([own.y.atan2(own.x), speed])
     }
 
     /// Angular velocity of the journal's body less that of the ring's in rad/s.

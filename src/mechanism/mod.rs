@@ -26,6 +26,7 @@ mod limits;
 mod load;
 mod loops;
 mod names;
+mod oil;
 mod reading;
 mod rotor;
 mod rows;
@@ -49,6 +50,7 @@ pub use legs::TelescopicLegs;
 pub use load::{Load, Memory, Situation};
 pub use loops::Loop;
 pub use names::{Axes, NamedPoint, Names, Use};
+pub use oil::OilFilm;
 pub use reading::ReadingError;
 pub use rotor::Rotor;
 pub use sensor::{Reads, Sensor, TrackerFrame};
@@ -64,7 +66,7 @@ use std::sync::Arc;
 pub struct Mechanism {
     /// The moving bodies.
     pub bodies: Vec<Body>,
-    /// The revolute joints, in the order of the result columns.
+    /// The revolute joints, in the order of the result columns; behind them the corners of sliders with clearance.
     pub revolutes: Vec<Revolute>,
     /// The prismatic joints.
     pub prismatics: Vec<Prismatic>,
@@ -167,9 +169,9 @@ impl Mechanism {
         }
     }
 
-    /// The joints by name, revolute ones first.
+    /// The joints by name, revolute ones first; corners of sliders are none.
     pub fn joints(&self) -> impl Iterator<Item = (&str, JointIndex)> {
-        let revolutes = self.revolutes.iter().enumerate();
+        let revolutes = self.revolutes.iter().enumerate().filter(|(_, joint)| !joint.is_corner());
         let prismatics = self.prismatics.iter().enumerate();
         revolutes
             .map(|(i, joint)| (joint.name.as_str(), JointIndex::Revolute(i)))

@@ -1,17 +1,18 @@
 //! A description as a [`Mechanism`]: bodies, joints, drives, springs and stops, not yet put together.
 
+use super::guides::{corners, has_play};
 use super::layout::{Layout, Written};
 use super::names::{mark, names};
 use super::parts::Parts;
 use crate::contact::laws::Given;
-use crate::contact::{Clearance, HertzStep, Material};
+use crate::contact::{Clearance, HertzStep, Material, RingShape, RingTable};
 use crate::mechanism::{
-    Actuator, Attachment, Bearing, Cascade, Drive, JointIndex, JointSpring, Mechanism, PointSpring,
-    Prismatic, Reads, Revolute, Sensor, Stop,
+    Actuator, Attachment, Bearing, Cascade, Drive, JointIndex, JointSpring, Mechanism, OilFilm,
+    PointSpring, Prismatic, Reads, Revolute, Sensor, Stop,
 };
 use crate::scenario::{
-    self, Described, DriveMode, Joint, JointDrive, Law, Motion, Quantity, Sampled, Scenario,
-    Spring, Target,
+    self, Contact, Described, DriveMode, Joint, JointDrive, Law, Motion, Quantity, Sampled,
+    Scenario, Spring, Target,
 };
 use nalgebra::{UnitComplex, Vector2};
 use std::sync::Arc;
@@ -42,18 +43,23 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
                 if clearance.is_some() {
                     declared.push(index);
                 }
+                let bearing = bearing(scenario, joint, index, given);
+                let by_law = matches!(bearing, Bearing::Clearance(_));
+                let profile = joint.profile.as_deref().filter(|_| by_law);
                 mechanism.revolutes.push(Revolute {
                     name: joint.name.clone(),
                     ring: first.0,
                     journal: second.0,
-                    bearing: bearing(scenario, joint, index, given),
-                    out_of_round: None,
+                    bearing,
+                    out_of_round: profile.and_then(RingTable::new).map(RingShape::from),
                 });
                 laws.push(given.as_ref().map(HertzStep::from));
             }
             Joint::Prismatic(joint) => {
                 let ((base, base_angle), (slider, slider_angle)) = (first, second);
+                let play = has_play(scenario, joint);
                 mechanism.prismatics.push(Prismatic {
+                    play,
                     name: joint.name.clone(),
                     base,
                     slider,
@@ -68,6 +74,13 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
             }
             Joint::Fixed(_) => {}
         }
+    }
+    for joint in &described.joints {
+        let Joint::Prismatic(joint) = joint else { continue };
+        let built = mechanism.prismatics.iter().find(|built| built.name == joint.name);
+        let corners = built.map(|built| corners(scenario, joint, built)).unwrap_or_default();
+        declared.extend((0..corners.len()).map(|i| mechanism.revolutes.len() + i));
+        mechanism.revolutes.extend(corners);
     }
     let mut layout = Layout { joints: declared, ..Layout::default() };
     for drive in &described.drives {
@@ -109,6 +122,7 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
         };
         mechanism.loads.push(Arc::new(Stop { joint, range: stop.range, law }));
     }
+    add_films(scenario, described, &mut mechanism);
     mechanism.sensors =
         described.sensors.iter().filter_map(|s| sensor(&mechanism, &parts, s)).collect();
     mechanism.names = names(scenario, described, &parts, &mechanism, &springs);
@@ -131,6 +145,12 @@ fn clearance(scenario: &Scenario, joint: &scenario::Revolute, index: usize) -> O
     joint.clearance.or_else(default).filter(|clearance| *clearance > 0.0)
 }
 
+/// What journals, rings and guides are of.
+pub(super) fn material(scenario: &Scenario) -> Material {
+    let Contact { youngs_modulus, poisson_ratio, .. } = scenario.contact;
+    Material { youngs_modulus, poisson_ratio }
+}
+
 /// What the law of a joint is built from.
 fn given(scenario: &Scenario, joint: &scenario::Revolute, clearance: f64) -> Given {
     let contact = &scenario.contact;
@@ -138,10 +158,7 @@ fn given(scenario: &Scenario, joint: &scenario::Revolute, clearance: f64) -> Giv
     Given {
         bearing_radius,
         journal_radius: bearing_radius - clearance,
-        material: Material {
-            youngs_modulus: contact.youngs_modulus,
-            poisson_ratio: contact.poisson_ratio,
-        },
+        material: material(scenario),
         stiffness_form: contact.stiffness_form,
         stiffness: joint.stiffness.or(contact.stiffness),
         exponent: contact.exponent,
@@ -173,6 +190,26 @@ fn bearing(
         }),
         (Law::Native, None) => Bearing::Native { bearing_radius, journal_radius, friction },
         (_, None) => Bearing::Ideal,
+    }
+}
+
+/// The oil in joints with clearance under a law.
+fn add_films(scenario: &Scenario, described: &Described, mechanism: &mut Mechanism) {
+    let revolutes = described.joints.iter().filter_map(|joint| match joint {
+        Joint::Revolute(joint) => Some(joint),
+        Joint::Prismatic(_) | Joint::Fixed(_) => None,
+    });
+    let mut films = Vec::new();
+    for (i, (joint, built)) in revolutes.zip(&mechanism.revolutes).enumerate() {
+        let Bearing::Clearance(clearance) = &built.bearing else { continue };
+        let kind = joint.film.unwrap_or(scenario.contact.film);
+        let gap = clearance.radial();
+        if let Some(film) = scenario.contact.film(kind, clearance.bearing_radius, gap) {
+            films.push(OilFilm { joint: i, film, clearance: Some(gap) });
+        }
+    }
+    for film in films {
+        mechanism.loads.push(Arc::new(film));
     }
 }
 

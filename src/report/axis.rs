@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::label::Label;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
 /// The largest value that is drawn. Far above any quantity of interest, and small enough that no
@@ -12,18 +13,32 @@ const LARGEST: f64 = 1e200;
 /// is rounding noise, and ticks in it would need too many digits to read.
 const SPREAD: f64 = 1e-6;
 
-/// A linear axis with round tick values.
+/// An axis with round tick values.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     range: Range<f64>,
     /// Distance between ticks: 1, 2 or 5 times a power of ten.
     step: f64,
+    /// What a logarithmic axis shows; its range is one of decimal logarithms.
+    logarithmic: Option<Label>,
 }
+
+/// Decades below which a logarithmic axis has ticks at 2 and 5, too.
+const FEW_DECADES: f64 = 2.5;
 
 impl Axis {
     /// An axis over `range` with at most about `ticks` ticks. The range must not be
     /// [`constant`].
-    pub(super) fn new(range: Range<f64>, ticks: f64) -> Self {
+    pub(super) fn of(label: &Label, range: Range<f64>, ticks: f64) -> Self {
+        let axis = Self::new(range, ticks);
+        if !label.logarithmic {
+            return axis;
+        }
+        Axis { step: axis.step.ceil(), logarithmic: Some(label.clone()), ..axis }
+    }
+
+    /// The same of a quantity itself.
+    fn new(range: Range<f64>, ticks: f64) -> Self {
         let rough = (range.end - range.start) / ticks;
         let decade = 10f64.powf(rough.log10().floor());
         let step = [1.0, 2.0, 5.0]
@@ -31,7 +46,7 @@ impl Axis {
             .into_iter()
             .find(|step| *step >= rough)
             .unwrap_or(10.0 * decade);
-        Axis { range, step }
+        Axis { range, step, logarithmic: None }
     }
 }
 
@@ -87,6 +102,12 @@ impl Ranged for Axis {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
+        let width = self.range.end - self.range.start;
+        if self.logarithmic.is_some() && width < FEW_DECADES {
+            let decades = (self.range.start.floor() as i32)..=(self.range.end.ceil() as i32);
+            let round = decades.flat_map(|n| [1.0f64, 2.0, 5.0].map(|m| f64::from(n) + m.log10()));
+            return round.filter(|tick| self.range.contains(tick)).collect();
+        }
         // A tick that is missed by a hair belongs to the axis: a run of 4 s ends one step before.
         let hair = 2e-3;
         let first = (self.range.start / self.step - hair).ceil();
@@ -103,9 +124,17 @@ impl ValueFormatter<f64> for Axis {
     /// As many decimals as the step needs; very large and very small values in engineering notation,
     /// with an exponent that is the same for the whole axis.
     fn format_ext(&self, value: &f64) -> String {
+        if let Some(label) = &self.logarithmic {
+            return label.in_words(10f64.powf(*value));
+        }
         let size = self.range.start.abs().max(self.range.end.abs());
-        let exponent =
-            if (1e-3..1e5).contains(&size) { 0 } else { 3 * (size.log10() / 3.0).floor() as i32 };
+        let engineering = 3 * (size.log10() / 3.0).floor() as i32;
+        let exponent = match engineering {
+            _ if (1e-3..1e5).contains(&size) => 0,
+            -9..=9 => engineering,
+            // Three digits, or decimals, before such an exponent leave no room.
+            _ => (self.step.log10() + 1e-9).floor() as i32,
+        };
         let unit = 10f64.powi(exponent);
         let decimals = (-(self.step / unit).log10() - 1e-9).ceil().max(0.0) as usize;
         let text = format!("{:.decimals$}", value / unit);
@@ -142,6 +171,18 @@ mod tests {
     fn far_from_one_ticks_use_engineering_notation() {
         assert_eq!(labels(-1e-5..1e-5, 2.0), ["−10e−6", "0", "10e−6"]);
         assert_eq!(labels(0.0..2.5e6, 3.0), ["0", "1e6", "2e6"]);
+        assert_eq!(labels(-2e-10..2e-10, 4.0), ["−2e−10", "−1e−10", "0", "1e−10", "2e−10"]);
+    }
+
+    #[test]
+    fn logarithms_have_ticks_in_units() {
+        let label = Label::log("clearance (m)");
+        let of = |range: Range<f64>| {
+            let axis = Axis::of(&label, range, 5.0);
+            axis.key_points(BoldPoints(0)).iter().map(|p| axis.format_ext(p)).collect::<Vec<_>>()
+        };
+        assert_eq!(of(-8.0..-3.0), ["10 nm", "100 nm", "1 µm", "10 µm", "100 µm", "1 mm"]);
+        assert_eq!(of(-4.1..-3.2), ["100 µm", "200 µm", "500 µm"]);
     }
 
     #[test]

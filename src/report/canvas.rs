@@ -1,5 +1,6 @@
 //! The shared look of all pictures, and the surface they are drawn on.
 
+use super::colour::{FAINT_INK, GRID, INK, style_sheet};
 use crate::measure::shown::shown;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -8,30 +9,9 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// Canvas units per pixel. The SVG backend writes whole numbers; on a canvas ten times as large they
 /// are tenths of a pixel.
 pub(super) const PX: i32 = 10;
-/// Width of every picture in canvas units.
-pub(super) const WIDTH: i32 = 900 * PX;
-
-pub(super) const INK: RGBColor = RGBColor(0x22, 0x26, 0x2b);
-pub(super) const FAINT_INK: RGBColor = RGBColor(0x5f, 0x66, 0x6e);
-pub(super) const GRID: RGBColor = RGBColor(0xe4, 0xe7, 0xea);
-pub(super) const FRAME: RGBColor = RGBColor(0x9a, 0xa1, 0xa9);
-/// Only reference curves have this colour: the style sheet in the picture dashes by it, because the
-/// backend knows no dashed lines.
-pub(super) const REFERENCE: RGBColor = RGBColor(0x22, 0x22, 0x22);
-
-/// The colours of Okabe and Ito, which colour-blind readers tell apart, without the yellow that
-/// vanishes on white.
-pub(super) const PALETTE: [RGBColor; 6] = [
-    RGBColor(0x00, 0x72, 0xb2),
-    RGBColor(0xd5, 0x5e, 0x00),
-    RGBColor(0x00, 0x9e, 0x73),
-    RGBColor(0xcc, 0x79, 0xa7),
-    RGBColor(0xe6, 0x9f, 0x00),
-    RGBColor(0x56, 0xb4, 0xe9),
-];
-
-/// Areas between curves: faint enough for the grid and every line to show on it.
-pub(super) const BAND: RGBColor = RGBColor(0xd8, 0xdd, 0xe3);
+/// Width of every picture in canvas units: at which letters can be read on a phone, two thirds as large there, and on a
+/// page.
+pub(super) const WIDTH: i32 = 560 * PX;
 
 pub(super) type Backend<'a> = SVGBackend<'a>;
 pub(super) type Area<'a> = DrawingArea<Backend<'a>, Shift>;
@@ -40,6 +20,15 @@ pub(super) type DrawError = DrawingAreaErrorKind<std::io::Error>;
 /// Draws a picture of the shared width and the given height (canvas units) and returns its SVG.
 pub(super) fn picture(
     height: i32,
+    draw: impl FnOnce(&Area) -> Result<(), DrawError>,
+) -> Result<String, DrawError> {
+    described(height, "", draw)
+}
+
+/// The same with what a page reads of it: JSON about its plots ([`super::readout`]).
+pub(super) fn described(
+    height: i32,
+    plots: &str,
     draw: impl FnOnce(&Area) -> Result<(), DrawError>,
 ) -> Result<String, DrawError> {
     let mut svg = String::new();
@@ -55,10 +44,9 @@ pub(super) fn picture(
     Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"picture\" \
          width=\"{width_px}\" height=\"{height_px}\" viewBox=\"0 0 {WIDTH} {height}\" \
-         stroke-linejoin=\"round\" stroke-linecap=\"round\">\n\
-         <style>.picture polyline[stroke=\"#222222\"]{{stroke-dasharray:60 40;stroke-linecap:butt}}\
-         </style>\n\
+         stroke-linejoin=\"round\" stroke-linecap=\"round\"{plots}>\n<style>{}</style>\n\
          <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"#FFFFFF\"/>\n{}",
+        style_sheet(),
         shown(content)
     ))
 }

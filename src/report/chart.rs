@@ -7,14 +7,15 @@ use plotters::style::text_anchor::HPos;
 
 use super::axis::{Axis, drawable, padded, range_of, with_room};
 use super::canvas::{
-    Area, BAND, DrawError, FAINT_INK, FRAME, GRID, INK, PALETTE, PX, REFERENCE, WIDTH, empty_frame,
-    font, heading, line, part, picture, shortened, write,
+    Area, DrawError, PX, WIDTH, described, empty_frame, font, heading, line, part, shortened, write,
 };
-use super::{Curve, Panel, ReportError, Style};
+use super::colour::{self, BAND, FAINT_INK, FRAME, GRID, INK, PALETTE, REFERENCE};
+use super::readout::{Plot, attribute};
+use super::{Curve, Label, Panel, ReportError, Style};
 
 /// Widths and heights around the plot, in canvas units.
 const EDGE: i32 = 8 * PX;
-const LEFT: i32 = 76 * PX;
+const LEFT: i32 = 88 * PX;
 const RIGHT: i32 = 20 * PX;
 const TITLE: i32 = 34 * PX;
 const LEGEND_ROW: i32 = 18 * PX;
@@ -39,25 +40,36 @@ const PANEL_TICKS: [f64; 2] = [90.0 * PX as f64, 36.0 * PX as f64];
 pub fn panels_svg(panels: &[Panel]) -> Result<String, ReportError> {
     let height = |panel: &Panel| header(&panel.curves) + PANEL_PLOT_HEIGHT + BELOW + GAP;
     let total = panels.iter().map(height).sum::<i32>().max(TITLE);
-    let svg = picture(total, |root| {
-        let mut top = 0;
-        for panel in panels {
-            let chart = Chart {
-                title: &panel.title,
-                labels: [&panel.x_label, &panel.y_label],
-                curves: &panel.curves,
-                plot_height: PANEL_PLOT_HEIGHT,
-                ticks: PANEL_TICKS,
-                ranges: ranges(&panel.curves)
-                    .map(|range| range.map(with_room))
-                    .map(|[x, y]| [padded(x, side_margin(&panel.curves)), padded(y, 0.06)]),
-            };
-            chart.draw(&part(root, (0, top), (WIDTH, height(panel))))?;
+    let mut top = 0;
+    let charts: Vec<(i32, Chart)> = panels
+        .iter()
+        .map(|panel| {
+            let place = top;
             top += height(panel);
+            (place, chart_of(panel))
+        })
+        .collect();
+    let plots = attribute(charts.iter().filter_map(|(top, chart)| chart.readout(*top)));
+    let svg = described(total, &plots, |root| {
+        for ((top, chart), panel) in charts.iter().zip(panels) {
+            chart.draw(&part(root, (0, *top), (WIDTH, height(panel))))?;
         }
         Ok(())
     })?;
     Ok(svg)
+}
+
+fn chart_of(panel: &Panel) -> Chart<'_> {
+    Chart {
+        title: &panel.title,
+        labels: [&panel.x_label, &panel.y_label],
+        curves: &panel.curves,
+        plot_height: PANEL_PLOT_HEIGHT,
+        ticks: PANEL_TICKS,
+        ranges: ranges(&panel.curves)
+            .map(|range| range.map(with_room))
+            .map(|[x, y]| [padded(x, side_margin(&panel.curves)), padded(y, 0.06)]),
+    }
 }
 
 /// Dots at the ends of the axis must not be cut in half; lines may touch its ends.
@@ -78,6 +90,12 @@ fn drawable_points(curve: &Curve) -> impl Iterator<Item = (f64, f64)> {
     points.filter(|p| drawable(p.0) && drawable(p.1))
 }
 
+/// The stretches of a curve between points that cannot be drawn, which break a line.
+fn unbroken(curve: &Curve) -> impl Iterator<Item = &[(f64, f64)]> {
+    let parts = curve.points.split(|p| !(drawable(p.0) && drawable(p.1)));
+    parts.filter(|part| !part.is_empty())
+}
+
 /// Height of title and legend.
 pub(super) fn header(curves: &[Curve]) -> i32 {
     let rows = legend(curves).last().map_or(0, |entry| entry.1 + 1);
@@ -92,7 +110,7 @@ fn legend(curves: &[Curve]) -> Vec<(i32, i32)> {
     let (mut x, mut row) = (LEFT, 0);
     let place = |curve: &Curve| {
         // There is no font to measure with: 6.6 px is a little more than most letters of 12 px need.
-        let letters = shortened(&curve.name, 60).chars().count() as i32;
+        let letters = shortened(&curve.name, 56).chars().count() as i32;
         let width = 52 * PX + letters * 66 * PX / 10;
         if x > LEFT && x + width > WIDTH {
             (x, row) = (LEFT, row + 1);
@@ -106,11 +124,16 @@ fn legend(curves: &[Curve]) -> Vec<(i32, i32)> {
 
 /// The colour and width of each curve.
 fn line_styles(curves: &[Curve]) -> Vec<ShapeStyle> {
-    let mut colors = PALETTE.iter().cycle();
-    let style = |curve: &Curve| match curve.style {
-        Style::Solid | Style::Dots => line(colors.next().unwrap_or(&INK), 12),
-        Style::Band => line(&BAND, 12),
-        Style::Reference => line(&REFERENCE, 10),
+    // What has no colour of its own takes the next that nothing else here has.
+    let taken: Vec<_> = curves.iter().filter_map(|curve| colour::of(&curve.name)).collect();
+    let mut free = PALETTE.iter().filter(|free| !taken.contains(free)).cycle();
+    let style = |curve: &Curve| match (curve.style, colour::of(&curve.name)) {
+        (Style::Band, _) => line(&BAND, 12),
+        (Style::Solid | Style::Dots, Some(own)) => line(&own, 12),
+        (Style::Solid | Style::Dots, None) => line(free.next().unwrap_or(&INK), 12),
+        // A reference in the colour of something that is not dashed would be taken for it.
+        (Style::Reference, Some(own)) if !PALETTE.contains(&own) && own != INK => line(&own, 10),
+        (Style::Reference, _) => line(&REFERENCE, 10),
     };
     curves.iter().map(style).collect()
 }
@@ -119,7 +142,7 @@ fn line_styles(curves: &[Curve]) -> Vec<ShapeStyle> {
 pub(super) struct Chart<'a> {
     pub(super) title: &'a str,
     /// Quantity and unit of x and y.
-    pub(super) labels: [&'a str; 2],
+    pub(super) labels: [&'a Label; 2],
     pub(super) curves: &'a [Curve],
     /// Height of the plot without heading and labels, in canvas units.
     pub(super) plot_height: i32,
@@ -133,8 +156,8 @@ impl Chart<'_> {
     /// Draws heading, legend and plot from the top of the area.
     pub(super) fn draw(&self, area: &Area) -> Result<(), DrawError> {
         let styles = line_styles(self.curves);
-        let title = shortened(self.title, 110);
-        write(area, &title, &heading(14), HPos::Left, (LEFT, TITLE / 2))?;
+        let title = shortened(self.title, 60);
+        write(area, &title, &heading(13), HPos::Left, (LEFT, TITLE / 2))?;
         for ((curve, style), (x, row)) in self.curves.iter().zip(&styles).zip(legend(self.curves)) {
             let y = TITLE + row * LEGEND_ROW + LEGEND_ROW / 3;
             if curve.style == Style::Dots {
@@ -146,7 +169,7 @@ impl Chart<'_> {
                 let swatch = vec![(x, y), (x + 26 * PX, y)];
                 area.draw(&PathElement::new(swatch, style.stroke_width(20)))?;
             }
-            let name = shortened(&curve.name, 60);
+            let name = shortened(&curve.name, 56);
             write(area, &name, &font(12, INK), HPos::Left, (x + 32 * PX, y))?;
         }
         let top = header(self.curves);
@@ -163,14 +186,32 @@ impl Chart<'_> {
         }
     }
 
+    /// What a page reads of the chart, `top` canvas units below the top of its picture; nothing of an empty one.
+    pub(super) fn readout(&self, top: i32) -> Option<Plot<'_>> {
+        let [x, y] = self.ranges.clone()?;
+        let styles = line_styles(self.curves);
+        let named = self.curves.iter().zip(styles).filter(|(curve, _)| curve.style != Style::Band);
+        let hex = |style: ShapeStyle| {
+            let (r, g, b) = style.color.rgb();
+            colour::hex(RGBColor(r, g, b))
+        };
+        Some(Plot {
+            area: [LEFT, top + header(self.curves), PLOT_WIDTH, self.plot_height],
+            ranges: [[x.start, x.end], [y.start, y.end]],
+            labels: self.labels,
+            curves: named.map(|(curve, style)| (curve.name.as_str(), hex(style))).collect(),
+        })
+    }
+
     fn draw_plot(
         &self,
         area: &Area,
         [x, y]: &[Range<f64>; 2],
         styles: &[ShapeStyle],
     ) -> Result<(), DrawError> {
-        let x_axis = Axis::new(x.clone(), f64::from(PLOT_WIDTH) / self.ticks[0]);
-        let y_axis = Axis::new(y.clone(), f64::from(self.plot_height) / self.ticks[1]);
+        let [x_label, y_label] = self.labels;
+        let x_axis = Axis::of(x_label, x.clone(), f64::from(PLOT_WIDTH) / self.ticks[0]);
+        let y_axis = Axis::of(y_label, y.clone(), f64::from(self.plot_height) / self.ticks[1]);
         let mut chart = ChartBuilder::on(area)
             .x_label_area_size(BELOW)
             .y_label_area_size(LEFT - EDGE)
@@ -183,13 +224,14 @@ impl Chart<'_> {
             .set_all_tick_mark_size(4 * PX)
             .label_style(font(12, FAINT_INK))
             .axis_desc_style(font(12, INK))
-            .x_desc(shortened(self.labels[0], 110))
-            .y_desc(shortened(self.labels[1], 40))
+            .x_desc(shortened(x_label.beside(), 70))
+            .y_desc(shortened(y_label.beside(), 30))
             .draw()?;
         let zero_lines =
             [(y, vec![(x.start, 0.0), (x.end, 0.0)]), (x, vec![(0.0, y.start), (0.0, y.end)])];
         for (range, zero_line) in zero_lines {
-            if range.start < 0.0 && range.end > 0.0 {
+            let logarithmic = if range == y { y_label } else { x_label }.logarithmic;
+            if range.start < 0.0 && range.end > 0.0 && !logarithmic {
                 chart.draw_series([PathElement::new(zero_line, line(&FRAME, 8))])?;
             }
         }
@@ -199,20 +241,27 @@ impl Chart<'_> {
                 if curve.style != wanted {
                     continue;
                 }
-                let points: Vec<_> = drawable_points(curve).collect();
-                if wanted == Style::Band {
-                    chart.draw_series([Polygon::new(points, style.color.filled())])?;
-                } else if wanted == Style::Dots {
-                    let dot = style.color.mix(0.6).filled();
-                    chart.draw_series(points.into_iter().map(|p| Circle::new(p, DOT, dot)))?;
-                } else if let Some(first) = points.first()
-                    && points.iter().all(|p| p == first)
-                {
-                    // A line of no length would be invisible.
-                    let dot = style.color.filled();
-                    chart.draw_series([Circle::new(*first, 3 * PX, dot)])?;
-                } else {
-                    chart.draw_series(LineSeries::new(points, *style))?;
+                match wanted {
+                    Style::Band => {
+                        let points: Vec<_> = drawable_points(curve).collect();
+                        chart.draw_series([Polygon::new(points, style.color.filled())])?;
+                    }
+                    Style::Dots => {
+                        let dot = style.color.mix(0.6).filled();
+                        let points = drawable_points(curve);
+                        chart.draw_series(points.map(|p| Circle::new(p, DOT, dot)))?;
+                    }
+                    Style::Solid | Style::Reference => {
+                        for part in unbroken(curve) {
+                            if part.iter().all(|p| *p == part[0]) {
+                                // A line of no length would be invisible.
+                                let dot = style.color.filled();
+                                chart.draw_series([Circle::new(part[0], 3 * PX, dot)])?;
+                            } else {
+                                chart.draw_series(LineSeries::new(part.iter().copied(), *style))?;
+                            }
+                        }
+                    }
                 }
             }
         }
@@ -232,8 +281,8 @@ mod tests {
     fn panel(curves: Vec<Curve>) -> Panel {
         Panel {
             title: "Force".to_owned(),
-            x_label: "time (s)".to_owned(),
-            y_label: "force (N)".to_owned(),
+            x_label: "time (s)".into(),
+            y_label: "force (N)".into(),
             curves,
         }
     }
@@ -277,7 +326,8 @@ mod tests {
     fn only_more_than_one_curve_needs_a_legend() {
         let one = curve("alone", vec![(0.0, 0.0), (1.0, 1.0)]);
         let svg = panels_svg(&[panel(vec![one.clone()])]).unwrap();
-        assert!(!svg.contains("alone"));
+        // Behind the first tag, which tells pages the names of all.
+        assert!(!svg.split_once('>').unwrap().1.contains("alone"));
         let many = (0..12).map(|i| curve(&format!("<curve {i}>"), one.points.clone()));
         let svg = panels_svg(&[panel(many.collect())]).unwrap();
         assert!(svg.contains("&lt;curve 11&gt;"));

@@ -2,22 +2,26 @@
 //!
 //! Nothing here knows what a mechanism is: the caller names the curves, writes units into the labels
 //! and chooses what to show. All pictures are SVG texts with one shared look; values that are not
-//! finite numbers are left out of them, and data that leave nothing to draw give a picture that says
+//! finite numbers are left out of them and break lines, and data that leave nothing to draw give a picture that says
 //! "no data".
 
 mod animation;
 mod axis;
 mod canvas;
 mod chart;
+mod colour;
+mod label;
 mod orbits;
 mod page;
 mod path;
 mod player;
 mod quantity;
+mod readout;
 mod scene;
 
 pub use animation::animation_svg;
 pub use chart::panels_svg;
+pub use label::Label;
 pub use orbits::orbits_svg;
 pub use page::{Part, Table, document, page};
 pub use path::path_svg;
@@ -55,9 +59,9 @@ pub struct Panel {
     /// Heading above the chart.
     pub title: String,
     /// Quantity and unit of the horizontal axis, e.g. `time (s)`.
-    pub x_label: String,
+    pub x_label: Label,
     /// Quantity and unit of the vertical axis, e.g. `force (N)`.
-    pub y_label: String,
+    pub y_label: Label,
     /// The lines, in the order of the legend.
     pub curves: Vec<Curve>,
 }

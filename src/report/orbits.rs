@@ -5,9 +5,9 @@ use plotters::style::text_anchor::HPos;
 
 use super::axis::drawable;
 use super::canvas::{
-    Area, DrawError, FAINT_INK, FRAME, GRID, PALETTE, PX, WIDTH, empty_frame, font, heading, line,
-    part, picture, shortened, write,
+    Area, DrawError, PX, WIDTH, empty_frame, font, heading, line, part, picture, shortened, write,
 };
+use super::colour::{FAINT_INK, FRAME, GRID, PALETTE};
 use super::quantity::length;
 use super::{Orbit, ReportError};
 
@@ -42,7 +42,7 @@ pub fn orbits_svg(orbits: &[Orbit]) -> Result<String, ReportError> {
 }
 
 fn draw_cell(area: &Area, orbit: &Orbit) -> Result<(), DrawError> {
-    let joint = shortened(&orbit.joint, 34);
+    let joint = shortened(&orbit.joint, 20);
     write(area, &joint, &heading(14), HPos::Left, (MARGIN, TITLE / 2))?;
     let square = part(area, (MARGIN, TITLE), (SQUARE, SQUARE));
     if !(drawable(orbit.clearance_m) && orbit.clearance_m > 0.0) {
@@ -65,7 +65,7 @@ fn draw_cell(area: &Area, orbit: &Orbit) -> Result<(), DrawError> {
     square.draw(&PathElement::new(points, line(&PALETTE[0], 9)))?;
     square.draw(&Circle::new(last, 3 * PX, PALETTE[1].filled()))?;
 
-    let caption = format!("circle: radial clearance {}", length(orbit.clearance_m));
+    let caption = format!("radial clearance {}", length(orbit.clearance_m));
     let below = (CELL_WIDTH / 2, TITLE + SQUARE + CAPTION / 2);
     write(area, &caption, &font(12, FAINT_INK), HPos::Center, below)
 }

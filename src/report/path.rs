@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use super::axis::{constant, least_width, padded, with_room};
-use super::canvas::{PX, picture};
+use super::canvas::{PX, described};
 use super::chart::{BELOW, Chart, GAP, PANEL_PLOT_HEIGHT, PLOT_WIDTH, header, ranges};
-use super::{Curve, ReportError};
+use super::readout::attribute;
+use super::{Curve, Label, ReportError};
 
 /// Smallest and largest height of the plot, in canvas units.
-const PLOT_HEIGHT: Range<f64> = 200.0 * PX as f64..620.0 * PX as f64;
+const PLOT_HEIGHT: Range<f64> = 160.0 * PX as f64..440.0 * PX as f64;
 /// Smallest distance between ticks, in canvas units. It is the same on both axes, and so are the ticks.
 const TICKS: f64 = 70.0 * PX as f64;
 
@@ -29,10 +30,11 @@ pub fn path_svg(title: &str, curves: &[Curve]) -> Result<String, ReportError> {
         }
         None => (PANEL_PLOT_HEIGHT, None),
     };
-    let chart =
-        Chart { title, labels: ["x (m)", "y (m)"], curves, plot_height, ticks: [TICKS; 2], ranges };
+    let labels = [&Label::from("x (m)"), &Label::from("y (m)")];
+    let chart = Chart { title, labels, curves, plot_height, ticks: [TICKS; 2], ranges };
+    let plots = attribute(chart.readout(0));
     let height = header(curves) + plot_height + BELOW + GAP;
-    Ok(picture(height, |root| chart.draw(root))?)
+    Ok(described(height, &plots, |root| chart.draw(root))?)
 }
 
 /// Widens the range that has room to spare, so that one metre is as long on both axes.
@@ -64,7 +66,7 @@ mod tests {
     /// Width and height of the path as it is drawn, canvas units.
     fn drawn_size(points: Vec<(f64, f64)>) -> (i32, i32) {
         let svg = svg_of(points);
-        let line = svg.lines().find(|l| l.contains("#0072B2")).unwrap();
+        let line = svg.lines().find(|l| l.contains("#0072B2") && l.contains(" points=")).unwrap();
         let points = line.split("points=\"").nth(1).unwrap();
         let points = points.split('"').next().unwrap().split_whitespace();
         let (x, y): (Vec<i32>, Vec<i32>) = points
@@ -75,6 +77,11 @@ mod tests {
         (size(&x), size(&y))
     }
 
+    /// Height of the highest plot, canvas units.
+    fn most_high() -> i32 {
+        PLOT_HEIGHT.end as i32
+    }
+
     #[test]
     fn a_circle_looks_round() {
         for centre in [0.0, 3.0] {
@@ -82,7 +89,7 @@ mod tests {
                 .map(|deg| f64::from(deg).to_radians())
                 .map(|a| (centre + 0.05 * a.cos(), 0.05 * a.sin()));
             let (x, y) = drawn_size(circle.collect());
-            assert!(x > 4000 && (x - y).abs() <= 10, "{x} by {y}");
+            assert!(x > 65 * most_high() / 100 && (x - y).abs() <= 10, "{x} by {y}");
         }
     }
 
@@ -90,9 +97,9 @@ mod tests {
     fn a_straight_path_fills_the_picture() {
         for offset in [0.0, 0.3, -7.0] {
             let (x, y) = drawn_size(vec![(0.1, offset), (0.3, offset)]);
-            assert!(x > 7000 && y == 0, "{x} by {y}");
+            assert!(x > 87 * PLOT_WIDTH / 100 && y == 0, "{x} by {y}");
             let (x, y) = drawn_size(vec![(offset, 0.1), (offset, 0.3)]);
-            assert!(x == 0 && y > 5000, "{x} by {y}");
+            assert!(x == 0 && y > 80 * most_high() / 100, "{x} by {y}");
         }
     }
 

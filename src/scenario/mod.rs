@@ -8,16 +8,19 @@
 //!
 //! SI units throughout: m, kg, s, N, rad.
 
+mod annotate;
 mod connected;
 mod document;
 mod problem;
 mod read;
 mod reader;
+mod schema;
 mod sections;
 #[cfg(test)]
 mod tests;
 mod validate;
 mod validate_described;
+mod validate_guides;
 mod validate_laws;
 mod validate_names;
 mod validate_shape;
@@ -27,7 +30,9 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
+pub use annotate::annotated;
 pub use problem::{Location, Problem, Problems};
+pub use schema::schema;
 pub use sections::*;
 
 use crate::effects::Setting;
@@ -73,6 +78,26 @@ impl Source {
             location: Location::File { name: name.clone(), line: None, column: None },
         })?;
         Ok(Source { text, name, folder: path.parent().unwrap_or(Path::new("")).to_owned() })
+    }
+
+    /// A text in memory; messages call it `name`, and relative files in it are sought in `folder`.
+    pub fn of(text: &str, name: &str, folder: &Path) -> Source {
+        Source { text: text.to_owned(), name: name.to_owned(), folder: folder.to_owned() }
+    }
+
+    /// The text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What messages call it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where relative files in it are sought.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// The scenario, with `PATH=VALUE` overrides applied in their order.
@@ -257,6 +282,16 @@ impl Scenario {
     /// ν and the radii.
     pub fn to_toml(&self) -> String {
         write::text(self)
+    }
+
+    /// The same for a folder that holds copies of the files that the scenario reads: its text, and the files with the
+    /// names of their copies. The folder can be carried anywhere.
+    pub fn to_toml_beside_files(&self) -> (String, Vec<(PathBuf, String)>) {
+        let files = self.files();
+        let names: Vec<String> = (1..=files.len()).map(|i| format!("table-{i}.csv")).collect();
+        let text = write::text_with_files(self, &names);
+        let sources = files.iter().map(|file| self.resolve(file));
+        (text, sources.zip(names).collect())
     }
 
     /// SHA-256 of [`Scenario::to_toml`] in hexadecimal: the same for files that mean the same.

@@ -167,6 +167,9 @@ impl Checks<'_> {
             self.positive("contact.stiffness", stiffness, "N/m^1.5");
         }
         self.positive("contact.friction_velocity", contact.friction_velocity, "m/s");
+        if let Some(coefficient) = contact.wear_coefficient {
+            self.not_negative("contact.wear_coefficient", coefficient, "1/Pa");
+        }
     }
 
     fn native(&mut self) {

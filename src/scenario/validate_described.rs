@@ -3,8 +3,10 @@
 
 use super::connected::body_of;
 use super::{
-    Described, GROUND, Joint, JointDrive, JointPath, Motion, Problem, Quantity, Scenario, Target,
+    Described, GROUND, Joint, JointDrive, JointPath, Motion, Problem, Quantity, Revolute, Scenario,
+    Target,
 };
+use crate::contact::FEWEST_SAMPLES;
 use std::collections::BTreeSet;
 
 /// Everything wrong with a described machine.
@@ -88,6 +90,7 @@ impl Checks<'_> {
                     ("d_max", joint.d_max, f64::MIN_POSITIVE),
                     ("restitution", joint.restitution, f64::NEG_INFINITY),
                     ("damping", joint.damping, f64::NEG_INFINITY),
+                    ("wear_coefficient", joint.wear_coefficient, 0.0),
                 ];
                 let without = if joint.law == Some(super::Law::Ideal) {
                     Some("take one of both out")
@@ -117,13 +120,44 @@ impl Checks<'_> {
                         self.complain(&format!("{path}.{key}"), format!("is {value}"), help);
                     }
                 }
+                if let Some(profile) = &joint.profile {
+                    self.profile(&format!("{path}.profile"), joint, profile, without);
+                }
             }
             Joint::Prismatic(joint) => {
                 if let Some([low, high]) = joint.range {
                     self.increasing(&format!("{path}.range"), low, high);
                 }
+                self.guides(path, joint);
             }
             Joint::Fixed(_) => {}
+        }
+    }
+
+    /// The shape of a ring; `without` says what to do where the joint has no contact law.
+    fn profile(&mut self, path: &str, joint: &Revolute, profile: &[f64], without: Option<&str>) {
+        let clearance = joint.clearance.or_else(|| {
+            let revolute = |other: &&Joint| matches!(other, Joint::Revolute(_));
+            let mut revolutes = self.described.joints.iter().filter(revolute);
+            let index = revolutes.position(|other| other.name() == joint.name)?;
+            Some(self.scenario.joints.clearance.as_ref()?.at(index))
+        });
+        let narrowing = profile.iter().fold(0.0f64, |most, wider| most.max(-wider));
+        let law = joint.law.unwrap_or(self.scenario.contact.law);
+        if let Some(help) = without {
+            let message = "belongs to a contact law, and this joint is ideal".to_owned();
+            self.complain(path, message, help);
+        } else if law == super::Law::Native {
+            let message = "is not possible under the law \"native\"".to_owned();
+            let help =
+                "the physics engine's own contacts are made on round rings: take another law";
+            self.complain(path, message, help);
+        } else if profile.len() < FEWEST_SAMPLES {
+            let help = format!("expected {FEWEST_SAMPLES} or more, at equal angles round the ring");
+            self.complain(path, format!("has {} values", profile.len()), &help);
+        } else if let Some(clearance) = clearance.filter(|clearance| narrowing >= *clearance) {
+            let help = format!("expected narrower by less than the clearance, {clearance} m");
+            self.complain(path, format!("narrows the ring by {narrowing} m"), &help);
         }
     }
 

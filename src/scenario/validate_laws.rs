@@ -11,7 +11,8 @@ pub(super) fn problems(scenario: &Scenario) -> Vec<Problem> {
     let mut found = Vec::new();
     for key in keys() {
         let path = format!("contact.{key}");
-        if scenario.origins.has(&path) && !used.iter().any(|law| law.takes(key)) {
+        let asked = contact.asks_for(key) || used.iter().any(|law| law.takes(key));
+        if scenario.origins.has(&path) && !asked {
             found.push(stranger(scenario, &path, key, contact.law));
         }
     }
@@ -26,9 +27,10 @@ pub(super) fn problems(scenario: &Scenario) -> Vec<Problem> {
         }),
     );
     found.extend(friction(scenario));
-    for (i, joint) in revolutes(scenario) {
-        let law = joint.law.unwrap_or(contact.law);
-        for (key, value) in written(joint) {
+    found.extend(film(scenario));
+    for (i, law, written) in joints(scenario) {
+        let law = law.unwrap_or(contact.law);
+        for (key, value) in written {
             let Some(value) = value else { continue };
             let path = format!("joint.{i}.{key}");
             if law.takes(key) {
@@ -49,12 +51,13 @@ fn friction(scenario: &Scenario) -> Vec<Problem> {
         ("static_ratio", contact.static_ratio, Range::FromOne, f64::INFINITY),
         ("stribeck_velocity", contact.stribeck_velocity, Range::Positive, f64::INFINITY),
         ("rest_velocity", contact.rest_velocity, Range::NotNegative, fast),
+        ("presliding", contact.presliding, Range::Positive, f64::INFINITY),
     ];
     let wrong = |(key, value, range, below): (&str, Option<f64>, Range, f64)| {
         let (path, value) = (format!("contact.{key}"), value?);
         if !contact.friction_law.takes(key) {
             let help = "take it out, or set contact.friction_law: static_ratio and stribeck_velocity go with \
-                        bengisu-akay and stribeck, rest_velocity with ambrosio";
+                        bengisu-akay, stribeck and lugre, rest_velocity with ambrosio, presliding with lugre";
             Some(scenario.problem(&path, "means nothing to the friction law", help))
         } else if !range.holds(value) {
             let help = format!("expected {}", range.in_words());
@@ -69,30 +72,87 @@ fn friction(scenario: &Scenario) -> Vec<Problem> {
     numbers.into_iter().filter_map(wrong).collect()
 }
 
+/// Keys of oil films where there is none, and what a film lacks.
+fn film(scenario: &Scenario) -> Vec<Problem> {
+    let contact = &scenario.contact;
+    let own = |(i, joint): (usize, &Revolute)| {
+        let path = format!("joint.{i}.film");
+        joint.film.filter(|film| !film.is_none()).map(|_| (path, joint.law.unwrap_or(contact.law)))
+    };
+    let of_all = (!contact.film.is_none()).then(|| ("contact.film".to_owned(), contact.law));
+    let films: Vec<(String, Law)> =
+        of_all.into_iter().chain(revolutes(scenario).filter_map(own)).collect();
+    let mut found = Vec::new();
+    for (path, law) in &films {
+        if *law == Law::Native {
+            let message = "is not possible under the law \"native\"";
+            let help = "the physics engine's own contacts know no oil: take another law";
+            found.push(scenario.problem(path, message, help));
+        } else if contact.viscosity.is_none() {
+            let message = "needs the oil's viscosity";
+            let help =
+                "write contact.viscosity = … (Pa s): oil at working temperature has 0.01 to 0.1";
+            found.push(scenario.problem(path, message, help));
+        }
+    }
+    let most = contact.film_eccentricity_max;
+    for (key, value, below) in
+        [("viscosity", contact.viscosity, f64::INFINITY), ("film_eccentricity_max", most, 1.0)]
+    {
+        let (path, Some(value)) = (format!("contact.{key}"), value) else { continue };
+        if films.is_empty() {
+            let help = "take it out, or write contact.film = \"squeeze\" or \"short-bearing\"";
+            found.push(scenario.problem(&path, "means nothing without an oil film", help));
+        } else if value <= 0.0 || value >= below {
+            let help =
+                if below == 1.0 { "expected above 0 and below 1" } else { "expected above 0 Pa s" };
+            found.push(scenario.problem(&path, format!("is {value}"), help));
+        }
+    }
+    found
+}
+
 /// The laws that a scenario names: that of `[contact]` and those of joints.
 pub(super) fn used(scenario: &Scenario) -> Vec<Law> {
-    revolutes(scenario).filter_map(|(_, joint)| joint.law).chain([scenario.contact.law]).collect()
+    joints(scenario).filter_map(|(_, law, _)| law).chain([scenario.contact.law]).collect()
 }
 
 /// The revolute joints of a described machine, with their places in the list.
 fn revolutes(scenario: &Scenario) -> impl Iterator<Item = (usize, &Revolute)> {
-    let joints = scenario.mechanism.described().map_or(&[][..], |described| &described.joints);
-    joints.iter().enumerate().filter_map(|(i, joint)| match joint {
+    described(scenario).iter().enumerate().filter_map(|(i, joint)| match joint {
         Joint::Revolute(joint) => Some((i, joint)),
         Joint::Prismatic(_) | Joint::Fixed(_) => None,
     })
 }
 
-/// The keys of a joint that belong to its law and are checked here: what is said of the others stands with
-/// the joint's other numbers.
-fn written(joint: &Revolute) -> [(&'static str, Option<f64>); 5] {
-    [
-        ("restitution", joint.restitution),
-        ("damping", joint.damping),
-        ("stiffness", joint.stiffness),
-        ("c_max", joint.c_max),
-        ("d_max", joint.d_max),
-    ]
+fn described(scenario: &Scenario) -> &[Joint] {
+    scenario.mechanism.described().map_or(&[][..], |described| &described.joints)
+}
+
+/// Keys with their values.
+type Written = [(&'static str, Option<f64>); 5];
+
+/// The joints of a described machine that may have a law, with their places in the list, the law of their own, and the
+/// keys that belong to it and are checked here: what is said of the others stands with the joint's other numbers.
+fn joints(scenario: &Scenario) -> impl Iterator<Item = (usize, Option<Law>, Written)> {
+    let keys = |restitution, damping, stiffness, c_max, d_max| {
+        [
+            ("restitution", restitution),
+            ("damping", damping),
+            ("stiffness", stiffness),
+            ("c_max", c_max),
+            ("d_max", d_max),
+        ]
+    };
+    described(scenario).iter().enumerate().filter_map(move |(i, joint)| match joint {
+        Joint::Revolute(j) => {
+            Some((i, j.law, keys(j.restitution, j.damping, j.stiffness, j.c_max, j.d_max)))
+        }
+        Joint::Prismatic(j) => {
+            Some((i, j.law, keys(j.restitution, j.damping, j.stiffness, None, None)))
+        }
+        Joint::Fixed(_) => None,
+    })
 }
 
 /// The keys of all laws.

@@ -70,7 +70,9 @@ enum LawKeys<'a> {
 fn law_keys(scenario: &Scenario) -> LawKeys<'_> {
     let contact = &scenario.contact;
     let laws = used(scenario);
-    let keeps = |key: &str| !is_law_key(key) || laws.iter().any(|law| law.takes(key));
+    let keeps = |key: &str| {
+        !is_law_key(key) || contact.asks_for(key) || laws.iter().any(|law| law.takes(key))
+    };
     match Table::try_from(contact) {
         Ok(table) if !table.keys().all(|key| keeps(key)) => {
             LawKeys::Some(table.into_iter().filter(|(key, _)| keeps(key)).collect())
@@ -85,7 +87,20 @@ fn is_empty<T>(list: &&[T]) -> bool {
 
 /// The whole text.
 pub(super) fn text(scenario: &Scenario) -> String {
-    let full = filled(scenario);
+    text_of(&filled(scenario))
+}
+
+/// The same with other names of the files that it reads.
+pub(super) fn text_with_files(scenario: &Scenario, names: &[String]) -> String {
+    let mut full = filled(scenario);
+    for (file, name) in full.files_mut().into_iter().zip(names) {
+        file.clone_from(name);
+    }
+    text_of(&full)
+}
+
+/// The text of a scenario with every default filled in.
+fn text_of(full: &Scenario) -> String {
     let none = Described::default();
     let described = full.mechanism.described();
     let parts = described.unwrap_or(&none);
@@ -103,7 +118,7 @@ pub(super) fn text(scenario: &Scenario) -> String {
         body: &parts.bodies,
         joint: &parts.joints,
         joints: &full.joints,
-        contact: law_keys(&full),
+        contact: law_keys(full),
         native: &full.native,
         drive,
         spring: &parts.springs,
@@ -111,7 +126,7 @@ pub(super) fn text(scenario: &Scenario) -> String {
         sensors: full.sensors.as_ref().filter(|_| full.mechanism.uses("sensors")),
         columns: full.columns.as_ref().filter(|_| full.mechanism.uses("columns")),
         sensor: &parts.sensors,
-        motion: motion(&full),
+        motion: motion(full),
         output: &parts.outputs,
         simulation: &full.simulation,
         effect: &full.effects,

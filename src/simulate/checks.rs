@@ -1,6 +1,6 @@
 //! What can be said against a machine before it is simulated.
 
-use super::{plausible, three_rpr};
+use super::{oil, plausible, three_rpr};
 use crate::contact::StiffnessForm;
 use crate::engine::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism};
@@ -89,6 +89,7 @@ pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {
     found.extend(rows(scenario));
     found.extend(conformal(scenario, machine));
     found.extend(too_deep(scenario, machine));
+    found.extend(oil::findings(scenario, machine));
     found.extend(table_end(scenario, machine));
     found
 }

@@ -16,12 +16,22 @@ pub fn measured(
     machine: &mut Machine,
     observe: &mut dyn FnMut(&Mechanism, &Instant, &IdealInstant),
 ) -> Summary {
+    measured_until(scenario, machine, &AtomicBool::new(false), observe)
+}
+
+/// [`measured`] that ends between two steps once `stop` is true; its summary then says `interrupted`.
+pub fn measured_until(
+    scenario: &Scenario,
+    machine: &mut Machine,
+    stop: &AtomicBool,
+    observe: &mut dyn FnMut(&Mechanism, &Instant, &IdealInstant),
+) -> Summary {
     let started = Clock::now();
     let mechanism = &machine.mechanism;
     let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
     let ideal = &mut machine.ideal;
-    let (control, schedule, never) = (machine.control, machine.schedule, AtomicBool::new(false));
-    let ended = engine::run_balanced(mechanism, control, schedule, &never, &mut |instant| {
+    let (control, schedule) = (machine.control, machine.schedule);
+    let ended = engine::run_balanced(mechanism, control, schedule, stop, &mut |instant| {
         let ideal = ideal.at(instant.t);
         recorder.row(mechanism, instant, &ideal);
         observe(mechanism, instant, &ideal);
@@ -29,8 +39,11 @@ pub fn measured(
     });
     let (work, halted) = match ended {
         Ok(work) => (work, None),
-        Err(halt) => (*halt.work, Some(halt.to_string())),
+        Err(halt) => {
+            let reason = halt.to_string();
+            (*halt.work, Some(reason))
+        }
     };
     let wall = started.elapsed().as_secs_f64();
-    recorder.finish(scenario, machine, work, wall, halted, Vec::new())
+    recorder.finish(scenario, machine, &work, wall, halted, Vec::new())
 }

@@ -7,6 +7,7 @@
 
 mod checks;
 mod measured;
+mod oil;
 mod plausible;
 mod provenance;
 mod summary;
@@ -19,8 +20,8 @@ pub use crate::model::{
     radial_clearance,
 };
 pub use checks::{Finding, Severity, findings};
-pub use measured::measured;
+pub use measured::{measured, measured_until};
 pub use provenance::Provenance;
 pub use summary::{JointSummary, Recorder, Summary};
-pub use timeseries::TimeSeries;
+pub use timeseries::{Columns, TimeSeries};
 pub use watched::{Balance, OwnError, Watched};

@@ -3,7 +3,7 @@
 use super::provenance::Provenance;
 use super::watched::Watched;
 use crate::engine::{Instant, Work};
-use crate::mechanism::{JointIndex, Mechanism};
+use crate::mechanism::{Bearing, JointIndex, Mechanism};
 use crate::model::{IdealInstant, Machine, radial_clearance};
 use crate::scenario::{Law, Scenario};
 use serde::Serialize;
@@ -136,6 +136,10 @@ pub struct JointSummary {
     pub impacts: u64,
     /// Largest |e| of a row in m.
     pub max_eccentricity_m: f64,
+    /// Normal force times sliding distance in J, which wear is in proportion to (Archard); none of an ideal joint, of
+    /// native contacts, and of a run that broke down.
+    #[serde(rename = "wear_J", skip_serializing_if = "Option::is_none")]
+    pub wear: Option<f64>,
 }
 
 /// Gathers a [`Summary`].
@@ -155,6 +159,8 @@ pub struct Recorder {
     ideal_peaks: [f64; 3],
     max_path_error: f64,
     joints: Vec<JointRecord>,
+    /// What journals had rubbed at the first row counted, J.
+    rubbed: Vec<Vec<f64>>,
 }
 
 #[derive(Clone, Debug)]
@@ -193,6 +199,7 @@ impl Recorder {
             ideal_peaks: [f64::NAN; 3],
             max_path_error: f64::NAN,
             joints: joints.collect(),
+            rubbed: Vec::new(),
         }
     }
 
@@ -203,6 +210,9 @@ impl Recorder {
         }
         let now = instant.evaluation;
         let first = self.span.is_none();
+        if first {
+            self.rubbed = instant.rubbed.map(<[_]>::to_vec).unwrap_or_default();
+        }
         let start = self.span.map_or(instant.t, |[start, _]| start);
         self.span = Some([start, instant.t]);
 
@@ -259,21 +269,42 @@ impl Recorder {
         }
     }
 
+    /// Normal force times sliding distance of each joint in J, in the directions of
+    /// [`Work::rubbed`](crate::engine::Work::rubbed), of a run that took `work`; none where nothing is known.
+    pub fn rubbed(&self, work: &Work) -> Option<Vec<Vec<f64>>> {
+        let joints = work.rubbed.as_ref()?.iter().zip(&self.rubbed);
+        let since = |(now, then): (&Vec<f64>, &Vec<f64>)| {
+            now.iter().zip(then).map(|(now, then)| now - then).collect()
+        };
+        self.span.map(|_| joints.map(since).collect())
+    }
+
+    /// Time in s that the figures are of.
+    pub fn counted(&self) -> f64 {
+        self.span.map_or(0.0, |[start, end]| end - start)
+    }
+
     /// The summary of a run that took `work` and `wall` s, `halted` if it broke down, and wrote
     /// `files`.
     pub fn finish(
         self,
         scenario: &Scenario,
         machine: &Machine,
-        work: Work,
+        work: &Work,
         wall: f64,
         halted: Option<String>,
         files: Vec<String>,
     ) -> Summary {
-        let time = self.span.map_or(0.0, |[start, end]| end - start);
+        let time = self.counted();
+        let rubbed = self.rubbed(work);
         let rms = |k: usize| (self.squares[k] / self.rows as f64).sqrt();
+        let worn = |i: usize| -> Option<f64> {
+            let by_law = matches!(machine.mechanism.revolutes[i].bearing, Bearing::Clearance(_));
+            Some(rubbed.as_ref().filter(|_| by_law)?[i].iter().sum())
+        };
+        let joints = self.joints.iter().enumerate();
         let joints: Vec<JointSummary> =
-            self.joints.iter().map(|joint| joint.summary(time)).collect();
+            joints.map(|(i, joint)| joint.summary(time, worn(i))).collect();
         let impacts = joints.iter().map(|joint| joint.impacts).sum();
         let fractions: f64 = joints.iter().map(|joint| joint.contact_fraction).sum();
         let penetration = |joint: &JointRecord| Some(joint.max_eccentricity - joint.clearance?);
@@ -314,7 +345,7 @@ impl Recorder {
             largest_step_s: work.largest_step,
             wall_s: wall,
             wall_s_per_simulated_s: wall / work.reached,
-            watched: Watched::new(&work, self.rows_without_ideal),
+            watched: Watched::new(work, self.rows_without_ideal),
             joints,
             files,
         }
@@ -322,7 +353,7 @@ impl Recorder {
 }
 
 impl JointRecord {
-    fn summary(&self, time: f64) -> JointSummary {
+    fn summary(&self, time: f64, wear: Option<f64>) -> JointSummary {
         JointSummary {
             joint: self.name.clone(),
             clearance_m: self.clearance,
@@ -330,6 +361,7 @@ impl JointRecord {
             contact_fraction: (self.contact_time[1] - self.contact_time[0]) / time,
             impacts: self.impacts[1] - self.impacts[0],
             max_eccentricity_m: self.max_eccentricity,
+            wear,
         }
     }
 }

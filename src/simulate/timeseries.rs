@@ -6,61 +6,42 @@ use crate::model::Layout;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// Writes rows as CSV: pose, velocity and acceleration of each output, coordinate and effort of each
+/// Which numbers a row has: time, pose, velocity and acceleration of each output, coordinate and effort of each
 /// drive, and for each joint with a declared clearance the eccentricity |e|, the normal force, and its peak
-/// since the previous row. Nothing but the present line is kept.
-#[derive(Debug)]
-pub struct TimeSeries<W> {
-    out: W,
-    line: String,
-    bytes: u64,
+/// since the previous row.
+#[derive(Clone, Debug)]
+pub struct Columns {
     layout: Layout,
 }
 
 /// Pose of an output and its derivatives, each followed by the output's label.
 const OUTPUT: [&str; 9] = ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
 
-impl<W: Write> TimeSeries<W> {
-    /// Writes the header of the columns of `layout`.
-    ///
-    /// # Errors
-    /// If `out` refuses.
-    pub fn new(mut out: W, mechanism: &Mechanism, layout: &Layout) -> io::Result<Self> {
-        let mut line = "t".to_owned();
-        // Writing to a string cannot fail, here and below.
-        for output in &layout.outputs {
-            for quantity in OUTPUT {
-                let _ = write!(line, ",{}", quoted(&format!("{quantity}{}", output.label)));
-            }
-        }
-        for letter in ["q", "F"] {
-            for label in &layout.drives {
-                let _ = write!(line, ",{}", quoted(&format!("{letter}{label}")));
-            }
-        }
-        for &joint in &layout.joints {
-            let name = &mechanism.revolutes[joint].name;
-            let columns =
-                [format!("ecc_{name}"), format!("force_{name}"), format!("force_{name}_max")];
-            for column in columns {
-                let _ = write!(line, ",{}", quoted(&column));
-            }
-        }
-        line.push('\n');
-        out.write_all(line.as_bytes())?;
-        Ok(Self { out, bytes: line.len() as u64, line, layout: layout.clone() })
+impl Columns {
+    /// The columns of a machine with this layout.
+    pub fn new(layout: &Layout) -> Self {
+        Self { layout: layout.clone() }
     }
 
-    /// Writes one row.
-    ///
-    /// # Errors
-    /// If the file refuses.
-    pub fn row(&mut self, mechanism: &Mechanism, instant: &Instant) -> io::Result<()> {
+    /// Their names.
+    pub fn names(&self, mechanism: &Mechanism) -> Vec<String> {
+        let layout = &self.layout;
+        let outputs = layout.outputs.iter();
+        let outputs = outputs.flat_map(|o| OUTPUT.map(|quantity| format!("{quantity}{}", o.label)));
+        let drives = ["q", "F"].into_iter();
+        let drives = drives.flat_map(|c| layout.drives.iter().map(move |d| format!("{c}{d}")));
+        let joints = layout.joints.iter().flat_map(|&joint| {
+            let name = &mechanism.revolutes[joint].name;
+            [format!("ecc_{name}"), format!("force_{name}"), format!("force_{name}_max")]
+        });
+        ["t".to_owned()].into_iter().chain(outputs).chain(drives).chain(joints).collect()
+    }
+
+    /// Adds the numbers of one row to `row`, in SI units.
+    pub fn values(&self, mechanism: &Mechanism, instant: &Instant, row: &mut Vec<f64>) {
         let now = instant.evaluation;
-        self.line.clear();
-        let _ = write!(self.line, "{}", tidy(instant.t));
-        for i in 0..self.layout.outputs.len() {
-            let output = &self.layout.outputs[i];
+        row.push(tidy(instant.t));
+        for output in &self.layout.outputs {
             let reference = mechanism.bodies[output.body].reference;
             let state = output.state(instant.states, reference);
             let acceleration = output.acceleration(
@@ -68,21 +49,62 @@ impl<W: Write> TimeSeries<W> {
                 now.accelerations[output.body],
                 reference,
             );
-            let phi = instant.angles[output.body] + output.angle;
-            self.numbers(state.position.iter());
-            self.numbers([&phi]);
-            self.numbers(state.twist.iter());
-            self.numbers(acceleration.iter());
+            row.extend(state.position.iter());
+            row.push(instant.angles[output.body] + output.angle);
+            row.extend(state.twist.iter());
+            row.extend(acceleration.iter());
         }
         for (actuator, coordinate) in mechanism.actuators.iter().zip(&now.coordinates) {
-            self.numbers([&actuator.read(*coordinate, 0.0)[0]]);
+            row.push(actuator.read(*coordinate, 0.0)[0]);
         }
-        self.numbers(&now.drive_forces);
-        for i in 0..self.layout.joints.len() {
-            let joint = self.layout.joints[i];
+        row.extend(&now.drive_forces);
+        for &joint in &self.layout.joints {
             let contact = &now.contacts[joint];
             let peak = instant.tallies[joint].peak;
-            self.numbers([&contact.eccentricity.norm(), &contact.normal_force, &peak]);
+            row.extend([contact.eccentricity.norm(), contact.normal_force, peak]);
+        }
+    }
+}
+
+/// Writes rows as CSV. Nothing but the present line is kept.
+#[derive(Debug)]
+pub struct TimeSeries<W> {
+    out: W,
+    line: String,
+    row: Vec<f64>,
+    bytes: u64,
+    columns: Columns,
+}
+
+impl<W: Write> TimeSeries<W> {
+    /// Writes the header of the columns of `layout`.
+    ///
+    /// # Errors
+    /// If `out` refuses.
+    pub fn new(mut out: W, mechanism: &Mechanism, layout: &Layout) -> io::Result<Self> {
+        let columns = Columns::new(layout);
+        let names: Vec<String> = columns.names(mechanism).iter().map(|name| quoted(name)).collect();
+        let line = names.join(",") + "\n";
+        out.write_all(line.as_bytes())?;
+        Ok(Self { out, bytes: line.len() as u64, line, row: Vec::new(), columns })
+    }
+
+    /// Writes one row.
+    ///
+    /// # Errors
+    /// If the file refuses.
+    pub fn row(&mut self, mechanism: &Mechanism, instant: &Instant) -> io::Result<()> {
+        self.line.clear();
+        self.row.clear();
+        self.columns.values(mechanism, instant, &mut self.row);
+        for (i, value) in self.row.iter().enumerate() {
+            // Writing to a string cannot fail. Ten digits: 1e-11 m on a machine of less than 1 m, and no solver
+            // agrees on more; the time as it is meant.
+            let _ = match (i, *value) {
+                (0, t) => write!(self.line, "{t}"),
+                (_, 0.0) => write!(self.line, ",0"),
+                (_, value) => write!(self.line, ",{value:.9e}"),
+            };
         }
         self.line.push('\n');
         self.bytes += self.line.len() as u64;
@@ -92,17 +114,6 @@ impl<W: Write> TimeSeries<W> {
     /// Size of everything so far.
     pub fn bytes(&self) -> u64 {
         self.bytes
-    }
-
-    /// Ten digits: 1e-11 m on a machine of less than 1 m, and no solver agrees on more.
-    fn numbers<'a>(&mut self, values: impl IntoIterator<Item = &'a f64>) {
-        for value in values {
-            let _ = if *value == 0.0 {
-                write!(self.line, ",0")
-            } else {
-                write!(self.line, ",{value:.9e}")
-            };
-        }
     }
 
     /// Hands the rest to the file.

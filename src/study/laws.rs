@@ -5,7 +5,7 @@ use super::run::{RunError, refused, to_json};
 use crate::contact::laws::{Kind, Losses};
 use crate::contact::{ForceLaw, hit, impact};
 use crate::mechanism::Bearing;
-use crate::report::{Curve, Panel, Picture, Style, panels_svg};
+use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
 use crate::scenario::{Law, Problem, Problems, Scenario};
 use crate::simulate::assemble;
 use serde::{Serialize, Serializer};
@@ -149,12 +149,18 @@ fn pictures(all: &[LawFigures]) -> Result<Vec<Picture>, RunError> {
     let returned: Points =
         |law| law.returned.iter().map(|(speed, e)| (speed.log10(), *e)).collect();
     Ok(vec![
-        picture(all, "force-penetration.svg", &hit, ["penetration (µm)", "force (N)"], loops)?,
+        picture(
+            all,
+            "force-penetration.svg",
+            &hit,
+            ["penetration (µm)".into(), "force (N)".into()],
+            loops,
+        )?,
         picture(
             all,
             "restitution.svg",
             &format!("what hits of {MASS} kg return"),
-            ["log₁₀ of the impact speed (m/s)", "returned / impact speed"],
+            [Label::log("impact speed (m/s)"), "returned / impact speed".into()],
             returned,
         )?,
     ])
@@ -165,7 +171,7 @@ fn picture(
     all: &[LawFigures],
     file: &str,
     what: &str,
-    [x, y]: [&str; 2],
+    [x, y]: [Label; 2],
     points: Points,
 ) -> Result<Picture, RunError> {
     let mut panels: Vec<Panel> = Vec::new();
@@ -177,8 +183,8 @@ fn picture(
             Some(panel) => panel.curves.push(curve),
             None => panels.push(Panel {
                 title,
-                x_label: x.to_owned(),
-                y_label: y.to_owned(),
+                x_label: x.clone(),
+                y_label: y.clone(),
                 curves: vec![curve],
             }),
         }

@@ -4,6 +4,8 @@
 pub mod chaos;
 mod check;
 pub mod compare;
+pub mod diff;
+pub mod evaluate;
 mod film;
 mod folder;
 mod forecast;
@@ -14,11 +16,12 @@ mod recent;
 mod run;
 mod run_page;
 pub mod sweep;
+pub mod wear;
 
 pub use check::{
     Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Engines, Found, Ideal, check,
 };
 pub use folder::{Folder, FolderError, abandon, default_name};
 pub use forecast::Forecast;
-pub use run::{Outcome, RunError, SUMMARY_FILE, Terms, run};
+pub use run::{Outcome, Recorded, RunError, SUMMARY_FILE, Terms, recorded, run};
 pub(crate) use run::{PAGE_FILE, refused};

@@ -35,6 +35,8 @@ pub(super) struct Gallery {
     accelerations: [Envelope; 3],
     /// |(a_x, a_y)|, peak since the row before.
     peak_acceleration: Envelope,
+    /// Of the row; what a machine without clearance does has no peaks between rows.
+    ideal_acceleration: Envelope,
     ideal_accelerations: [Envelope; 3],
     drives: Vec<Drive>,
     joints: Vec<Joint>,
@@ -88,6 +90,7 @@ impl Gallery {
             path_error: envelope(),
             accelerations: [(); 3].map(|()| envelope()),
             peak_acceleration: envelope(),
+            ideal_acceleration: envelope(),
             ideal_accelerations: [(); 3].map(|()| envelope()),
             drives: drives.collect(),
             joints: joints.collect(),
@@ -110,6 +113,7 @@ impl Gallery {
             ideal_envelope.push(t, ideal.acceleration[k]);
         }
         self.peak_acceleration.push(t, instant.peaks.acceleration);
+        self.ideal_acceleration.push(t, ideal.acceleration.xy().norm());
         for (i, drive) in self.drives.iter_mut().enumerate() {
             drive.force.push(t, now.drive_forces[i]);
             drive.ideal.push(t, ideal.drive_forces[i]);
@@ -122,14 +126,23 @@ impl Gallery {
 
     /// The pictures, in the order of the page.
     pub fn draw(&self) -> Result<Vec<Picture>, ReportError> {
-        Ok(vec![
-            self.path()?,
-            self.path_error()?,
-            self.acceleration()?,
-            self.actuator_forces()?,
-            self.joint_forces()?,
-            self.orbits()?,
-        ])
+        let plays = self.joints.iter().any(|joint| joint.clearance.is_some());
+        let mut pictures = vec![self.path()?];
+        // A machine without play follows its ideal path to rounding, and its journals stay where they are.
+        if plays || largest(&self.path_error.points()) > SEEN {
+            pictures.push(self.path_error()?);
+        }
+        pictures.push(self.acceleration()?);
+        if !self.drives.is_empty() {
+            pictures.push(self.actuator_forces()?);
+        }
+        if self.joints.iter().any(|joint| largest(&joint.force.points()) > 0.0) {
+            pictures.push(self.joint_forces()?);
+        }
+        if plays {
+            pictures.push(self.orbits()?);
+        }
+        Ok(pictures)
     }
 
     fn path(&self) -> Result<Picture, ReportError> {
@@ -198,7 +211,10 @@ impl Gallery {
             title: "Peaks: largest |(a_x, a_y)| since the row before".into(),
             x_label: TIME.into(),
             y_label: "|a| (m/s²)".into(),
-            curves: vec![solid(&self.body, &self.peak_acceleration)],
+            curves: vec![
+                solid(&self.body, &self.peak_acceleration),
+                ideal(self.ideal_acceleration.points()),
+            ],
         });
         Ok(Picture {
             file: "acceleration.svg".into(),
@@ -260,12 +276,10 @@ impl Gallery {
     }
 
     fn orbits(&self) -> Result<Picture, ReportError> {
-        // Joints without clearance have no orbit; a machine without any shows its centres.
-        let plays = self.joints.iter().any(|joint| joint.clearance.is_some());
         let orbits: Vec<Orbit> = self
             .joints
             .iter()
-            .filter(|joint| joint.clearance.is_some() || !plays)
+            .filter(|joint| joint.clearance.is_some())
             .map(|joint| Orbit {
                 joint: joint.name.clone(),
                 clearance_m: joint.clearance.unwrap_or(0.0),
@@ -274,16 +288,14 @@ impl Gallery {
             .collect();
         let clearances = self.joints.iter().filter_map(|joint| joint.clearance);
         let part = self.joints.first().map(|joint| self.only_the_end(&joint.orbit, ORBIT_ROWS));
-        let caption = match clearances.reduce(f64::max) {
-            Some(largest) => format!(
-                "Where the centre of each journal went inside its bearing, seen from the bearing's \
+        let largest = clearances.fold(0.0, f64::max);
+        let caption = format!(
+            "Where the centre of each journal went inside its bearing, seen from the bearing's \
                  centre. The circle is the clearance (up to {}): a journal on it touches, one \
                  inside flies. The orange dot is the last position.{}",
-                length(largest),
-                part.unwrap_or_default()
-            ),
-            None => "Without clearance the journals stay in the centres of their bearings.".into(),
-        };
+            length(largest),
+            part.unwrap_or_default()
+        );
         Ok(Picture {
             file: "orbits.svg".into(),
             title: "Orbits of the journals".into(),
@@ -291,6 +303,14 @@ impl Gallery {
             svg: orbits_svg(&orbits)?,
         })
     }
+}
+
+/// Path error in mm that is more than rounding and the integrator's own: a nanometre.
+const SEEN: f64 = 1e-6;
+
+/// The largest value of a curve.
+fn largest(points: &[(f64, f64)]) -> f64 {
+    points.iter().fold(0.0, |most, (_, value)| most.max(value.abs()))
 }
 
 const TIME: &str = "time (s)";

@@ -6,8 +6,10 @@ use super::folder::{Folder, FolderError};
 use super::forecast::{Beginning, Forecast};
 use super::pictures::Gallery;
 use super::run_page::page;
-use crate::engine;
-use crate::report::ReportError;
+use super::wear::{WEAR_FILE, wear_csv, wear_picture, wearing};
+use crate::engine::{self, Instant};
+use crate::mechanism::Mechanism;
+use crate::report::{Picture, ReportError};
 use crate::scenario::Scenario;
 use crate::simulate::{Machine, Recorder, Summary, TimeSeries};
 use serde::Serialize;
@@ -21,7 +23,7 @@ use std::time::Instant as Clock;
 /// The JSON file of a run, by which its folder is known.
 pub const SUMMARY_FILE: &str = "summary.json";
 
-const TIME_SERIES_FILE: &str = "timeseries.csv";
+pub(super) const TIME_SERIES_FILE: &str = "timeseries.csv";
 pub(super) const SCENARIO_FILE: &str = "scenario.toml";
 pub(crate) const PAGE_FILE: &str = "index.html";
 pub(super) const PLAYER_FILE: &str = "player.html";
@@ -30,8 +32,8 @@ const ANIMATION_FILE: &str = "animation.svg";
 /// What a run came to.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The main figures.
-    pub summary: Summary,
+    /// The main figures, and what the pictures show.
+    pub recorded: Recorded,
     /// The text of `summary.json`.
     pub json: String,
     /// Where all files are.
@@ -83,50 +85,54 @@ pub struct Terms<'a> {
     pub at_any_cost: bool,
 }
 
-/// Simulates a machine and writes everything about it into `folder`. `progress` is told the time
-/// reached, in s. A run that breaks down is written up to there; its summary says so in `halted`. So is
-/// one that ends because it was told to stop, as `interrupted`, unless an earlier result would be lost
-/// to it.
-///
-/// # Errors
-/// [`RunError`]; the folder is left as it was. A file that cannot be written ends the run at once.
-pub fn run(
-    scenario: &Scenario,
-    machine: &mut Machine,
-    folder: Folder,
-    terms: Terms,
-    progress: &mut dyn FnMut(f64),
-) -> Result<Outcome, RunError> {
-    let (summary, json) = run_into(scenario, machine, &folder, terms, progress)?;
-    if summary.interrupted && folder.replaces() {
-        return Err(RunError::Dropped);
-    }
-    let duration = scenario.simulation.duration;
-    Ok(Outcome { summary, json, folder: folder.finish()?, duration })
+/// A run in memory: its figures, and what its pictures are drawn from.
+#[derive(Debug)]
+pub struct Recorded {
+    /// The main figures; `files` is empty.
+    pub summary: Summary,
+    /// Normal force times sliding distance in J round the ring of each joint, where journals rub.
+    pub rubbed: Option<Vec<Vec<f64>>>,
+    gallery: Gallery,
+    film: Film,
 }
 
-/// The summary, and the text of its file.
-fn run_into(
+impl Recorded {
+    /// The pictures, in the order of the page.
+    ///
+    /// # Errors
+    /// [`ReportError`] if one cannot be drawn.
+    pub fn pictures(&self) -> Result<Vec<Picture>, ReportError> {
+        self.gallery.draw()
+    }
+
+    /// The start of the run as a picture that moves (SVG).
+    pub fn animation(&self) -> String {
+        self.film.animation()
+    }
+
+    /// The page that plays the run.
+    pub fn player(&self) -> String {
+        self.film.player()
+    }
+}
+
+/// Simulates a machine and writes no file. `observe` sees each row, and may end the run there; so does `stop` between
+/// any two steps once it is true.
+pub fn recorded(
     scenario: &Scenario,
     machine: &mut Machine,
-    folder: &Folder,
-    terms: Terms,
-    progress: &mut dyn FnMut(f64),
-) -> Result<(Summary, String), RunError> {
+    stop: &AtomicBool,
+    observe: &mut dyn FnMut(&Mechanism, &Instant) -> ControlFlow<()>,
+) -> Recorded {
     let started = Clock::now();
     let mechanism = &machine.mechanism;
     let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
     let mut gallery = Gallery::new(mechanism, machine.schedule);
     let mut film = Film::new(&scenario.name, mechanism, &machine.layout);
-
-    let file = File::create(folder.file(TIME_SERIES_FILE)).map_err(refused(TIME_SERIES_FILE))?;
-    let mut series = TimeSeries::new(BufWriter::new(file), mechanism, &machine.layout)
-        .map_err(refused(TIME_SERIES_FILE))?;
-    let mut beginning = Beginning::new(machine.schedule);
-    let mut written = Ok(());
     let mut looks = Vec::new();
+    let mut left = false;
     let ideal = &mut machine.ideal;
-    let (control, schedule, stop) = (machine.control, machine.schedule, terms.stop);
+    let (control, schedule) = (machine.control, machine.schedule);
     let ended = engine::run_balanced(mechanism, control, schedule, stop, &mut |instant| {
         let ideal = ideal.at(instant.t);
         recorder.row(mechanism, instant, &ideal);
@@ -135,7 +141,64 @@ fn run_into(
         if instant.t <= chaos::WINDOW {
             looks.push(Look::at(mechanism, instant));
         }
-        progress(instant.t);
+        let go_on = observe(mechanism, instant);
+        left = go_on.is_break();
+        go_on
+    });
+    let (work, halted) = match ended {
+        Ok(work) => (work, None),
+        Err(halt) => {
+            let reason = halt.to_string();
+            (*halt.work, Some(reason))
+        }
+    };
+    let wall = started.elapsed().as_secs_f64();
+    let rubbed = recorder.rubbed(&work).filter(|_| !wearing(mechanism).is_empty());
+    let mut summary = recorder.finish(scenario, machine, &work, wall, halted, Vec::new());
+    summary.interrupted |= stop.load(Ordering::Relaxed);
+    if summary.halted.is_none() && !summary.interrupted && !left {
+        look_back(&mut summary, machine, &looks, stop);
+    }
+    Recorded { summary, rubbed, gallery, film }
+}
+
+/// Simulates a machine and writes everything about it into `folder`. `observe` sees each row. A run that breaks down is
+/// written up to there; its summary says so in `halted`. So is one that ends because it was told to stop, as
+/// `interrupted`, unless an earlier result would be lost to it.
+///
+/// # Errors
+/// [`RunError`]; the folder is left as it was. A file that cannot be written ends the run at once.
+pub fn run(
+    scenario: &Scenario,
+    machine: &mut Machine,
+    folder: Folder,
+    terms: Terms,
+    observe: &mut dyn FnMut(&Mechanism, &Instant),
+) -> Result<Outcome, RunError> {
+    let recorded = run_into(scenario, machine, &folder, terms, observe)?;
+    if recorded.summary.interrupted && folder.replaces() {
+        return Err(RunError::Dropped);
+    }
+    let json = to_json(&recorded.summary);
+    let duration = scenario.simulation.duration;
+    Ok(Outcome { recorded, json, folder: folder.finish()?, duration })
+}
+
+/// The run, all of its files written.
+fn run_into(
+    scenario: &Scenario,
+    machine: &mut Machine,
+    folder: &Folder,
+    terms: Terms,
+    observe: &mut dyn FnMut(&Mechanism, &Instant),
+) -> Result<Recorded, RunError> {
+    let file = File::create(folder.file(TIME_SERIES_FILE)).map_err(refused(TIME_SERIES_FILE))?;
+    let mut series = TimeSeries::new(BufWriter::new(file), &machine.mechanism, &machine.layout)
+        .map_err(refused(TIME_SERIES_FILE))?;
+    let mut beginning = Beginning::new(machine.schedule);
+    let mut written = Ok(());
+    let mut recorded = recorded(scenario, machine, terms.stop, &mut |mechanism, instant| {
+        observe(mechanism, instant);
         written = series.row(mechanism, instant).map_err(refused(TIME_SERIES_FILE));
         if let Some(forecast) = beginning.too_much(instant.t, series.bytes())
             && !terms.at_any_cost
@@ -146,37 +209,35 @@ fn run_into(
     });
     written?;
     series.finish().map_err(refused(TIME_SERIES_FILE))?;
-    let (work, halted) = match ended {
-        Ok(work) => (work, None),
-        Err(halt) => (*halt.work, Some(halt.to_string())),
-    };
-    let wall = started.elapsed().as_secs_f64();
-
-    let pictures = gallery.draw()?;
-    let texts =
-        [TIME_SERIES_FILE, SUMMARY_FILE, SCENARIO_FILE, PAGE_FILE, PLAYER_FILE, ANIMATION_FILE];
-    let files: Vec<String> = texts
+    let mechanism = &machine.mechanism;
+    let rubbed = recorded.rubbed.take();
+    let mut pictures = recorded.pictures()?;
+    if let Some(rubbed) = &rubbed {
+        pictures.push(wear_picture(mechanism, rubbed)?);
+    }
+    let texts = [TIME_SERIES_FILE, SUMMARY_FILE, PAGE_FILE, PLAYER_FILE, ANIMATION_FILE];
+    let summary = &mut recorded.summary;
+    summary.files = texts
         .into_iter()
         .map(str::to_owned)
+        .chain(scenario_files(scenario))
+        .chain(rubbed.as_ref().map(|_| WEAR_FILE.to_owned()))
         .chain(pictures.iter().map(|picture| picture.file.clone()))
         .collect();
-    let mut summary = recorder.finish(scenario, machine, work, wall, halted, files);
-    summary.interrupted |= stop.load(Ordering::Relaxed);
-    if summary.halted.is_none() && !summary.interrupted {
-        look_back(&mut summary, machine, &looks, stop);
-    }
 
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
-    let json = to_json(&summary);
-    write(SUMMARY_FILE, &json)?;
-    write(SCENARIO_FILE, &scenario.to_toml())?;
+    write(SUMMARY_FILE, &to_json(summary))?;
+    keep_scenario(scenario, folder)?;
+    if let Some(rubbed) = &rubbed {
+        write(WEAR_FILE, &wear_csv(mechanism, rubbed))?;
+    }
     for picture in &pictures {
         write(&picture.file, &picture.svg)?;
     }
-    write(PAGE_FILE, &page(&summary, &mechanism.bodies[mechanism.output].name, &pictures))?;
-    write(PLAYER_FILE, &film.player())?;
-    write(ANIMATION_FILE, &film.animation())?;
-    Ok((summary, json))
+    write(PAGE_FILE, &page(summary, &mechanism.bodies[mechanism.output].name, &pictures))?;
+    write(PLAYER_FILE, &recorded.player())?;
+    write(ANIMATION_FILE, &recorded.animation())?;
+    Ok(recorded)
 }
 
 /// Adds what shorter runs beside a finished one say of it: its own error, and chaos.
@@ -189,6 +250,21 @@ fn look_back(summary: &mut Summary, machine: &Machine, looks: &[Look], stop: &At
         summary.lyapunov_exponent_1_s = chaos.lyapunov;
         summary.predictability_horizon_s = chaos.horizon();
     }
+}
+
+/// Names of what [`keep_scenario`] writes.
+pub(super) fn scenario_files(scenario: &Scenario) -> Vec<String> {
+    let (_, files) = scenario.to_toml_beside_files();
+    [SCENARIO_FILE.to_owned()].into_iter().chain(files.into_iter().map(|(_, name)| name)).collect()
+}
+
+/// Writes the scenario and copies of the tables that it reads: the result repeats wherever it lies.
+pub(super) fn keep_scenario(scenario: &Scenario, folder: &Folder) -> Result<(), RunError> {
+    let (text, files) = scenario.to_toml_beside_files();
+    for (source, name) in &files {
+        fs::copy(source, folder.file(name)).map_err(refused(name))?;
+    }
+    fs::write(folder.file(SCENARIO_FILE), text).map_err(refused(SCENARIO_FILE))
 }
 
 /// Pretty JSON with a line break at the end.

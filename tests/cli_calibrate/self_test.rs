@@ -66,4 +66,12 @@ fn a_self_test_refuses_what_it_cannot_do() {
         &["trials.jsonl: holds trials of 0.0.9 (12345678)", "another file"],
     );
     assert_eq!(place.freeplay("calibrate --trials notes.txt").code, 2);
+    // What a flag requires is not asked for where it conflicts with another one.
+    let beside_a_rig = "calibrate --rig rig.toml --data run.csv";
+    for flag in
+        ["--hidden payload", "--machine arm", "--count 3", "--trials t.jsonl", "--keep kept"]
+    {
+        let name = flag.split(' ').next().unwrap();
+        place.refused(&format!("{beside_a_rig} {flag}"), &[name, "cannot be used with '--rig"]);
+    }
 }

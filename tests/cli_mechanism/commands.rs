@@ -36,6 +36,10 @@ fn json(text: &str) -> Value {
 fn complete(place: &Place, folder: &str, joints: bool) {
     let written = names(&place.path(folder));
     for file in FILES {
+        // Without play there is nothing that a path could err by.
+        if !joints && file == "path-error.svg" {
+            continue;
+        }
         assert!(written.iter().any(|name| name == file), "{folder} lacks {file}: {written:?}");
         assert!(!place.read(&format!("{folder}/{file}")).is_empty(), "{folder}/{file} is empty");
     }

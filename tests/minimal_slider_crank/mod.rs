@@ -96,6 +96,7 @@ pub fn mechanism(start: f64) -> Mechanism {
             base: ground,
             slider: at(2, 0.0),
             axes: [UnitComplex::identity(); 2],
+            play: false,
         }],
         actuators: vec![Actuator::new("O", JointIndex::Revolute(0), servo)],
         commands: Arc::new(Quintic(start)),

@@ -3,7 +3,7 @@
 use super::common::{
     GEOMETRY, LIVELY, assembled, at, effect, evaluate, same_run, starts, turned, wrench,
 };
-use freeplay::contact::{Clearance, Frame, HertzStep, OutOfRound};
+use freeplay::contact::{Clearance, Frame, HertzStep, OutOfRound, RingShape};
 use freeplay::mechanism::Situation;
 use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -39,7 +39,7 @@ fn an_uneven_ring_keeps_energy() {
         law: Arc::new(law),
         friction: None,
     };
-    let shape = OutOfRound { amplitude: 2e-4, lobes: 3.0, direction: 0.4 };
+    let shape = RingShape::from(OutOfRound { amplitude: 2e-4, lobes: 3.0, direction: 0.4 });
     let frame =
         |centre: Vector2<f64>, arm| Frame { centre, arm, velocity: Vector2::zeros(), spin: 0.0 };
     let arms = [Vector2::new(0.03, -0.02), Vector2::new(-0.1, 0.05)];

@@ -7,6 +7,7 @@ mod double_pendulum;
 mod n_four_bar;
 mod parallelogram;
 mod slider_crank;
+mod slider_guides;
 mod stephenson;
 
 use freeplay::engine::{Instant, Schedule, StepControl, run};

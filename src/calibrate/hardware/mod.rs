@@ -56,21 +56,3 @@ pub struct Table {
     /// Cells, row by row.
     pub rows: Vec<Vec<String>>,
 }
-
-impl Table {
-    /// As text with aligned columns; the first to the left, the others to the right.
-    pub fn text(&self) -> String {
-        let width = |k: usize| {
-            let cells = self.rows.iter().chain([&self.header]);
-            cells.filter_map(|row| row.get(k)).map(|cell| cell.chars().count()).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..self.header.len()).map(width).collect();
-        let line = |row: &Vec<String>| {
-            let cells = row.iter().zip(&widths).enumerate().map(|(k, (cell, width))| {
-                if k == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-            });
-            cells.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
-        };
-        self.rows.iter().fold(line(&self.header), |text, row| text + &line(row))
-    }
-}

@@ -87,8 +87,8 @@ fn panel(title: &str, label: &str, curves: Vec<(&str, Vec<(f64, f64)>)>) -> Pane
     };
     Panel {
         title: title.to_owned(),
-        x_label: "time (s)".to_owned(),
-        y_label: label.to_owned(),
+        x_label: "time (s)".into(),
+        y_label: label.into(),
         curves: curves.into_iter().map(curve).collect(),
     }
 }

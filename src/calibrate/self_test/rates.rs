@@ -140,12 +140,12 @@ mod tests {
     }
 
     #[test]
-    fn the_readme_shows_the_table_that_follows_from_the_trials() {
+    fn the_docs_show_the_table_that_follows_from_the_trials() {
         let trials = include_str!("../../../assets/self-test/trials.jsonl");
         let all: Vec<Tried> =
             trials.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-        let readme = include_str!("../../../README.md");
-        let (_, rest) = readme.split_once("<!-- rates -->\n").unwrap();
+        let docs = include_str!("../../../docs/calibrate.md");
+        let (_, rest) = docs.split_once("<!-- rates -->\n").unwrap();
         let (shown, _) = rest.split_once("<!-- end of rates -->").unwrap();
         assert_eq!(shown, rates(&all));
     }

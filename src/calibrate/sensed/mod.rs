@@ -14,7 +14,7 @@ pub mod basis;
 mod calm;
 pub mod candidates;
 mod cells;
-mod charts;
+pub(in crate::calibrate) mod charts;
 pub mod errors;
 pub mod estimate;
 pub mod events;

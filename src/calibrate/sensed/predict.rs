@@ -156,17 +156,17 @@ fn may_rattle(machine: &Mechanism) -> bool {
 
 /// A model along a recording.
 #[derive(Clone, Copy)]
-struct Along<'a> {
-    model: &'a Scenario,
-    recording: &'a Recording,
+pub(in crate::calibrate) struct Along<'a> {
+    pub model: &'a Scenario,
+    pub recording: &'a Recording,
     /// The same with all columns.
-    like: &'a Recording,
+    pub like: &'a Recording,
 }
 
 impl Along<'_> {
     /// What the model predicts, replica by replica if it rattles, and by how much two of them differ in units of
     /// noise.
-    fn predicted(&self, machine: &Mechanism) -> Result<(Vec<Recording>, f64), CalibrateError> {
+    pub fn predicted(&self, machine: &Mechanism) -> Result<(Vec<Recording>, f64), CalibrateError> {
         let Self { model, recording, like } = *self;
         let control: StepControl = control(model);
         let released = released(model, &[], recording, control)?.machine;

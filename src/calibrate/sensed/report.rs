@@ -23,6 +23,7 @@ use crate::calibrate::report::{
 use crate::calibrate::result::{
     CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, to_json,
 };
+use crate::calibrate::unnamed_picture;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError};
 use serde::Serialize;
@@ -113,6 +114,8 @@ pub fn into_folder(
     let outcome = calibrate(&mut problem, without, tell)?;
     tell("drawing and writing");
     let mut pictures = page::pictures(&problem, &outcome).map_err(RunError::from)?;
+    let settings = outcome.effects.iter().map(|(effect, _)| effect);
+    pictures.extend(unnamed_picture::pictures(settings).map_err(RunError::from)?);
     pictures.extend(events_drawn(&outcome.events).map_err(RunError::from)?);
     let sensors = &problem.declared.sensors;
     let mut files: Vec<(String, String)> = Vec::new();

@@ -141,6 +141,26 @@ pub struct Given {
     pub clip: bool,
 }
 
+impl Default for Given {
+    /// A joint of the built-in machine.
+    fn default() -> Self {
+        Self {
+            bearing_radius: 10e-3,
+            journal_radius: 9.5e-3,
+            material: Material { youngs_modulus: 73e9, poisson_ratio: 0.3 },
+            stiffness_form: StiffnessForm::Printed,
+            stiffness: None,
+            exponent: 1.5,
+            length: None,
+            restitution: None,
+            damping: None,
+            c_max: 500.0,
+            d_max: 1e-5,
+            clip: true,
+        }
+    }
+}
+
 /// Share of the speed that laws with a restitution return where nothing is written: what the default law
 /// returns of a 0.1 kg journal at 0.1 m/s.
 pub const RESTITUTION: f64 = 0.73;

@@ -1,25 +1,8 @@
 use super::*;
-use crate::contact::{Material, StiffnessForm, impact};
+use crate::contact::impact;
 
 const MASS: f64 = 0.1;
 const SPEED: f64 = 0.1;
-
-fn given() -> Given {
-    Given {
-        bearing_radius: 10e-3,
-        journal_radius: 9.5e-3,
-        material: Material { youngs_modulus: 73e9, poisson_ratio: 0.3 },
-        stiffness_form: StiffnessForm::Printed,
-        stiffness: None,
-        exponent: 1.5,
-        length: None,
-        restitution: None,
-        damping: None,
-        c_max: 500.0,
-        d_max: 1e-5,
-        clip: true,
-    }
-}
 
 #[test]
 fn names_are_unique_and_texts_are_there() {
@@ -41,11 +24,11 @@ fn what_is_written_as_default_is_the_default() {
         for parameter in kind.parameters {
             let Ok(value) = parameter.default.parse::<f64>() else { continue };
             let told = match parameter.name {
-                "restitution" => Given { restitution: Some(value), ..given() },
-                "damping" => Given { damping: Some(value), ..given() },
+                "restitution" => Given { restitution: Some(value), ..Given::default() },
+                "damping" => Given { damping: Some(value), ..Given::default() },
                 _ => continue,
             };
-            let [a, b] = [given(), told].map(|given| (kind.build)(&given));
+            let [a, b] = [Given::default(), told].map(|given| (kind.build)(&given));
             let force =
                 |law: &dyn crate::contact::ForceLaw| law.normal_force_after(5e-6, 0.05, SPEED);
             assert_eq!(force(&*a), force(&*b), "{}: {}", kind.name, parameter.name);
@@ -56,7 +39,7 @@ fn what_is_written_as_default_is_the_default() {
 #[test]
 fn forces_begin_at_zero_where_laws_are_continuous_and_never_pull() {
     for kind in ALL {
-        let law = (kind.build)(&given());
+        let law = (kind.build)(&Given::default());
         let first = law.normal_force_after(1e-15, SPEED, SPEED);
         if kind.name == "kelvin-voigt" {
             assert!(first > 1.0, "the jump of a linear damper: {first}");
@@ -71,8 +54,9 @@ fn forces_begin_at_zero_where_laws_are_continuous_and_never_pull() {
 
 #[test]
 fn laws_after_hertz_reduce_to_it() {
-    let hertz = (hertz::KIND.build)(&given());
-    let lossless = Given { restitution: Some(1.0), damping: Some(0.0), c_max: 0.0, ..given() };
+    let hertz = (hertz::KIND.build)(&Given::default());
+    let lossless =
+        Given { restitution: Some(1.0), damping: Some(0.0), c_max: 0.0, ..Given::default() };
     for kind in ALL.iter().filter(|kind| kind.takes("exponent")) {
         let law = (kind.build)(&lossless);
         for (depth, rate) in [(1e-7, 0.1), (5e-6, -0.2), (2e-5, 0.0)] {
@@ -90,7 +74,7 @@ fn laws_after_hertz_reduce_to_it() {
 #[test]
 fn resting_penetration_bears_the_force() {
     for kind in ALL {
-        let law = (kind.build)(&given());
+        let law = (kind.build)(&Given::default());
         for force in [1e-3, 1.0, 50.0, 1e4] {
             let depth = law.resting_penetration(force);
             let back = law.normal_force_after(depth, 0.0, SPEED);
@@ -101,7 +85,8 @@ fn resting_penetration_bears_the_force() {
 
 #[test]
 fn defaults_return_about_what_the_default_law_returns() {
-    let returned = |kind: &Kind| impact(&*(kind.build)(&given()), MASS, SPEED).rebound / SPEED;
+    let returned =
+        |kind: &Kind| impact(&*(kind.build)(&Given::default()), MASS, SPEED).rebound / SPEED;
     assert!((returned(&HERTZ_STEP) - RESTITUTION).abs() < 0.01, "{}", returned(&HERTZ_STEP));
     for kind in [&kelvin_voigt::KIND, &hunt_crossley::KIND] {
         let e = returned(kind);
@@ -113,7 +98,7 @@ fn defaults_return_about_what_the_default_law_returns() {
 #[test]
 fn conformal_laws_solve_their_published_equations() {
     use std::f64::consts::PI;
-    let given = given();
+    let given = Given::default();
     let [ri, rj, l] = [given.bearing_radius, given.journal_radius, given.length()];
     let h = 2.0 * (1.0 - 0.3f64.powi(2)) / (PI * 73e9);
     let modulus = 73e9 / (2.0 * (1.0 - 0.3f64.powi(2)));

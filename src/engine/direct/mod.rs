@@ -8,7 +8,7 @@
 //!
 //! Rigid joints are met in their accelerations (Gauss' principle) and, after each step, in places and velocities
 //! ([`Dynamics::project`]). Rows between a step's ends are read from the path between them, so that steps do
-//! not depend on what is asked for; machines with sampled controllers alone end steps at the samples.
+//! not depend on what is asked for; sampled controllers alone end steps.
 
 mod node;
 mod onset;
@@ -19,8 +19,9 @@ use self::onset::next_onset;
 use self::tsitouras::{Accelerations, C, STAGES, WEIGHTS, error, stage};
 use super::adaptive::share;
 use super::energy::Exchange;
+use super::looks::Looks;
 use super::stepper::Stepper;
-use crate::mechanism::{Body, BodyState, Drive, Dynamics, Evaluation, Mechanism, Situation};
+use crate::mechanism::{Body, BodyState, Dynamics, Evaluation, Mechanism, Situation};
 use nalgebra::Vector3;
 
 /// First step in s, before anything is known of the error.
@@ -67,8 +68,6 @@ pub(super) struct Direct {
     dynamics: Dynamics,
     /// Radius in m of gyration of each body, which makes speeds of its angular ones.
     radii: Vec<f64>,
-    /// Whether steps may go beyond the rows.
-    beyond: bool,
     /// The step made last.
     start: Node,
     end: Node,
@@ -83,7 +82,9 @@ pub(super) struct Direct {
     step_error: f64,
     /// Whether the last step was taken although its error exceeds the tolerance.
     forced: bool,
-    since: Since,
+    /// What the normal force of each joint has taken since the last step began, in J, and, of balanced steps, behind
+    /// that normal force times sliding distance.
+    work: Vec<f64>,
 }
 
 /// The way from a step's start to its end.
@@ -92,21 +93,8 @@ struct Path {
     shifts: Vec<Vector3<f64>>,
     /// Accelerations of each body at each stage.
     accelerations: Vec<Accelerations>,
-    /// Normal force of each joint at each stage, N.
-    pressed: [Vec<f64>; STAGES],
-}
-
-/// What has happened since the instant synchronised before.
-struct Since {
-    t: f64,
-    /// Amounts then, and whether each joint was touching.
-    amounts: Vec<f64>,
-    touching: Vec<bool>,
-    /// Largest normal force of each joint (N), work that it took (J), whether a hit came and went.
-    peaks: Vec<f64>,
-    work: Vec<f64>,
-    brushes: Vec<bool>,
-    exchange: Option<Exchange>,
+    /// Normal forces at each stage.
+    looks: Looks,
 }
 
 /// Velocity error in m/s that a step of the pair may make for a run to be as good as one of the physics engine
@@ -131,21 +119,12 @@ impl Direct {
             tolerance: step_tolerance(tolerance) * share(mechanism),
             dynamics: Dynamics::new(mechanism),
             radii: mechanism.bodies.iter().map(|b: &Body| (b.inertia / b.mass).sqrt()).collect(),
-            beyond: !mechanism.actuators.iter().any(|a| matches!(a.drive, Drive::Sampled(_))),
             path: Path {
                 shifts: zeros.clone(),
                 accelerations: vec![[Vector3::zeros(); STAGES]; zeros.len()],
-                pressed: std::array::from_fn(|_| vec![0.0; joints]),
+                looks: Looks::new(STAGES, joints),
             },
-            since: Since {
-                t: f64::NEG_INFINITY,
-                amounts: node.amounts.clone(),
-                touching: vec![false; joints],
-                peaks: vec![0.0; joints],
-                work: vec![0.0; joints],
-                brushes: vec![false; joints],
-                exchange: balanced.then(Exchange::default),
-            },
+            work: vec![0.0; if balanced { 2 * joints } else { joints }],
             start: node.clone(),
             inside: node.clone(),
             end: node,
@@ -192,7 +171,7 @@ impl Direct {
         }
     }
 
-    /// Goes one step on from the last one's end, not beyond `until` if that is an end for steps.
+    /// Goes one step on from the last one's end, not beyond `until` s.
     fn step(&mut self, mechanism: &Mechanism, until: f64) {
         self.dynamics.remember(mechanism, self.end.t, &self.end.states);
         std::mem::swap(&mut self.start, &mut self.end);
@@ -201,15 +180,13 @@ impl Direct {
         let [mut h, after_onset] = self.bounds(mechanism);
         loop {
             let mut reached = self.start.t + h;
-            if !self.beyond {
-                let span = until - self.start.t;
-                if h >= span * (1.0 - 1e-9) {
-                    (h, reached) = (span, until);
-                } else if h > 0.5 * span {
-                    // No sliver is left before the end.
-                    h = 0.5 * span;
-                    reached = self.start.t + h;
-                }
+            let span = until - self.start.t;
+            if h >= span * (1.0 - 1e-9) {
+                (h, reached) = (span, until);
+            } else if h > 0.5 * span {
+                // No sliver is left before the end.
+                h = 0.5 * span;
+                reached = self.start.t + h;
             }
             self.dynamics.forget_singular();
             self.go(mechanism, h);
@@ -288,32 +265,6 @@ impl Direct {
         }
         worst.sqrt()
     }
-
-    /// Takes stock of what has happened since the instant before.
-    fn look_back(&mut self) {
-        let now = if self.is_inside { &self.inside } else { &self.end };
-        let Since { t, amounts, touching, peaks, work, brushes, exchange } = &mut self.since;
-        let h = self.end.t - self.start.t;
-        let stages = C.iter().zip(&self.path.pressed);
-        peaks.fill(0.0);
-        for (_, pressed) in stages.filter(|(c, _)| {
-            let at = self.start.t + *c * h;
-            at > *t && at <= now.t
-        }) {
-            for (peak, force) in peaks.iter_mut().zip(pressed) {
-                *peak = peak.max(*force);
-            }
-        }
-        for (j, contact) in now.evaluation.contacts.iter().enumerate() {
-            let is = contact.normal_force > 0.0;
-            brushes[j] = peaks[j] > 0.0 && !touching[j] && !is;
-            touching[j] = is;
-        }
-        *exchange = now.exchange(amounts);
-        now.joint_work(amounts, work);
-        amounts.copy_from_slice(&now.amounts);
-        *t = now.t;
-    }
 }
 
 impl Path {
@@ -322,23 +273,32 @@ impl Path {
         for (a, now) in self.accelerations.iter_mut().zip(&node.evaluation.accelerations) {
             a[stage] = *now;
         }
-        for (force, contact) in self.pressed[stage].iter_mut().zip(&node.evaluation.contacts) {
-            *force = contact.normal_force;
-        }
+        self.looks.set(stage, node.t, &node.evaluation.contacts);
     }
 }
 
 impl Stepper for Direct {
-    fn synchronise(&mut self, mechanism: &Mechanism, t: f64) {
-        if self.since.t == f64::NEG_INFINITY {
+    fn synchronise(&mut self, mechanism: &Mechanism, _: f64) {
+        self.is_inside = false;
+        if self.end.t == 0.0 {
             self.end.evaluate(&mut self.dynamics, mechanism);
         }
+        self.end.joint_work(&self.start.amounts, &mut self.work);
+    }
+
+    fn ends_at_rows(&self) -> bool {
+        false
+    }
+
+    fn read(&mut self, mechanism: &Mechanism, t: f64) {
         self.is_inside = t < self.end.t;
-        if self.is_inside && self.inside.t != t {
+        if self.is_inside {
             self.inside.interpolate([&self.start, &self.end], &self.path.shifts, t);
             self.inside.evaluate(&mut self.dynamics, mechanism);
         }
-        self.look_back();
+        let Self { is_inside, inside, end, work, .. } = self;
+        let now = if *is_inside { inside } else { end };
+        now.joint_work(&self.start.amounts, work);
     }
 
     fn states(&self) -> &[BodyState] {
@@ -357,20 +317,21 @@ impl Stepper for Direct {
         self.forced
     }
 
-    fn peaks_inside(&self) -> &[f64] {
-        &self.since.peaks
-    }
-
-    fn brushes(&self) -> &[bool] {
-        &self.since.brushes
+    fn looks(&self) -> Option<&Looks> {
+        Some(&self.path.looks)
     }
 
     fn joint_work(&self) -> Option<&[f64]> {
-        Some(&self.since.work)
+        Some(&self.work)
+    }
+
+    fn slid(&self) -> Option<&[f64]> {
+        let joints = self.end.evaluation.contacts.len();
+        Some(&self.work[joints..]).filter(|slid| !slid.is_empty())
     }
 
     fn exchange(&self) -> Option<Exchange> {
-        self.since.exchange
+        self.end.exchange(&self.start.amounts)
     }
 
     fn sample(&mut self, mechanism: &Mechanism, t: f64, due: &[bool]) {
@@ -378,10 +339,8 @@ impl Stepper for Direct {
         self.end.evaluate(&mut self.dynamics, mechanism);
     }
 
-    fn advance(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> f64 {
-        if t >= self.end.t {
-            self.step(mechanism, until);
-        }
-        self.end.t.min(until)
+    fn advance(&mut self, mechanism: &Mechanism, _: f64, until: f64) -> f64 {
+        self.step(mechanism, until);
+        self.end.t
     }
 }

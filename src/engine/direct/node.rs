@@ -1,12 +1,13 @@
 //! An instant of the path, and what has been exchanged until then.
 
+use super::super::between;
 use super::super::energy::Exchange;
-use super::tsitouras::between;
 use crate::mechanism::{BodyState, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
 /// Where among the amounts those of the whole machine are: work of everything, of the drives, and how much
-/// changed hands. Behind them comes what the normal force took in each joint.
+/// changed hands. Behind them comes what the normal force took in each joint, and, where those of the whole machine are
+/// kept, normal force times sliding distance in each joint.
 const TOTAL: usize = 0;
 const DRIVES: usize = 1;
 const TURNED_OVER: usize = 2;
@@ -31,7 +32,8 @@ pub struct Node {
 impl Node {
     /// The start of a run; nothing is evaluated yet.
     pub fn new(mechanism: &Mechanism, balanced: bool) -> Self {
-        let amounts = vec![0.0; JOINTS + mechanism.revolutes.len()];
+        let joints = mechanism.revolutes.len();
+        let amounts = vec![0.0; JOINTS + if balanced { 2 * joints } else { joints }];
         Self {
             t: 0.0,
             states: mechanism.bodies.iter().map(|body| body.start).collect(),
@@ -66,6 +68,13 @@ impl Node {
         for (flow, contact) in self.flows[JOINTS..].iter_mut().zip(&self.evaluation.contacts) {
             *flow = contact.normal_force * contact.rate;
         }
+        if self.balanced {
+            let slides = self.flows[JOINTS + mechanism.revolutes.len()..].iter_mut();
+            let joints = mechanism.revolutes.iter().zip(&self.evaluation.contacts);
+            for (flow, (joint, contact)) in slides.zip(joints) {
+                *flow = joint.rubbing(&self.states, contact).map_or(0.0, |[_, power]| power);
+            }
+        }
     }
 
     /// Makes it the instant `t` (s) between two others; `shifts` is the way from one to the other.
@@ -74,21 +83,12 @@ impl Node {
         let s = (t - from.t) / h;
         self.t = t;
         for (i, state) in self.states.iter_mut().enumerate() {
-            let (a, b) = (&from.states[i], &to.states[i]);
-            let [start, end] = [from, to].map(|node| node.evaluation.accelerations[i]);
-            let (mut by, mut twist) = (Vector3::zeros(), Vector3::zeros());
-            for k in 0..3 {
-                (by[k], twist[k]) =
-                    between(h, s, [a.twist[k], b.twist[k]], [start[k], end[k]], shifts[i][k]);
-            }
-            *state = BodyState { twist, ..a.displaced(by) };
+            let ends = [from, to].map(|node| (&node.states[i], node.evaluation.accelerations[i]));
+            *state = between::state(h, s, ends, shifts[i]);
         }
-        // The cubic through amounts and flows at both ends.
         let ends = from.amounts.iter().zip(&to.amounts).zip(from.flows.iter().zip(&to.flows));
         for (amount, ((a, b), (from, to))) in self.amounts.iter_mut().zip(ends) {
-            let (from, to, way) = (h * from, h * to, b - a);
-            let (c2, c3) = (3.0 * way - 2.0 * from - to, from + to - 2.0 * way);
-            *amount = a + s * (from + s * (c2 + s * c3));
+            *amount = a + between::growth(h, s, [*from, *to], b - a);
         }
     }
 
@@ -102,7 +102,8 @@ impl Node {
         })
     }
 
-    /// What the normal force of each joint has taken since then.
+    /// What the normal force of each joint has taken since then, and, where that is kept, behind it normal force times
+    /// sliding distance.
     pub fn joint_work(&self, since: &[f64], work: &mut [f64]) {
         let pairs = self.amounts[JOINTS..].iter().zip(&since[JOINTS..]);
         for (work, (now, then)) in work.iter_mut().zip(pairs) {

@@ -32,6 +32,13 @@ pub fn next_onset(
         if !matches!(revolute.bearing, Bearing::Clearance(_)) || contact.penetration > 0.0 {
             continue;
         }
+        if revolute.is_corner() {
+            let time = -contact.penetration / contact.rate.max(0.0);
+            if next.is_none_or(|next| time < next.time) {
+                next = Some(Onset { time, speed: contact.rate, joint });
+            }
+            continue;
+        }
         let (ring, journal) = (revolute.ring.frame(states), revolute.journal.frame(states));
         let (e, v) = (contact.eccentricity, journal.velocity - ring.velocity);
         // `|e + v τ| = c`, c that of a ring out of round in the direction of e.

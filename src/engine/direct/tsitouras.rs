@@ -116,23 +116,9 @@ pub fn error(h: f64, a: &Accelerations) -> Vector3<f64> {
     sum * h
 }
 
-/// How far a coordinate has come at the share `s` of a step of `h` s, and its rate there: the quintic through
-/// rates `v`, accelerations `a` and the whole way `shift`. It errs by h⁶, less than the step itself.
-pub fn between(h: f64, s: f64, v: [f64; 2], a: [f64; 2], shift: f64) -> (f64, f64) {
-    let (hv, hha) = (h * v[0], h * h * a[0]);
-    // What the parabola from the start misses at the end: place, slope, curvature.
-    let place = shift - hv - 0.5 * hha;
-    let slope = h * v[1] - hv - hha;
-    let curvature = h * h * a[1] - hha;
-    let c3 = 10.0 * place - 4.0 * slope + 0.5 * curvature;
-    let c4 = -15.0 * place + 7.0 * slope - curvature;
-    let c5 = 6.0 * place - 3.0 * slope + 0.5 * curvature;
-    let way = s * (hv + s * (0.5 * hha + s * (c3 + s * (c4 + s * c5))));
-    (way, (hv + s * (hha + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / h)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::super::between::coordinate;
     use super::*;
 
     /// One step of `q̈ = a(t, q)` from q = 1 and q̇ = 0.3: place and rate at its end, and the estimate of its error.
@@ -164,7 +150,7 @@ mod tests {
         let [coarse, fine] = [0.4, 0.2].map(|h| {
             let [q, v, estimate] = step(h, |_, q| -q);
             let error = (q - exact(h)[0]).abs().max((v - exact(h)[1]).abs());
-            let (way, rate) = between(h, 0.4, [0.3, v], [-1.0, -q], q - 1.0);
+            let (way, rate) = coordinate(h, 0.4, [0.3, v], [-1.0, -q], q - 1.0);
             let [place, speed] = exact(0.4 * h);
             let inside = (1.0 + way - place).abs().max((rate - speed).abs());
             [error, estimate.abs(), inside]

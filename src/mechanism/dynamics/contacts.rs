@@ -82,7 +82,7 @@ pub(super) fn touch(
 /// What the joints remember at the start of a run; nothing where no law asks for it.
 pub(super) fn touches(mechanism: &Mechanism, starts: &[BodyState]) -> Vec<Touch> {
     let remembers = |joint: &Revolute| match &joint.bearing {
-        Bearing::Clearance(clearance) => clearance.law.remembers(),
+        Bearing::Clearance(clearance) => clearance.remembers(),
         Bearing::Ideal | Bearing::Native { .. } => false,
     };
     if !mechanism.revolutes.iter().any(remembers) {
@@ -93,6 +93,19 @@ pub(super) fn touches(mechanism: &Mechanism, starts: &[BodyState]) -> Vec<Touch>
         Touch::begin(penetration, rate)
     };
     mechanism.revolutes.iter().map(begin).collect()
+}
+
+/// What a joint remembers of its contact at these states.
+pub(super) fn reached(joint: &Revolute, memory: After, states: &[BodyState]) -> Touch {
+    let contact = contact(joint, states);
+    match &joint.bearing {
+        Bearing::Clearance(clearance) => {
+            clearance.reached(memory, &contact, || joint.sliding(states).map_or(0.0, |[_, v]| v))
+        }
+        Bearing::Ideal | Bearing::Native { .. } => {
+            memory.reached(contact.penetration, contact.rate)
+        }
+    }
 }
 
 /// Where the journal of a joint stands; flying in one that no law acts in.

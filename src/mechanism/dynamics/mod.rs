@@ -10,7 +10,7 @@ mod groups;
 mod pairs;
 mod projection;
 
-use self::contacts::{contact, touch, touches};
+use self::contacts::{reached, touch, touches};
 use self::groups::Group;
 use self::pairs::Pair;
 use super::constraints::{Constraints, Rigid, groups};
@@ -81,7 +81,7 @@ impl Dynamics {
         }
         let beside = |joint: &Prismatic| {
             let [base, slider] = joint.points();
-            base.y != slider.y
+            base.y != slider.y && !joint.play
         };
         let mut prescribed = vec![None; mechanism.prismatics.len()];
         let mut passive = vec![true; mechanism.prismatics.len()];
@@ -220,8 +220,7 @@ impl Dynamics {
             *memory = load.remember(at, *memory);
         }
         for (touch, joint) in self.touches.iter_mut().zip(&mechanism.revolutes) {
-            let Contact { penetration, rate, .. } = contact(joint, states);
-            *touch = touch.after(t - self.touched).reached(penetration, rate);
+            *touch = reached(joint, touch.after(t - self.touched), states);
         }
         self.touched = t;
         for (angle, actuator) in self.angles.iter_mut().zip(&mechanism.actuators) {

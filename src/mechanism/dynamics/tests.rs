@@ -35,6 +35,7 @@ fn bars(drive: Drive) -> Mechanism {
             base: attachment(0, -0.1),
             slider: attachment(1, 0.1),
             axes: [UnitComplex::identity(); 2],
+            play: false,
         }],
         actuators: vec![Actuator::new("P1", JointIndex::Prismatic(0), drive)],
         commands: Arc::new(Constant),

@@ -1,7 +1,8 @@
 //! `[sensors]` and `[columns]` of a template, which stand for a `[[sensor]]` of each column of its recordings.
 
 use crate::measure::log::Source;
-use crate::scenario::{Body, Problem, Quantity, Scenario, Sensor, Sensors};
+use crate::mechanism::JointIndex;
+use crate::scenario::{Body, DriveMode, Mechanism, Problem, Quantity, Scenario, Sensor, Sensors};
 
 /// Where the tracker looks at the output body: the origin of its axes.
 const TRACKED: &str = "C";
@@ -56,6 +57,99 @@ pub(super) fn named(
         exact(source.unwrap_or_else(|| Source::new(name, 1.0)), *quantity, of)
     };
     Ok(known.iter().map(sensor).collect())
+}
+
+/// Noise of the instruments of a good laboratory, as the rigs in `assets/` have them: a tracker's micrometres and
+/// microradians, an encoder's steps, a load cell's newtons with its anti-alias filter; torques of small motors.
+const LABORATORY: Sensors = Sensors {
+    pose_std: 4e-6,
+    angle_std: 3e-5,
+    length_resolution: 1e-6,
+    force_std: 0.15,
+    force_lowpass: 400.0,
+};
+const ANGLE_RESOLUTION: f64 = 2e-5;
+const TORQUE_STD: f64 = 0.002;
+
+/// Natural angular frequency in rad/s of a servo that turns a whole machine, 20 Hz, and its damping ratio: those of common
+/// drives. The gains of `[drive]` are for prismatic joints.
+const STIFF: f64 = 20.0 * std::f64::consts::TAU;
+const DAMPING_RATIO: f64 = 0.7;
+
+/// A machine as a rig to begin with: with sensors of all drives and of its output, and servos where drives were prescribed. One that reads its recordings by
+/// `[columns]` is as it was.
+///
+/// # Errors
+/// A template whose machine cannot be put together.
+pub fn instrumented(scenario: &Scenario) -> Result<Scenario, Problem> {
+    let mut rig = scenario.clone();
+    rig.drive.mode = DriveMode::Servo;
+    match &scenario.mechanism {
+        Mechanism::ThreeRpr(_) => {
+            rig.sensors = Some(LABORATORY);
+            Ok(rig)
+        }
+        Mechanism::DriveStage(_) | Mechanism::Pendulum(_) => Ok(scenario.clone()),
+        _ => {
+            let built = crate::model::parts_of(&rig)?;
+            if built.actuators.iter().all(|drive| matches!(drive.joint, JointIndex::Revolute(_))) {
+                let inertia =
+                    |body: &crate::mechanism::Body| body.inertia + body.mass * built.size().powi(2);
+                let inertia: f64 = built.bodies.iter().map(inertia).sum();
+                rig.drive.stiffness = inertia * STIFF * STIFF;
+                rig.drive.damping = 2.0 * DAMPING_RATIO * inertia * STIFF;
+            }
+            let mut rig = super::expand(&rig)?;
+            let mechanism = crate::model::parts_of(&rig)?;
+            if let Mechanism::Described(described) = &mut rig.mechanism {
+                described.sensors = all_sensors(&mechanism);
+                let output = &mechanism.bodies[mechanism.output].name;
+                let body = described.bodies.iter().find(|body| body.name == *output);
+                let point = body.and_then(|body| body.points.keys().next());
+                if let Some(point) = point {
+                    let tracked = format!("{output}.{point}");
+                    let place = [("x", Quantity::X), ("y", Quantity::Y)];
+                    described.sensors.extend(place.map(|(column, quantity)| Sensor {
+                        std: LABORATORY.pose_std,
+                        ..exact(Source::new(column, 1.0), quantity, &tracked)
+                    }));
+                }
+            }
+            Ok(rig)
+        }
+    }
+}
+
+/// A command, an encoder and an effort of each drive; an encoder of each joint of a machine without drives.
+fn all_sensors(mechanism: &crate::mechanism::Mechanism) -> Vec<Sensor> {
+    let sensor =
+        |column: String, quantity, of: &str| exact(Source::new(&column, 1.0), quantity, of);
+    let mut sensors = Vec::new();
+    for drive in &mechanism.actuators {
+        let name = &drive.name;
+        let (letter, resolution, std, lowpass) = match drive.joint {
+            JointIndex::Prismatic(_) => {
+                let Sensors { length_resolution, force_std, force_lowpass, .. } = LABORATORY;
+                ("F", length_resolution, force_std, force_lowpass)
+            }
+            JointIndex::Revolute(_) => {
+                ("T", ANGLE_RESOLUTION, TORQUE_STD, LABORATORY.force_lowpass)
+            }
+        };
+        sensors.push(sensor(format!("q_{name}_cmd"), Quantity::Command, name));
+        sensors
+            .push(Sensor { resolution, ..sensor(format!("q_{name}"), Quantity::Position, name) });
+        let effort = sensor(format!("{letter}_{name}"), Quantity::Force, name);
+        sensors.push(Sensor { std, lowpass, ..effort });
+    }
+    if sensors.is_empty() {
+        let joints = mechanism.revolutes.iter();
+        sensors.extend(joints.map(|joint| Sensor {
+            resolution: ANGLE_RESOLUTION,
+            ..sensor(format!("q_{}", joint.name), Quantity::Position, &joint.name)
+        }));
+    }
+    sensors
 }
 
 /// A sensor of which no noise is declared.

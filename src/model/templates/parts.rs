@@ -68,9 +68,8 @@ pub(super) fn prismatic(name: &str, base: &str, slider: &str, range: Option<[f64
         name: name.to_owned(),
         base: base.to_owned(),
         slider: slider.to_owned(),
-        axis: 0.0,
-        angle: None,
         range,
+        ..Prismatic::default()
     })
 }
 

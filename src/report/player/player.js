@@ -168,6 +168,13 @@ function mark(joint, t) {
   return best;
 }
 
+/** What a signal is at the frame shown: of the largest and the smallest since the frame before the one farther from 0. */
+function instant(signal) {
+  const k = frameAt(now);
+  const [least, most] = [low(k, signal), high(k, signal)];
+  return Math.abs(least) > Math.abs(most) ? least : most;
+}
+
 function buildJoints() {
   const place = document.getElementById("joints");
   scene.joints.forEach((joint, i) => {
@@ -201,7 +208,8 @@ function showJoints({ linear }) {
     if (!thinned) orbit.setAttribute("d", path([...trail, here]));
     for (const element of [journal, centre]) set(element, { cx: here[0], cy: -here[1] });
     const hit = hits[i];
-    force.textContent = hit.strength > 0.02 ? `${digits(hit.force)} N` : "–";
+    // The number is the instant's, as in the legend of the curves; the mark fades after the hit.
+    force.textContent = `${digits(instant(i))} N`;
     const towards = Math.atan2(hit.direction[1], hit.direction[0]);
     const at = (radius, turn = 0) => [radius * Math.cos(towards + turn), radius * Math.sin(towards + turn)];
     // The force on the journal, from the ring inwards; the square root lets weak hits be seen.
@@ -305,10 +313,8 @@ function showCurves() {
   if (windowLength() < end) drawCurves();
   const x = xOf(now);
   set(cursor, { x1: x, x2: x });
-  const k = frameAt(now);
   for (const { value, signal } of readings) {
-    const [least, most] = [low(k, signal), high(k, signal)];
-    value.textContent = digits(Math.abs(least) > Math.abs(most) ? least : most);
+    value.textContent = digits(instant(signal));
   }
 }
 
@@ -397,12 +403,18 @@ function start() {
     event.preventDefault();
     KEYS[key](event);
   });
-  const choose = ({ clientX, buttons }) => {
+  const choose = (event) => {
+    const { clientX, buttons } = event;
     if (!buttons) return;
+    // A drag chooses a time, not the text beside it.
+    event.preventDefault();
     const { left, width } = plot.getBoundingClientRect();
     pause(shown[0] + ((clientX - left - EDGE.left) / (width - EDGE.left - EDGE.right)) * (shown[1] - shown[0]));
   };
-  plot.addEventListener("pointerdown", choose);
+  plot.addEventListener("pointerdown", (event) => {
+    plot.setPointerCapture(event.pointerId);
+    choose(event);
+  });
   plot.addEventListener("pointermove", choose);
   new ResizeObserver(() => { drawCurves(); show(); }).observe(plot);
   buildLegend();

@@ -1,6 +1,7 @@
 //! `[columns]`: which column of a recording is which quantity, and in which unit.
 
 use crate::measure::log::Source;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -8,11 +9,11 @@ use std::collections::BTreeMap;
 /// column that holds it: a name where the column is in SI units, `{ column = "…", scale = … }` where its
 /// numbers are to be multiplied. Columns that nothing asks for are left alone. A described machine has
 /// `[[sensor]]`s for all of them but `t`.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Columns(BTreeMap<String, Column>);
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a column's name, or a table with column and scale")]
 enum Column {
     Name(String),

@@ -1,14 +1,16 @@
 //! `[contact]`: the force between a journal and its bearing.
 
 use crate::contact::laws::{self, HERTZ_STEP, Kind};
-use crate::contact::{CoulombFriction, Friction, StiffnessForm};
+use crate::contact::{CoulombFriction, Extent, Film, Friction, StiffnessForm};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserializer, Error};
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::sync::LazyLock;
 
 /// Contact law and its parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contact {
     /// Which law. Default `hertz-step`: the paper's.
@@ -50,7 +52,7 @@ pub struct Contact {
     /// How friction follows the sliding speed. Default `coulomb`, with a tanh around rest.
     #[serde(skip_serializing_if = "FrictionLaw::is_coulomb")]
     pub friction_law: FrictionLaw,
-    /// Static friction over sliding friction of `bengisu-akay` and `stribeck`, 1 or more. Default 1.5: dry steel,
+    /// Static friction over sliding friction of `bengisu-akay`, `stribeck` and `lugre`, 1 or more. Default 1.5: dry steel,
     /// about 0.6 against 0.4.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub static_ratio: Option<f64>,
@@ -62,6 +64,24 @@ pub struct Contact {
     /// that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest_velocity: Option<f64>,
+    /// How far the bristles of `lugre` bend before surfaces slide, m. Default 1e-6: the size of asperities.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub presliding: Option<f64>,
+    /// Wear coefficient k of rings, 1/Pa (m³ removed per N m rubbed): Archard's dimensionless coefficient over the hardness
+    /// of the softer surface. `freeplay wear` takes it, with the axial `length` of bearings. Default none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wear_coefficient: Option<f64>,
+    /// Oil between journals and rings, beside the dry contact. Default `none`.
+    #[serde(skip_serializing_if = "FilmKind::is_none")]
+    pub film: FilmKind,
+    /// Dynamic viscosity μ of the oil, Pa s. A film needs it; `length` is the bearing's axial length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub viscosity: Option<f64>,
+    /// Eccentricity over clearance from which a film grows no stiffer, above 0 and below 1: the rest is the roughness of
+    /// the surfaces, over which the film gives way to the dry contact. Default 0.95: a roughness of some µm in a gap of
+    /// a tenth of a millimetre.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub film_eccentricity_max: Option<f64>,
 }
 
 impl Default for Contact {
@@ -84,14 +104,46 @@ impl Default for Contact {
             static_ratio: None,
             stribeck_velocity: None,
             rest_velocity: None,
+            presliding: None,
+            wear_coefficient: None,
+            film: FilmKind::None,
+            viscosity: None,
+            film_eccentricity_max: None,
         }
     }
 }
+
+/// Eccentricity over clearance from which films grow no stiffer where nothing is written.
+const FILM_ECCENTRICITY_MAX: f64 = 0.95;
+
+/// How far bristles bend where nothing is written, m.
+const PRESLIDING: f64 = 1e-6;
 
 /// Static over sliding friction where nothing is written.
 const STATIC_RATIO: f64 = 1.5;
 
 impl Contact {
+    /// Whether something beside laws asks for the key: wear and films for the `length` of bearings.
+    pub fn asks_for(&self, key: &str) -> bool {
+        key == "length" && (self.wear_coefficient.is_some() || self.viscosity.is_some())
+    }
+
+    /// The film of this kind in a bearing of a radius and a radial clearance in m; none without a viscosity.
+    pub fn film(&self, kind: FilmKind, radius: f64, clearance: f64) -> Option<Film> {
+        let extent = match kind {
+            FilmKind::None => return None,
+            FilmKind::Squeeze => Extent::Full,
+            FilmKind::ShortBearing => Extent::Pressing,
+        };
+        let length = self.length.unwrap_or(2.0 * radius);
+        Some(Film {
+            damping: Film::damping_of(self.viscosity?, radius, length, clearance),
+            extent,
+            eccentricity_max: self.film_eccentricity_max.unwrap_or(FILM_ECCENTRICITY_MAX),
+            fades: true,
+        })
+    }
+
     /// The friction law with the coefficient μ of a joint.
     pub fn friction(&self, coefficient: f64) -> Friction {
         let velocity = self.friction_velocity;
@@ -108,12 +160,16 @@ impl Contact {
                 Friction::Ambrosio { coefficient, rest, velocity }
             }
             FrictionLaw::Stribeck => Friction::Stribeck { coefficient, ratio, velocity, fall },
+            FrictionLaw::Lugre => {
+                let presliding = self.presliding.unwrap_or(PRESLIDING);
+                Friction::LuGre { coefficient, ratio, velocity, fall, presliding }
+            }
         }
     }
 }
 
 /// A friction law by name; equations and sources stand at [`Friction`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionLaw {
     /// `μ F tanh(v/v_s)`.
@@ -126,6 +182,8 @@ pub enum FrictionLaw {
     Ambrosio,
     /// Coulomb's with static friction that falls over `stribeck_velocity`.
     Stribeck,
+    /// Bristles that bend over `presliding` and hold at rest, with Stribeck's friction when they slide.
+    Lugre,
 }
 
 impl FrictionLaw {
@@ -138,11 +196,34 @@ impl FrictionLaw {
     pub fn takes(self, key: &str) -> bool {
         match key {
             "static_ratio" | "stribeck_velocity" => {
-                matches!(self, FrictionLaw::BengisuAkay | FrictionLaw::Stribeck)
+                matches!(
+                    self,
+                    FrictionLaw::BengisuAkay | FrictionLaw::Stribeck | FrictionLaw::Lugre
+                )
             }
+            "presliding" => self == FrictionLaw::Lugre,
             "rest_velocity" => self == FrictionLaw::Ambrosio,
             _ => true,
         }
+    }
+}
+
+/// An oil film by name; equations and source stand at [`Film`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FilmKind {
+    /// No oil.
+    None,
+    /// A full film: it resists being squeezed out as much as being drawn in.
+    Squeeze,
+    /// A film that presses and does not pull: the bearing of Ocvirk, which carries a turning journal.
+    ShortBearing,
+}
+
+impl FilmKind {
+    /// Whether there is none.
+    pub fn is_none(&self) -> bool {
+        *self == FilmKind::None
     }
 }
 
@@ -209,6 +290,16 @@ impl Law {
 /// Whether a key of `[contact]` belongs to some laws and not to others.
 pub fn is_law_key(key: &str) -> bool {
     laws::ALL.iter().any(|kind| kind.takes(key))
+}
+
+impl JsonSchema for Law {
+    fn schema_name() -> Cow<'static, str> {
+        "Law".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({"type": "string", "enum": *NAMES})
+    }
 }
 
 impl Serialize for Law {

@@ -1,7 +1,8 @@
 //! The sections of a file that describes its mechanism itself: `[ground]`, `[[body]]`, `[[joint]]`,
 //! `[[drive]]`, `[[spring]]`, `[[stop]]`, `[[output]]`, `[[sensor]]`.
 
-use super::{Law, Sampled, Term1};
+use super::{FilmKind, Law, Sampled, Term1};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -30,7 +31,7 @@ pub struct Described {
 }
 
 /// What does not move.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Ground {
     /// Points by name, m. Default none.
@@ -38,7 +39,7 @@ pub struct Ground {
 }
 
 /// A rigid body.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Body {
     /// Its name; no two are alike, and none is called `ground`.
@@ -71,7 +72,7 @@ fn is_zero(numbers: &[f64; 3]) -> bool {
 }
 
 /// A homogeneous shape.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 pub enum Shape {
     /// A solid round bar between two points of the body.
@@ -108,7 +109,7 @@ pub enum Shape {
 }
 
 /// A joint between two bodies, or a body and the ground.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Joint {
     /// `kind = "revolute"`: a journal in a bearing ring.
@@ -142,7 +143,7 @@ impl Joint {
 }
 
 /// A revolute joint. Its coordinate is the angle of the journal's body less that of the ring's.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Revolute {
     /// Its name.
@@ -178,10 +179,20 @@ pub struct Revolute {
     /// Penetration at which the damping is full, m. Default that of `[contact]`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub d_max: Option<f64>,
+    /// Oil between journal and ring. Default that of `[contact]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub film: Option<FilmKind>,
+    /// Wear coefficient of the ring, 1/Pa. Default that of `[contact]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wear_coefficient: Option<f64>,
+    /// What the ring is wider by than its clearance, m, in directions at equal angles round it from the x axis of its
+    /// body on; a periodic cubic spline between them. Default none: a circle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Vec<f64>>,
 }
 
 /// A prismatic joint. Its coordinate is the distance along the axis from base to slider.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Prismatic {
     /// Its name.
@@ -199,10 +210,45 @@ pub struct Prismatic {
     /// Shortest and longest length, m, that the motion may ask for. Default none: nothing is checked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub range: Option<[f64; 2]>,
+    /// Gap, m, between the slider and each of two guides along the axis, where both are centred. Default none: the joint
+    /// is ideal. With it the slider is a block of `length` and `height` about its point, and its corners hit the guides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<f64>,
+    /// Length of the slider along the axis, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length: Option<f64>,
+    /// Its height across the axis, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub height: Option<f64>,
+    /// Radius, m, with which its corners are rounded: what the stiffness is of. Default 1e-3: a broken edge.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corner_radius: Option<f64>,
+    /// Coulomb friction coefficient at the guides. Default 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
+    /// Contact law at the guides. Default that of `[contact]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub law: Option<Law>,
+    /// Stiffness K of a corner, N/m^1.5. Default that of `[contact]`, or from E, ν and the corner's radius.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<f64>,
+    /// Coefficient of restitution. Default that of `[contact]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
+    /// Damping in the law's unit. Default that of `[contact]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping: Option<f64>,
+}
+
+impl Prismatic {
+    /// The clearance in m, of a joint that has one.
+    pub fn play(&self) -> Option<f64> {
+        self.clearance.filter(|clearance| *clearance > 0.0)
+    }
 }
 
 /// Two bodies that move as one: a point of each at the same place.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Fixed {
     /// Its name.
@@ -216,7 +262,7 @@ pub struct Fixed {
 }
 
 /// A drive on a joint.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum JointDrive {
     /// `kind = "prescribed"`: the coordinate follows the motion exactly.
@@ -256,7 +302,7 @@ impl JointDrive {
 }
 
 /// A drive without numbers.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct On {
     /// Name of the driven joint.
@@ -267,7 +313,7 @@ pub struct On {
 }
 
 /// F = stiffness (q_cmd − q) + damping (q̇_cmd − q̇).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Servo {
     /// Name of the driven joint.
@@ -282,7 +328,7 @@ pub struct Servo {
 }
 
 /// The sampled cascade of [`Sampled`] on a joint.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SampledDrive {
     /// Name of the driven joint.
@@ -296,7 +342,7 @@ pub struct SampledDrive {
 }
 
 /// A force (N) or torque (N m) over time: a constant, sines, and a column of a table, added up.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Force {
     /// Name of the driven joint.
@@ -318,7 +364,7 @@ pub struct Force {
 }
 
 /// A spring with a damper: between two points, or in a revolute joint.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Spring {
     /// Its two points, `body.point`; or `joint` below.
@@ -342,7 +388,7 @@ pub struct Spring {
 }
 
 /// End stops of a joint: beyond either end of the range a spring and damper push back, never pull.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stop {
     /// Name of the joint.
@@ -365,7 +411,7 @@ fn stop_depth() -> f64 {
 }
 
 /// A body or a point whose motion is written.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Output {
     /// The body whose axes are written; or a point.
@@ -392,7 +438,7 @@ impl Output {
 }
 
 /// What a column of a log is a reading of.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sensor {
     /// The column.
@@ -427,7 +473,7 @@ fn is_one(scale: &f64) -> bool {
 }
 
 /// A quantity that a sensor reads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Quantity {
     /// Coordinate of a joint: angle or length.

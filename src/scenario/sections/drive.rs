@@ -1,9 +1,10 @@
 //! `[drive]`: the prismatic actuators.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How the actuators follow the commanded lengths.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Drive {
     /// Kind of drive. Default `prescribed`: what the paper's ADAMS motions do.
@@ -29,7 +30,7 @@ impl Drive {
 /// A sampled cascade of a position and a velocity loop; its equations stand at
 /// [`Cascade`](crate::mechanism::Cascade). The defaults are the drive of the EMPS benchmark (Janot,
 /// Gautier, Brunot 2019).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sampled {
     /// Gain K_P of the position loop, 1/s. Default 160.18.
@@ -66,7 +67,7 @@ impl Default for Drive {
 }
 
 /// A kind of drive by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DriveMode {
     /// The length follows the command exactly; the force is the reaction.

@@ -1,14 +1,16 @@
 //! `[joints]`: the revolute joints of a machine, all alike or one by one.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::fmt;
 
 /// Bearings and journals. A value per joint is written as one number for all or as a list, in the order
 /// of the machine's revolute joints (3-RPR: A1 A2 A3 C1 C2 C3). A file that describes its joints itself
 /// takes these where a joint says nothing.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Joints {
     /// Inner radius of every bearing, m. Default 0.010: the paper. A change of clearance keeps it
@@ -48,6 +50,17 @@ impl PerJoint {
     /// All numbers: one, or as many as were listed.
     pub fn values(&self) -> &[f64] {
         &self.0
+    }
+}
+
+impl JsonSchema for PerJoint {
+    fn schema_name() -> Cow<'static, str> {
+        "PerJoint".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let many = json_schema!({"type": "array", "items": {"type": "number"}, "minItems": 1});
+        json_schema!({"anyOf": [{"type": "number"}, many]})
     }
 }
 

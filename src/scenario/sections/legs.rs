@@ -1,9 +1,10 @@
 //! `[legs]`: the bars of the three legs, all alike.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A leg: a cylinder at the base and a rod at the platform, solid round bars on one axis.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Legs {
     /// Density of both bars, kg/m³. Default 2270: the paper.

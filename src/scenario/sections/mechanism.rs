@@ -1,12 +1,13 @@
 //! `[mechanism]`: which machine, and its bodies.
 
 use super::{Circle, Described, Joint, JointLine, JointMotion, JointPath, Motion};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// The machine, by its `kind`, the only key of a scenario without a default: a file that does not
 /// say what it describes is more likely a mistake than a 3-RPR.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind")]
 pub enum Mechanism {
     /// `kind = "3rpr"`: the planar parallel manipulator with three legs, each R-P-R.
@@ -39,7 +40,8 @@ pub enum Mechanism {
 }
 
 impl Mechanism {
-    pub(in crate::scenario) const KINDS: [&'static str; 8] = [
+    /// All kinds.
+    pub const KINDS: [&'static str; 8] = [
         "3rpr",
         "drive-stage",
         "pendulum",
@@ -129,7 +131,7 @@ impl Mechanism {
 
 /// A load that slides along the x axis on the joint P1, horizontal unless gravity says otherwise. Its
 /// length is the x of `[motion]`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct DriveStage {
     /// Moved mass, kg. Default 95.1089: that of the EMPS benchmark (Janot, Gautier, Brunot 2019),
@@ -146,7 +148,7 @@ impl Default for DriveStage {
 /// An arm that swings about the joint A1, released at the start. Nothing moves it but gravity;
 /// `[motion]` and `[drive]` have no meaning. The defaults are the arm of Kaheman et al., *The
 /// Experimental Multi-Arm Pendulum on a Cart*, 2022.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Pendulum {
     /// Mass, kg. Default 0.147584572.
@@ -175,7 +177,7 @@ impl Default for Pendulum {
 }
 
 /// Base and platform of the 3-RPR manipulator: two equilateral triangles.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ThreeRpr {
     /// Side of the triangle of base anchors A1 A2 A3, m. Default 0.660: the paper.
@@ -210,7 +212,7 @@ impl ThreeRpr {
 
 /// A crank about O on the ground, a rod from its pin A to the pin B of a slider that moves along a line
 /// through the ground's point S. Links are slender uniform bars of one mass per length.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SliderCrank {
     /// Length of the crank, m. Default 0.05.
@@ -247,7 +249,7 @@ impl Default for SliderCrank {
 
 /// A crank about O and a rocker about D on the ground, both joined by a coupler from A to B. Links are
 /// slender uniform bars.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FourBar {
     /// Distance of O and D, along x, m. Default 0.2.
@@ -281,7 +283,7 @@ impl Default for FourBar {
 }
 
 /// Cranks about O1 and O2 on the ground and two rods that meet in E. Links are slender uniform bars.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FiveBar {
     /// Distance of O1 and O2, along x about the origin, m. Default 0.1.
@@ -304,7 +306,7 @@ impl Default for FiveBar {
 
 /// Three legs of a driven crank and a rod each carry a platform: cranks about O1 O2 O3, pins A1 A2 A3,
 /// platform corners C1 C2 C3. Links are slender uniform bars.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ThreeRrr {
     /// Side of the triangle of base anchors O1 O2 O3, m. Default 0.66.
@@ -336,7 +338,7 @@ impl Default for ThreeRrr {
 
 /// An arm about O on the ground and a second one about A at its end, released at the start. Nothing
 /// moves them but gravity. Arms are slender uniform bars.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct DoublePendulum {
     /// Lengths, m. Default [0.2, 0.16].

@@ -17,7 +17,7 @@ mod simulation;
 pub use crate::contact::StiffnessForm;
 pub use crate::engine::StepControl;
 pub use columns::Columns;
-pub use contact::{Contact, FrictionLaw, Law, is_law_key};
+pub use contact::{Contact, FilmKind, FrictionLaw, Law, is_law_key};
 pub use described::{
     Body, Described, Fixed, Force, GROUND, Ground, Joint, JointDrive, On, Output, Prismatic,
     Quantity, Revolute, SampledDrive, Sensor, Servo, Shape, Spring, Stop,

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The angle of the default motions, rad: far from φ = 0 and φ = π, where base and platform
@@ -11,7 +12,7 @@ const SAFE_PHI: f64 = FRAC_PI_6;
 /// The commanded motion, by its `kind` (default `circle`, the assumed reading of the paper's
 /// "trajectory with a constant velocity"). The defaults of each kind stay within the default
 /// machine's stroke, near the origin, and away from its singularities.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Motion {
     /// `kind = "circle"`: a circle at constant speed.
@@ -59,7 +60,7 @@ pub struct JointMotion {
 }
 
 /// A coordinate over time, m or rad.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum JointPath {
     /// q = start + velocity · t.
@@ -78,7 +79,7 @@ impl JointPath {
 }
 
 /// A coordinate at constant rate.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct JointLine {
     /// Coordinate at t = 0, m or rad. Default none: that of the bodies' `start`.
@@ -89,7 +90,7 @@ pub struct JointLine {
 }
 
 /// A coordinate from rest to rest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointQuintic {
     /// First coordinate, m or rad. Default none: that of the bodies' `start`.
@@ -102,7 +103,7 @@ pub struct JointQuintic {
 }
 
 /// Sines about a middle.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct JointMultisine {
     /// Middle, m or rad. Default none: that of the bodies' `start`.
@@ -113,7 +114,7 @@ pub struct JointMultisine {
 }
 
 /// A column of a table over its column `t`.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct JointTable {
     /// The CSV file.
@@ -124,7 +125,7 @@ pub struct JointTable {
 }
 
 /// One sine of a coordinate or of a force.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Term1 {
     /// Amplitude, in the unit of what it is part of.
@@ -143,7 +144,7 @@ impl Default for Motion {
 }
 
 /// (x, y) = center + radius · [cos, sin](2π t/period + phase), φ constant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Circle {
     /// Radius, m. Default 0.050: assumed; uses about half of the stroke.
@@ -165,7 +166,7 @@ impl Default for Circle {
 }
 
 /// (x, y) = start + velocity · t, φ constant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Line {
     /// Position at t = 0, m. Default [-0.05, 0]: with the default velocity the line passes the
@@ -184,7 +185,7 @@ impl Default for Line {
 }
 
 /// pose = from + (to − from) · (10τ³ − 15τ⁴ + 6τ⁵), τ = t/time; holds before and after.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Quintic {
     /// First pose [x, y, φ], m and rad. Default [-0.05, 0, π/6]: as the default line.
@@ -202,7 +203,7 @@ impl Default for Quintic {
 }
 
 /// pose = center + Σ amplitude · sin(2π frequency t + phase).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Multisine {
     /// Middle pose [x, y, φ], m and rad. Default [0, 0, π/6]: as the default circle.
@@ -227,7 +228,7 @@ impl Default for Multisine {
 }
 
 /// One sine of a [`Multisine`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Term {
     /// Amplitude [x, y, φ], m and rad. Default [0, 0, 0]: only what is named moves.
@@ -245,7 +246,7 @@ impl Default for Term {
 }
 
 /// A path from a CSV file with the columns `t,x,y,phi`, s, m and rad.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
     /// The CSV file as written in the scenario; [`Scenario::resolve`](crate::scenario::Scenario::resolve)

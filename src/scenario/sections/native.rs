@@ -1,9 +1,10 @@
 //! `[native]`: the physics engine's own contacts, for `contact.law = "native"`.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Settings of the physics engine's contacts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Native {
     /// Share of the normal speed that a journal keeps when it hits after a flight, beside what the

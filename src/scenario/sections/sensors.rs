@@ -1,10 +1,11 @@
 //! `[sensors]`: the instruments that made a rig's log.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Errors of the instruments. The section is absent where nothing is measured. Each default is 0,
 /// an instrument without that error: an uncertainty nobody declared is not invented.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sensors {
     /// Standard deviation of the tracked position in x and in y, m, white. Default 0: exact.

@@ -1,6 +1,7 @@
 //! `[simulation]`: how long, how finely, how exactly.
 
 use crate::engine::{Engine, StepControl};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How a scenario steps that asks for nothing: 1e-5 m/s of velocity error a step. It follows the
@@ -12,7 +13,7 @@ const DEFAULT_TOLERANCE: f64 = 1e-5;
 const DEFAULT_SETTLE: f64 = 0.2;
 
 /// Time span, output and stepping.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Simulation {
     /// Simulated time, s. Default 1: one turn of the default circle.

@@ -15,7 +15,8 @@ mod verdict;
 
 pub use first_hit::{FirstHit, FirstHits};
 pub use plan::Options;
-pub(in crate::study) use probe::{Forces, quantile};
+pub(in crate::study) use plan::{machine, tolerance};
+pub(in crate::study) use probe::{Forces, Measured, measure, quantile};
 pub use quantities::{QUANTITIES, Quantity};
 pub use result::{ChaosResult, Comparison, NativeResult, RowResult, TrendResult};
 pub use statistics::{Behaviour, Mean, Trend};
@@ -23,12 +24,11 @@ pub use verdict::{Use, Verdict, in_words};
 
 use super::chaos::{self, Chaos, Look};
 use super::folder::Folder;
-use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused};
+use super::run::{PAGE_FILE, RunError, keep_scenario, refused, scenario_files};
 use crate::engine;
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
-use plan::{Plan, machine, plan, tolerance};
-use probe::{Measured, measure};
+use plan::{Plan, plan};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::fs;
 use std::path::PathBuf;
@@ -132,16 +132,15 @@ pub fn compare(
     comparison.answer = verdict::answer(&comparison);
 
     let pictures = pictures::draw(scenario, &comparison, &plan, &runs, &looks)?;
-    let texts =
-        [COMPARE_FILE, TABLE_FILE, SUMMARY_FILE, SCENARIO_FILE, PAGE_FILE].map(str::to_owned);
+    let texts = [COMPARE_FILE, TABLE_FILE, SUMMARY_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let drawn = pictures.iter().map(|picture| picture.file.clone());
-    comparison.files = texts.into_iter().chain(drawn).collect();
+    comparison.files = texts.chain(scenario_files(scenario)).chain(drawn).collect();
     let json = super::run::to_json(&comparison);
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
     write(COMPARE_FILE, &json)?;
     write(TABLE_FILE, &table::csv(&comparison))?;
     write(SUMMARY_FILE, &table::markdown(&comparison))?;
-    write(SCENARIO_FILE, &scenario.to_toml())?;
+    keep_scenario(scenario, &folder)?;
     for picture in &pictures {
         write(&picture.file, &picture.svg)?;
     }

@@ -1,4 +1,4 @@
-//! The page of a comparison: tables and pictures, and at the end a plain answer.
+//! The page of a comparison: a plain answer, then tables and pictures.
 
 use super::quantities::QUANTITIES;
 use super::result::{ChaosResult, Comparison, RowResult};
@@ -13,14 +13,14 @@ pub fn page(comparison: &Comparison, pictures: &[Picture]) -> String {
     let facts = facts(comparison);
     let provenance = provenance(comparison);
     let parts = [
+        Part::Text { id: "answer", title: "Answer", paragraphs: &comparison.answer },
+        Part::Table(verdicts(comparison)),
         Part::Facts(&facts),
         Part::Table(side_by_side(comparison)),
         Part::Table(law_over_steps(comparison)),
         Part::Table(limits(comparison)),
         Part::Pictures(pictures),
         Part::Provenance(&provenance),
-        Part::Table(verdicts(comparison)),
-        Part::Text { id: "answer", title: "Answer", paragraphs: &comparison.answer },
     ];
     let title = format!("Contact models compared: {}", comparison.provenance.scenario_name);
     document(&title, &lead(comparison), &parts)
@@ -30,7 +30,7 @@ fn lead(c: &Comparison) -> String {
     format!(
         "The same motion under the contact law (hertz-step), under the contacts that the physics \
          engine itself has (native), and without clearance (ideal). Every figure is a mean over {} \
-         starts of {} s, ± its standard error, the first {} s left out. The answer stands at the end.",
+         starts of {} s, ± its standard error, the first {} s left out.",
         c.starts,
         number(c.duration_s),
         number(c.settle_s)

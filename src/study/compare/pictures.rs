@@ -6,7 +6,7 @@ use super::probe::Measured;
 use super::quantities::index;
 use super::result::{Comparison, RowResult};
 use crate::engine::{self, Schedule};
-use crate::report::{Curve, Panel, Picture, ReportError, Style, number, panels_svg};
+use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, number, panels_svg};
 use crate::scenario::{Law, Scenario};
 use crate::study::chaos::{self, Chaos};
 use crate::study::run::RunError;
@@ -43,10 +43,10 @@ fn solid(name: String, points: Vec<(f64, f64)>) -> Curve {
 
 /// Quantities over the step: the peak force of all, of the first hit, and two that are no forces.
 fn over_step(comparison: &Comparison) -> Result<Picture, ReportError> {
-    let panel = |title: &str, y_label: &str, curves: Vec<Curve>| Panel {
+    let panel = |title: &str, y_label: Label, curves: Vec<Curve>| Panel {
         title: title.to_owned(),
-        x_label: "log10 of the step (s)".into(),
-        y_label: y_label.to_owned(),
+        x_label: Label::log("step (s)"),
+        y_label,
         curves,
     };
     let curves = |key: &str, scale: fn(f64) -> f64| -> Vec<Curve> {
@@ -73,7 +73,7 @@ fn over_step(comparison: &Comparison) -> Result<Picture, ReportError> {
     };
     let mut panels = vec![panel(
         "Peak contact force",
-        "log10 of the force (N)",
+        Label::log("force (N)"),
         curves("peak_contact_force_N", f64::log10),
     )];
     if let Some(hits) = &comparison.first_hits {
@@ -84,18 +84,18 @@ fn over_step(comparison: &Comparison) -> Result<Picture, ReportError> {
         };
         panels.push(panel(
             "Peak force of the first hit",
-            "log10 of the force (N)",
+            Label::log("force (N)"),
             vec![curve(Law::HertzStep), curve(Law::Native)],
         ));
     }
     panels.push(panel(
         "Share of time in contact",
-        "share",
+        "share".into(),
         curves("contact_fraction", |share| share),
     ));
     panels.push(panel(
         "Path error, rms",
-        "error (mm)",
+        "error (mm)".into(),
         curves("rms_path_error_m", |metres| 1e3 * metres),
     ));
     Ok(Picture {
@@ -205,7 +205,7 @@ fn distributions(comparison: &Comparison, runs: &[Vec<Measured>]) -> Result<Pict
     let curves = shown.into_iter().map(|i| curve(&comparison.rows[i], &runs[i])).collect();
     let panel = Panel {
         title: "Share of the time in contact with more than this force".into(),
-        x_label: "log10 of the contact force (N)".into(),
+        x_label: Label::log("contact force (N)"),
         y_label: "share".into(),
         curves,
     };
@@ -232,7 +232,7 @@ fn parting(looks: &[Chaos]) -> Result<Picture, ReportError> {
     let panel = Panel {
         title: "Distance of two motions that begin alike".into(),
         x_label: "time (s)".into(),
-        y_label: "log10 of the distance (m)".into(),
+        y_label: Label::log("distance (m)"),
         curves,
     };
     Ok(Picture {

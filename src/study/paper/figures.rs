@@ -7,7 +7,7 @@ use super::result::{Paper, VariantResult};
 use super::variants::{LARGE, SMALL, machine};
 use crate::engine;
 use crate::measure::envelope::Envelope;
-use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg};
+use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, panels_svg};
 use crate::scenario::Scenario;
 use crate::study::run::RunError;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -114,11 +114,11 @@ fn curve(name: &str, points: Vec<(f64, f64)>, style: Style) -> Curve {
 fn bands(paper: &Paper) -> Result<Vec<Picture>, ReportError> {
     let panel = |title: &str, y_label: &str, item: Item, ideal: Option<Item>| Panel {
         title: title.to_owned(),
-        x_label: "log10 of the clearance (m)".into(),
-        y_label: y_label.to_owned(),
+        x_label: Label::log("clearance (m)"),
+        y_label: Label::log(y_label),
         curves: band(paper, item, ideal),
     };
-    let (force, acceleration) = ("log10 of the force (N)", "log10 of it (m/s²)");
+    let (force, acceleration) = ("force (N)", "acceleration (m/s²)");
     let pictures = [
         (
             "band-accelerations.svg",
@@ -138,7 +138,7 @@ fn bands(paper: &Paper) -> Result<Vec<Picture>, ReportError> {
                 ),
                 panel(
                     "Angular acceleration, rms deviation from ideal",
-                    "log10 of it (rad/s²)",
+                    "alpha (rad/s²)",
                     Item::AngularDeviation,
                     None,
                 ),
@@ -167,13 +167,8 @@ fn bands(paper: &Paper) -> Result<Vec<Picture>, ReportError> {
             "band-contact.svg",
             "Path error and contact over the clearance",
             vec![
-                panel("Path error, rms", "log10 of it (m)", Item::PathError, None),
-                panel(
-                    "Share of time in contact",
-                    "log10 of the share",
-                    Item::ContactFraction,
-                    None,
-                ),
+                panel("Path error, rms", "distance (m)", Item::PathError, None),
+                panel("Share of time in contact", "share", Item::ContactFraction, None),
             ],
         ),
     ];

@@ -26,21 +26,10 @@ pub fn merge(
 ) -> Result<Outcome, SweepError> {
     let records: Vec<Record> =
         parts.iter().map(|part| Record::read(part)).collect::<Result<_, _>>()?;
-    let (Some(first), Some(first_part)) = (records.first(), parts.first()) else {
-        return Err(SweepError::input("nothing to merge; give the folders of the parts"));
-    };
-    let identity = &first.identity;
+    refuse_foreign(parts, &records)?;
+    let (identity, first_part) = (&records[0].identity, &parts[0]);
     let mut rows = Rows::new();
     for (part, record) in parts.iter().zip(&records) {
-        let differences = record.identity.differences(identity);
-        if !differences.is_empty() {
-            return Err(SweepError::input(format!(
-                "`{}` is no part of the sweep in `{}` (here): {}",
-                part.display(),
-                first_part.display(),
-                differences.join("; ")
-            )));
-        }
         refuse_edited_table(part, record)?;
         for (run, row) in journal::read(part, identity, record.shard)? {
             if rows.get(&run).is_some_and(|before| *before != row) {
@@ -70,7 +59,31 @@ pub fn merge(
     Ok(outcome)
 }
 
-/// Fails if a run has no row, and says in which part to look for it.
+/// Fails if parts belong to another sweep than the first, and names all of them.
+fn refuse_foreign(parts: &[PathBuf], records: &[Record]) -> Result<(), SweepError> {
+    let (Some(first), Some(first_part)) = (records.first(), parts.first()) else {
+        return Err(SweepError::input("nothing to merge; give the folders of the parts"));
+    };
+    let mut said = String::new();
+    for (part, record) in parts.iter().zip(records) {
+        let differences = record.identity.differences(&first.identity);
+        if differences.is_empty() {
+            continue;
+        }
+        said += &match said.is_empty() {
+            true => format!(
+                "`{}` is no part of the sweep in `{}` (here): ",
+                part.display(),
+                first_part.display()
+            ),
+            false => format!("; nor is `{}`: ", part.display()),
+        };
+        said += &differences.join("; ");
+    }
+    if said.is_empty() { Ok(()) } else { Err(SweepError::input(said)) }
+}
+
+/// Fails if a run has no row, and says which parts are not there and which are unfinished.
 fn refuse_missing(
     rows: &Rows,
     runs: usize,
@@ -78,22 +91,30 @@ fn refuse_missing(
     records: &[Record],
 ) -> Result<(), SweepError> {
     let missing: Vec<usize> = (0..runs).filter(|run| !rows.contains_key(run)).collect();
-    let Some(first) = missing.first() else {
+    let Some(record) = records.first().filter(|_| !missing.is_empty()) else {
         return Ok(());
     };
     let names: Vec<String> = missing.iter().take(NAMED).map(|run| (run + 1).to_string()).collect();
     let more = if missing.len() > NAMED { ", …" } else { "" };
-    let place = parts.iter().zip(records).find(|(_, record)| record.shard.holds(*first));
-    let place = match place {
-        Some((part, record)) => {
-            format!("`{}` (shard {}) is unfinished", part.display(), record.shard)
-        }
-        None => "their shard is not among the parts".to_owned(),
-    };
+    let lacks = |shard: Shard| missing.iter().any(|run| shard.holds(*run));
+    let there = |shard: Shard| records.iter().any(|record| record.shard == shard);
+    let absent = record.shard.siblings().filter(|shard| !there(*shard) && lacks(*shard));
+    let absent: Vec<String> = absent.map(|shard| shard.to_string()).collect();
+    let unfinished = parts.iter().zip(records).filter(|(_, record)| lacks(record.shard));
+    let unfinished = unfinished.map(|(part, record)| {
+        format!("`{}` (shard {}) is unfinished", part.display(), record.shard)
+    });
+    let mut said: Vec<String> = unfinished.collect();
+    match absent.as_slice() {
+        [] => {}
+        [one] => said.insert(0, format!("shard {one} is not among the parts")),
+        many => said.insert(0, format!("shards {} are not among the parts", many.join(", "))),
+    }
     Err(SweepError::input(format!(
-        "{} of {runs} rows are missing (runs {}{more}): {place}; give all parts, let the same sweep \
+        "{} of {runs} rows are missing (runs {}{more}): {}; give all parts, let the same sweep \
          finish there, or merge what there is with --partial",
         missing.len(),
-        names.join(", ")
+        names.join(", "),
+        said.join("; ")
     )))
 }

@@ -9,6 +9,7 @@
 //! there is.
 
 mod design;
+mod forecast;
 mod journal;
 mod merge;
 mod page;
@@ -18,22 +19,27 @@ mod pictures;
 mod plan;
 mod record;
 mod result;
-mod row;
+pub(super) mod row;
 mod shard;
+mod standing;
+mod statistics;
 mod vary;
 mod work;
 
 pub use design::Design;
+pub use forecast::{Forecast, forecast};
 pub use merge::merge;
 pub use plan::Plan;
 pub use record::{Identity, RECORD_FILE, Record};
 pub use result::Outcome;
 pub use shard::Shard;
+pub use standing::Standing;
 pub use vary::{Range, Values, Vary};
-pub use work::{on_threads, sweep};
+pub use work::{Ongoing, on_threads, sweep};
 
 use super::run::RunError;
 use crate::scenario::Problems;
+use std::path::PathBuf;
 
 /// Why a sweep has no result, or not all of it. What the journal holds stands.
 #[derive(Debug, thiserror::Error)]
@@ -47,6 +53,19 @@ pub enum SweepError {
     /// Files cannot be written.
     #[error(transparent)]
     Write(#[from] RunError),
+    /// It was told to end before its last row.
+    #[error(
+        "{finished} of {runs} rows are kept in `{folder}`; the same command goes on from there",
+        folder = folder.display()
+    )]
+    Interrupted {
+        /// Rows that are there.
+        finished: usize,
+        /// Rows that there will be.
+        runs: usize,
+        /// Where they are kept.
+        folder: PathBuf,
+    },
 }
 
 impl SweepError {

@@ -2,14 +2,21 @@
 
 use super::Record;
 use super::journal::Rows;
+use super::pictures;
 use super::row::{FORCES, Status, status};
-use crate::report::{self, Fact, Picture, number};
+use super::statistics::{self, Spread, groups, has_starts, shared};
+use crate::report::{self, Fact, Part, Picture, Table, number};
+use crate::study::compare::QUANTITIES;
 use crate::study::run::SCENARIO_FILE;
 
 /// The page as HTML.
 pub(super) fn page(record: &Record, rows: &Rows, pictures: &[Picture]) -> String {
     let title = format!("Sweep: {}", record.identity.provenance.scenario_name);
-    report::page(&title, &lead(record, rows), &facts(record, rows), pictures, &provenance(record))
+    let (facts, provenance) = (facts(record, rows), provenance(record));
+    let groups = over_starts(record, rows).map(Part::Table);
+    let rest = [Part::Facts(&facts), Part::Pictures(pictures), Part::Provenance(&provenance)];
+    let parts: Vec<Part> = groups.into_iter().chain(rest).collect();
+    report::document(&title, &lead(record, rows), &parts)
 }
 
 /// How the runs ended, in words.
@@ -35,8 +42,96 @@ fn lead(record: &Record, rows: &Rows) -> String {
             lead += &format!(", {count} {how} (the first: {reason})");
         }
     }
-    lead + ". Each figure below is that of a run, taken as a single run takes it; sweep.csv has \
-            one row a run."
+    lead += ". Each figure below is that of a run, taken as a single run takes it; sweep.csv has \
+             one row a run.";
+    if has_starts(identity) {
+        return lead
+            + " Means over the starts, with their 95 % intervals, stand in statistics.csv.";
+    }
+    lead + " Where joints rattle, the peaks and counts of a run are one draw: what differs from run to run may be \
+            chaos. --vary motion.phase=0..5.5:12 (or seed) gives each value twelve starts, and means with intervals."
+}
+
+/// Groups of a page's table: more are in the file.
+const MOST_GROUPS: usize = 50;
+
+/// Figures of the table: where the machine is, what its joints and its output feel, how often.
+const SHOWN: [&str; 5] = [
+    "rms_path_error_m",
+    "peak_contact_force_N",
+    "peak_platform_acceleration_m_s2",
+    "contact_fraction",
+    "impacts_per_s",
+];
+
+/// Means over the starts, group by group; none where no start was varied.
+fn over_starts(record: &Record, rows: &Rows) -> Option<Table> {
+    let identity = &record.identity;
+    if !has_starts(identity) {
+        return None;
+    }
+    let figures = &identity.columns[identity.vary.len()..];
+    let place = |name: &&str| figures.iter().position(|known| known == name);
+    let shown: Vec<usize> = SHOWN.iter().filter_map(place).collect();
+    let all = groups(identity, rows);
+    let cell = |spread: Option<Spread>| match spread {
+        Some(Spread { mean, half }) if half.is_finite() => {
+            format!("{} ± {}", number(mean), number(half))
+        }
+        Some(Spread { mean, .. }) => number(mean),
+        None => "–".to_owned(),
+    };
+    let row = |group: &statistics::Group| {
+        let first = group.values.iter().map(|value| short(value)).chain([group.runs.to_string()]);
+        first.chain(shown.iter().map(|k| cell(group.figures[*k]))).collect()
+    };
+    let heads = shared(identity).into_iter().map(pictures::in_words).chain(["runs".to_owned()]);
+    let more = all.len().saturating_sub(MOST_GROUPS);
+    let and_more = if more > 0 {
+        format!(" {more} more groups are in {}.", statistics::FILE)
+    } else {
+        String::new()
+    };
+    Some(Table {
+        id: "starts",
+        title: "Means over the starts".to_owned(),
+        header: heads.chain(shown.iter().map(|k| in_words(&figures[*k]))).collect(),
+        rows: all.iter().take(MOST_GROUPS).map(row).collect(),
+        note: format!(
+            "Means over runs that differ in their starts alone, ± half of the 95 % interval (Student's t): values whose \
+             intervals lie apart differ by more than chaos.{and_more}"
+        ),
+    })
+}
+
+/// A varied value for people.
+fn short(value: &str) -> String {
+    value.parse().map_or_else(|_| value.to_owned(), number)
+}
+
+/// Figures that no comparison has.
+const OTHERS: [(&str, &str); 8] = [
+    ("ideal_peak_platform_acceleration_m_s2", "ideal machine: platform acceleration, peak (m/s²)"),
+    ("ideal_peak_actuator_force_N", "ideal machine: actuator force, peak (N)"),
+    ("ideal_peak_actuator_torque_Nm", "ideal machine: actuator torque, peak (N m)"),
+    ("peak_actuator_torque_Nm", "actuator torque, peak (N m)"),
+    ("smallest_step_s", "shortest step (s)"),
+    ("largest_step_s", "longest step (s)"),
+    ("step_error_m_s", "error of a step (m/s)"),
+    ("simulated_s", "time simulated (s)"),
+];
+
+/// What a figure is, in words with its unit.
+fn in_words(column: &str) -> String {
+    let quantity = QUANTITIES.iter().find(|quantity| quantity.key == column);
+    match quantity {
+        Some(quantity) if quantity.unit.is_empty() => quantity.label.to_owned(),
+        Some(quantity) => format!("{} ({})", quantity.label, quantity.unit),
+        None => {
+            let other = OTHERS.iter().find(|(name, _)| *name == column);
+            other.map_or_else(|| column.replace('_', " "), |(_, words)| (*words).to_owned())
+        }
+    }
 }
 
 /// Median and span of each figure over the runs that reached their end. Its columns stand behind those of the
@@ -55,7 +150,7 @@ fn facts(record: &Record, rows: &Rows) -> Vec<Fact> {
                 return None;
             }
             Some(Fact {
-                label: name.clone(),
+                label: in_words(name),
                 value: number(values[values.len() / 2]),
                 note: format!("median; from {} to {}", number(*least), number(*most)),
             })

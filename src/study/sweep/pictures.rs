@@ -2,21 +2,47 @@
 
 use super::journal::Rows;
 use super::row::{FORCES, Status, status};
+use super::statistics::{Spread, is_start};
 use super::vary::Values;
 use super::{Identity, Vary};
-use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg};
+use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, panels_svg};
 use std::collections::BTreeMap;
 
-/// What is drawn: column, heading, label of the axis, factor to the axis' unit.
-const OUTPUTS: [(&str, &str, &str, f64); 8] = [
-    ("peak_contact_force_N", "Peak contact force", "force (N)", 1.0),
-    ("peak_platform_acceleration_m_s2", "Peak platform acceleration", "|a| (m/s²)", 1.0),
-    ("rms_acceleration_deviation_m_s2", "Acceleration, rms deviation from ideal", "a (m/s²)", 1.0),
-    ("peak_actuator_force_N", "Peak actuator force", "force (N)", 1.0),
-    ("peak_actuator_torque_Nm", "Peak actuator torque", "torque (N m)", 1.0),
-    ("rms_path_error_m", "Path error, rms", "distance (µm)", 1e6),
-    ("contact_fraction", "Share of time in contact, mean of all joints", "share", 1.0),
-    ("impacts_per_s", "Impacts per second, all joints", "impacts (1/s)", 1.0),
+/// What is drawn: column, heading, label of the axis, factor to the axis' unit, and the column of the same of the machine
+/// without clearance.
+const OUTPUTS: [(&str, &str, &str, f64, Option<&str>); 8] = [
+    ("peak_contact_force_N", "Peak contact force", "force (N)", 1.0, None),
+    (
+        "peak_platform_acceleration_m_s2",
+        "Peak platform acceleration",
+        "|a| (m/s²)",
+        1.0,
+        Some("ideal_peak_platform_acceleration_m_s2"),
+    ),
+    (
+        "rms_acceleration_deviation_m_s2",
+        "Acceleration, rms deviation from ideal",
+        "a (m/s²)",
+        1.0,
+        None,
+    ),
+    (
+        "peak_actuator_force_N",
+        "Peak actuator force",
+        "force (N)",
+        1.0,
+        Some("ideal_peak_actuator_force_N"),
+    ),
+    (
+        "peak_actuator_torque_Nm",
+        "Peak actuator torque",
+        "torque (N m)",
+        1.0,
+        Some("ideal_peak_actuator_torque_Nm"),
+    ),
+    ("rms_path_error_m", "Path error, rms", "distance (m)", 1.0, None),
+    ("contact_fraction", "Share of time in contact, mean of all joints", "share", 1.0, None),
+    ("impacts_per_s", "Impacts per second, all joints", "impacts (1/s)", 1.0, None),
 ];
 
 /// Runs that are drawn, evenly chosen where there are more: dots would hide each other, and the page
@@ -69,6 +95,8 @@ fn picture(
     let inputs = || rows.iter().filter_map(|row| cell(row, input));
     let x_log = declared_log || wide(inputs());
     let groups = groups(varied, rows, input);
+    let over_starts =
+        varied.iter().enumerate().any(|(k, v)| k != input && is_start(&v.path)) && !is_start(path);
     let mut averaged = false;
     let panels: Vec<Panel> = OUTPUTS
         .iter()
@@ -95,25 +123,51 @@ fn picture(
                     style: Style::Dots,
                 })
                 .collect();
-            if let ([_], Some(means)) = (groups.as_slice(), means(all, x_log)) {
+            if over_starts {
+                averaged = true;
+                let starts = groups.iter().flat_map(|(name, rows)| {
+                    let name = if groups.len() == 1 { "mean over starts" } else { name };
+                    interval(points(rows), name, y_log)
+                });
+                let starts = starts.map(|curve| Curve { points: scaled(curve.points), ..curve });
+                // Dots of several groups would hide their means.
+                if groups.len() > 1 {
+                    curves.clear();
+                }
+                curves.extend(starts);
+            } else if let ([_], Some(means)) = (groups.as_slice(), means(all, x_log)) {
                 averaged = true;
                 let points = scaled(means);
                 curves.push(Curve { name: "mean".to_owned(), points, style: Style::Reference });
             }
+            if let Some(ideal) =
+                output.4.and_then(|name| identity.columns.iter().position(|c| c == name))
+            {
+                let point =
+                    |row: &&Vec<String>| Some((cell(row, input)?, output.3 * cell(row, ideal)?));
+                let mut points: Vec<(f64, f64)> = rows.iter().filter_map(point).collect();
+                points.sort_by(|a, b| a.0.total_cmp(&b.0));
+                points.dedup_by(|a, b| a.0 == b.0);
+                let points = scaled(thinned(points));
+                curves.push(Curve {
+                    name: "ideal machine".to_owned(),
+                    points,
+                    style: Style::Reference,
+                });
+            }
             Some(Panel {
                 title: output.1.to_owned(),
-                x_label: label(&format!("{path} (SI units)"), x_log),
-                y_label: label(output.2, y_log),
+                x_label: Label::log_if(in_words(path), x_log),
+                y_label: Label::log_if(output.2, y_log),
                 curves,
             })
         })
         .collect();
     let mut caption = format!("Each dot is a run that reached its end, at its value of {path}.");
-    if averaged {
+    if over_starts {
+        caption += " Lines join means over the starts; grey: their 95 % intervals.";
+    } else if averaged {
         caption += " The dashed line joins the means of runs at the same or neighbouring values.";
-    }
-    if x_log || panels.iter().any(|panel| panel.y_label.starts_with(LOG)) {
-        caption += " Where an axis says log10, −3 stands for 0.001.";
     }
     if rows.len() > DOTS {
         caption += &format!(" Shown are {DOTS} runs of {}, evenly chosen.", rows.len());
@@ -126,10 +180,24 @@ fn picture(
     })
 }
 
-const LOG: &str = "log10 of ";
-
-fn label(quantity: &str, log: bool) -> String {
-    format!("{}{quantity}", if log { LOG } else { "" })
+/// What a varied number is, in words, with its unit; of what has no words here the path.
+pub(super) fn in_words(path: &str) -> String {
+    let known = [
+        ("joints.clearance", "clearance (m)"),
+        ("joints.friction", "coefficient of friction"),
+        ("joints.bearing_radius", "bearing radius (m)"),
+        ("mechanism.platform_mass", "mass of the platform (kg)"),
+        ("motion.period", "period (s)"),
+        ("motion.radius", "radius (m)"),
+        ("motion.phase", "phase of the start (rad)"),
+        ("contact.restitution", "restitution"),
+        ("contact.c_max", "damping (N s/m)"),
+        ("simulation.tolerance", "tolerance (m/s)"),
+        ("drive.stiffness", "stiffness of the drives (N/m)"),
+        ("drive.damping", "damping of the drives (N s/m)"),
+    ];
+    let words = known.iter().find(|(name, _)| *name == path).map(|(_, words)| (*words).to_owned());
+    words.unwrap_or_else(|| format!("{path} (SI units)"))
 }
 
 fn scale(value: f64, log: bool) -> f64 {
@@ -157,7 +225,10 @@ fn groups<'a>(
     let mut places: BTreeMap<String, usize> = BTreeMap::new();
     let mut groups: Vec<(String, Vec<&Vec<String>>)> = Vec::new();
     for row in rows {
-        let others = varied.iter().enumerate().filter(|(k, v)| *k != input && !v.is_random());
+        let others = varied
+            .iter()
+            .enumerate()
+            .filter(|(k, v)| *k != input && !v.is_random() && !is_start(&v.path));
         let name: Vec<String> = others.map(|(k, v)| format!("{} = {}", v.path, row[k])).collect();
         let name = name.join(", ");
         let place = *places.entry(name.clone()).or_insert(groups.len());
@@ -178,6 +249,30 @@ fn groups<'a>(
 fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let stride = points.len().div_ceil(DOTS).max(1);
     points.into_iter().step_by(stride).collect()
+}
+
+/// Means over the runs at each value, and their 95 % intervals as a band; `positive` keeps the band where a logarithm has
+/// a value.
+fn interval(mut points: Vec<(f64, f64)>, name: &str, positive: bool) -> [Curve; 2] {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let at = |chunk: &[(f64, f64)]| {
+        let values: Vec<f64> = chunk.iter().map(|point| point.1).collect();
+        (chunk[0].0, Spread::of(&values), values.into_iter().fold(f64::INFINITY, f64::min))
+    };
+    let means: Vec<_> = points.chunk_by(|a, b| a.0 == b.0).map(at).collect();
+    let known = || means.iter().filter(|(_, spread, _)| spread.half.is_finite());
+    let upper = known().map(|(x, spread, _)| (*x, spread.mean + spread.half));
+    let lower = known().rev().map(|(x, spread, least)| {
+        let end = spread.mean - spread.half;
+        (*x, if positive && end <= 0.0 { *least } else { end })
+    });
+    let band = Curve {
+        name: "95 % interval".to_owned(),
+        points: upper.chain(lower).collect(),
+        style: Style::Band,
+    };
+    let points = means.iter().map(|(x, spread, _)| (*x, spread.mean)).collect();
+    [band, Curve { name: name.to_owned(), points, style: Style::Solid }]
 }
 
 /// Means at each value of x, or where these are many, over stretches with the same number of runs;

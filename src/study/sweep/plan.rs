@@ -1,13 +1,14 @@
-//! A sweep before it is run: every run's scenario, checked.
+//! A sweep before it is run: every run's scenario, checked; and one of its runs made.
 
 use super::record::{hexadecimal, sha256};
 use super::{Design, Identity, Shard, SweepError, Vary, row};
 use crate::measure::bounded;
 use crate::scenario::{Location, Problem, Scenario, Source};
-use crate::simulate::{Machine, Provenance, Severity, assemble, findings};
+use crate::simulate::{Machine, Provenance, Severity, assemble, findings, measured_until};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::io::Read as _;
+use std::sync::atomic::AtomicBool;
 
 /// A sweep whose every run has a scenario that makes sense by itself.
 #[derive(Debug)]
@@ -21,6 +22,8 @@ pub struct Plan {
     more: Vec<String>,
     shard: Shard,
     warnings: Vec<String>,
+    /// The mark of each run ([`Plan::mark`]), once they were checked.
+    marks: Vec<u64>,
 }
 
 /// What is known of a run beforehand.
@@ -46,6 +49,22 @@ impl Plan {
         vary: &[String],
         shard: Shard,
     ) -> Result<Plan, SweepError> {
+        let mut plan = Self::unchecked(source, sets, vary, shard)?;
+        plan.check()?;
+        Ok(plan)
+    }
+
+    /// The same without a look at any run: for a worker that makes some runs of a plan that was checked
+    /// elsewhere. It stands for no folder, as nothing says what its runs are.
+    ///
+    /// # Errors
+    /// [`SweepError`] if the scenario or a `--vary` makes no sense.
+    pub fn unchecked(
+        source: Source,
+        sets: &[String],
+        vary: &[String],
+        shard: Shard,
+    ) -> Result<Plan, SweepError> {
         let base = source.scenario(sets)?;
         let varied = vary.iter().map(|text| Vary::parse(text)).collect::<Result<Vec<_>, _>>()?;
         let design = Design::new(varied, base.seed)?;
@@ -59,10 +78,8 @@ impl Plan {
             runs_hash: String::new(),
         };
         let sets = sets.to_vec();
-        let mut plan =
-            Plan { source, sets, base, design, identity, more, shard, warnings: Vec::new() };
-        plan.check()?;
-        Ok(plan)
+        let (warnings, marks) = (Vec::new(), Vec::new());
+        Ok(Plan { source, sets, base, design, identity, more, shard, warnings, marks })
     }
 
     /// The scenario that is varied.
@@ -75,11 +92,6 @@ impl Plan {
         &self.identity
     }
 
-    /// Columns that its table has beside those of every machine.
-    pub(super) fn more(&self) -> &[String] {
-        &self.more
-    }
-
     /// The part of it that this process is to run.
     pub fn shard(&self) -> Shard {
         self.shard
@@ -88,6 +100,50 @@ impl Plan {
     /// What is doubtful about its runs, or cannot be done, one line a kind.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// The mark of run `run`: the beginning of the hash of its scenario and of the files that it reads. None of
+    /// a run that does not exist, or of a plan that was not checked.
+    pub fn mark(&self, run: usize) -> Option<u64> {
+        self.marks.get(run).copied()
+    }
+
+    /// Makes run `run` without a folder: its row of the table. None once `stop` is true.
+    pub fn row(&self, run: usize, stop: &AtomicBool) -> Option<Vec<String>> {
+        Some(match self.machine(run) {
+            Ok((scenario, mut machine)) => {
+                let summary = measured_until(&scenario, &mut machine, stop, &mut |_, _, _| {});
+                if summary.interrupted {
+                    return None;
+                }
+                row::of_summary(self.values(run), &summary, &self.more)
+            }
+            Err(reason) => row::refused(self.values(run), &reason, &self.more),
+        })
+    }
+
+    /// [`Plan::row`] for somebody else's plan, who says what the run's mark is there.
+    ///
+    /// # Errors
+    /// [`SweepError::Input`] where the run is another one here: a file that its scenario reads differs.
+    pub fn row_of_mark(
+        &self,
+        run: usize,
+        mark: u64,
+        stop: &AtomicBool,
+    ) -> Result<Option<Vec<String>>, SweepError> {
+        let here = match self.checked(run) {
+            Ok(checked) => mark_of(&checked.hash),
+            Err(problem) => return Err(SweepError::input(self.in_words(&problem))),
+        };
+        if here != mark {
+            return Err(SweepError::input(format!(
+                "{} is not the same here and where the sweep was planned: a file that the scenario reads \
+                 differs, or is not there; workers need the same files",
+                self.name(run)
+            )));
+        }
+        Ok(self.row(run, stop))
     }
 
     /// The value of each varied key in run `run`, as TOML.
@@ -127,6 +183,7 @@ impl Plan {
                 SweepError::input(format!("{} ({})", self.in_words(&problem), self.name(run)))
             })?;
             hash.update(&checked.hash);
+            self.marks.push(mark_of(&checked.hash));
             refused.extend(checked.refused.map(|reason| (run, reason)));
             warned.extend(checked.warning.map(|warning| (run, warning)));
         }
@@ -203,4 +260,9 @@ impl Plan {
             varied.map(|(vary, value)| format!("{}={value}", vary.path)).collect();
         format!("run {} of {}: {}", run + 1, self.design.runs(), values.join(" "))
     }
+}
+
+/// The first 64 bits of a hash in hexadecimal.
+fn mark_of(hash: &str) -> u64 {
+    u64::from_str_radix(&hash[..16], 16).unwrap_or_default()
 }

@@ -3,7 +3,7 @@
 use super::journal::{JOURNAL_FILE, Rows};
 use super::record::sha256;
 use super::row::{Status, status};
-use super::{Identity, RECORD_FILE, Record, Shard, SweepError, page, pictures};
+use super::{Identity, RECORD_FILE, Record, Shard, SweepError, page, pictures, statistics};
 use crate::study::folder::sync;
 use crate::study::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused};
 use std::fs;
@@ -39,6 +39,7 @@ impl Record {
             RECORD_FILE,
             JOURNAL_FILE,
             TABLE_FILE,
+            statistics::FILE,
             PARQUET_FILE,
             SCENARIO_FILE,
             PAGE_FILE,
@@ -81,6 +82,10 @@ pub(super) fn write(
     {
         let table = super::parquet::table(identity, rows).map_err(refused(PARQUET_FILE))?;
         put(place, PARQUET_FILE, &table)?;
+    }
+    if statistics::has_starts(identity) {
+        let groups = statistics::groups(identity, rows);
+        put(place, statistics::FILE, statistics::csv(identity, &groups))?;
     }
     for picture in &pictures {
         put(place, &picture.file, &picture.svg)?;

@@ -43,7 +43,7 @@ const REFUSED: &str = "refused: ";
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Status {
+pub(in crate::study) enum Status {
     /// It reached its end.
     Ok,
     /// It broke down on the way, and figures hold up to there; or it does not balance.
@@ -69,7 +69,7 @@ const OF_JOINTS: [[&str; 2]; 3] =
 
 /// The columns that a machine has beside [`FIGURES`]: torques, and each joint with a clearance by its name. The
 /// table of the machines that had one before joints had columns stays as it was.
-pub(super) fn more(base: &Scenario) -> Vec<String> {
+pub(in crate::study) fn more(base: &Scenario) -> Vec<String> {
     use crate::scenario::Mechanism::{DriveStage, Pendulum, ThreeRpr};
     if matches!(base.mechanism, ThreeRpr(_) | DriveStage(_) | Pendulum(_)) {
         return Vec::new();
@@ -85,7 +85,7 @@ pub(super) fn more(base: &Scenario) -> Vec<String> {
 }
 
 /// The header of the table.
-pub(super) fn columns(varied: &[Vary], more: &[String]) -> Vec<String> {
+pub(in crate::study) fn columns(varied: &[Vary], more: &[String]) -> Vec<String> {
     let paths = varied.iter().map(|vary| vary.path.clone());
     let figures = FIGURES.into_iter().map(str::to_owned).chain(more.iter().cloned());
     paths.chain(figures).chain([STATUS.to_owned()]).collect()
@@ -108,7 +108,11 @@ fn figure(json: &Value, name: &str) -> Value {
 }
 
 /// The row of a run that was simulated.
-pub(super) fn of_summary(values: Vec<String>, summary: &Summary, more: &[String]) -> Vec<String> {
+pub(in crate::study) fn of_summary(
+    values: Vec<String>,
+    summary: &Summary,
+    more: &[String],
+) -> Vec<String> {
     // A summary is nothing but names, numbers and texts: it always becomes JSON.
     let json = serde_json::to_value(summary).unwrap_or_default();
     let mut row = values;
@@ -136,7 +140,7 @@ pub(super) fn refused(values: Vec<String>, reason: &str, more: &[String]) -> Vec
 }
 
 /// How the run of a row ended.
-pub(super) fn status(row: &[String]) -> Status {
+pub(in crate::study) fn status(row: &[String]) -> Status {
     match row.last().map(String::as_str) {
         Some(OK) => Status::Ok,
         Some(text) if text.starts_with(HALTED) => Status::Halted,
@@ -171,7 +175,7 @@ mod tests {
         assert_eq!(more[0], TORQUES[0]);
         assert!(more.contains(&"peak_force_B_N".to_owned()), "{more:?}");
         let recorder = Recorder::new(&machine.mechanism, 0.0);
-        let summary = recorder.finish(&scenario, &machine, Work::default(), 1.0, None, Vec::new());
+        let summary = recorder.finish(&scenario, &machine, &Work::default(), 1.0, None, Vec::new());
         let row = of_summary(vec![], &summary, &more);
         assert_eq!(row.len(), columns(&[], &more).len());
         let impacts = columns(&[], &more).iter().position(|name| name == "impacts_B");
@@ -183,7 +187,7 @@ mod tests {
         let scenario = Scenario::load(None, &[]).expect("right");
         let machine = assemble(&scenario).expect("no table to read");
         let recorder = Recorder::new(&machine.mechanism, 0.0);
-        let summary = recorder.finish(&scenario, &machine, Work::default(), 1.0, None, Vec::new());
+        let summary = recorder.finish(&scenario, &machine, &Work::default(), 1.0, None, Vec::new());
         let json = serde_json::to_value(&summary).expect("JSON");
         let object = json.as_object().expect("object");
         for name in FIGURES {

@@ -22,6 +22,17 @@ impl Shard {
         run % self.count == self.index - 1
     }
 
+    /// Which part it is, counted from 1.
+    pub fn index(self) -> usize {
+        self.index
+    }
+
+    /// All parts that it is one of, itself among them.
+    pub fn siblings(self) -> impl Iterator<Item = Shard> {
+        let count = self.count;
+        (1..=count).map(move |index| Shard { index, count })
+    }
+
     /// Those of `runs` runs that belong to this part.
     pub fn runs(self, runs: usize) -> impl Iterator<Item = usize> {
         (self.index - 1..runs).step_by(self.count)

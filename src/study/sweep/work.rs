@@ -2,15 +2,14 @@
 
 use super::journal::{JOURNAL_FILE, Journal, Rows, lock};
 use super::result::{Outcome, PARQUET_FILE, TABLE_FILE, put, refuse_edited_table, write};
-use super::row;
-use super::{Plan, RECORD_FILE, Record, SweepError};
-use crate::simulate::measured;
+use super::{Identity, Plan, RECORD_FILE, Record, Shard, SweepError};
 use crate::study::folder::Folder;
 use crate::study::run::{RunError, SCENARIO_FILE, refused};
 use rayon::prelude::*;
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Does `work` on so many threads, by default one for each core.
@@ -31,7 +30,7 @@ pub fn on_threads<R: Send>(
 
 /// Makes the runs of a plan and writes everything about them into the folder `target`. Where that
 /// holds a part of the same sweep already, it goes on from there; with `force`, it begins anew.
-/// `progress` is told how many rows are there, and of how many.
+/// `progress` is told how many rows are there, and of how many. Once `stop` is true it ends.
 ///
 /// # Errors
 /// [`SweepError`]; what the folder held stands.
@@ -39,42 +38,131 @@ pub fn sweep(
     plan: &Plan,
     target: &Path,
     force: bool,
+    stop: &AtomicBool,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Outcome, SweepError> {
-    let (journal, rows) = open(plan, target, force)?;
-    let record = Record::new(plan.identity().clone(), plan.shard(), &rows, target);
-    let pending: Vec<usize> =
-        plan.shard().runs(plan.identity().runs).filter(|run| !rows.contains_key(run)).collect();
-    progress(rows.len(), record.runs_of_shard);
-    if !pending.is_empty() {
-        // The tables of a sweep that is not complete (as merge leaves one) do not outlive this: they go
-        // before the record that vouches for them.
+    let ongoing = Ongoing::begin(plan, target, force)?;
+    let (pending, of) = (ongoing.missing(), ongoing.runs());
+    progress(ongoing.finished(), of);
+    let ongoing = Mutex::new(ongoing);
+    // One by one: runs differ in cost, and threads that are done take from those that are not.
+    let made = pending.par_iter().with_max_len(1).try_for_each(|&run| {
+        let Some(row) = plan.row(run, stop) else { return Err(None) };
+        let mut ongoing = ongoing.lock().unwrap_or_else(PoisonError::into_inner);
+        ongoing.add(run, row).map_err(Some)?;
+        progress(ongoing.finished(), of);
+        if stop.load(Ordering::Relaxed) { Err(None) } else { Ok(()) }
+    });
+    let ongoing = ongoing.into_inner().unwrap_or_else(PoisonError::into_inner);
+    match made {
+        Err(None) if ongoing.finished() < of => Err(ongoing.interrupted()),
+        Err(Some(error)) => Err(error),
+        _ => ongoing.finish(),
+    }
+}
+
+/// The folder of a sweep at work, whose journal nobody else can write to: which rows it has, and which it
+/// lacks. Dropped before its end, it keeps the rows.
+#[derive(Debug)]
+pub struct Ongoing {
+    target: PathBuf,
+    identity: Identity,
+    shard: Shard,
+    journal: Journal,
+    rows: Rows,
+}
+
+impl Ongoing {
+    /// Makes the folder `target`, or goes on in it; with `force`, it begins anew.
+    ///
+    /// # Errors
+    /// [`SweepError`]: it holds something else, or another process is at work there; what it held stands.
+    pub fn begin(plan: &Plan, target: &Path, force: bool) -> Result<Ongoing, SweepError> {
+        let (journal, rows) = open(plan, target, force)?;
+        let (identity, shard) = (plan.identity().clone(), plan.shard());
+        let ongoing = Ongoing { target: target.to_owned(), identity, shard, journal, rows };
+        if ongoing.finished() < ongoing.runs() {
+            ongoing.forget_tables()?;
+        }
+        Ok(ongoing)
+    }
+
+    /// The tables of a sweep that is not complete (as merge leaves one) do not outlive this: they go before
+    /// the record that vouches for them.
+    fn forget_tables(&self) -> Result<(), SweepError> {
         for table in [TABLE_FILE, PARQUET_FILE] {
-            match fs::remove_file(target.join(table)) {
+            match fs::remove_file(self.target.join(table)) {
                 Err(error) if error.kind() != io::ErrorKind::NotFound => {
                     return Err(refused(table)(error).into());
                 }
                 _ => {}
             }
         }
-        put(target, RECORD_FILE, record.to_json())?;
+        let record = Record::new(self.identity.clone(), self.shard, &self.rows, &self.target);
+        Ok(put(&self.target, RECORD_FILE, record.to_json())?)
     }
-    let state = Mutex::new((journal, rows));
-    // One by one: runs differ in cost, and threads that are done take from those that are not.
-    pending.par_iter().with_max_len(1).try_for_each(|run| {
-        let row = row_of(plan, *run);
-        let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
-        let (journal, rows) = &mut *state;
-        journal.append(*run, &row)?;
-        rows.insert(*run, row);
-        progress(rows.len(), record.runs_of_shard);
-        Ok::<(), RunError>(())
-    })?;
-    // The journal stays locked until everything is written.
-    let (journal, rows) = state.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let outcome = write(target, target, plan.identity(), plan.shard(), &rows)?;
-    drop(journal);
-    Ok(outcome)
+
+    /// The runs of this part that have no row yet.
+    pub fn missing(&self) -> Vec<usize> {
+        self.shard.runs(self.identity.runs).filter(|run| !self.rows.contains_key(run)).collect()
+    }
+
+    /// Number of rows that are there.
+    pub fn finished(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Number of runs of this part.
+    pub fn runs(&self) -> usize {
+        self.shard.runs(self.identity.runs).count()
+    }
+
+    /// Keeps the row of run `run`. One that is there already, as a worker sends that was held for lost, changes nothing.
+    ///
+    /// # Errors
+    /// [`SweepError`] if the run is none of this part, its row is no row of this table or contradicts the one
+    /// that is there, or the file system refuses.
+    pub fn add(&mut self, run: usize, row: Vec<String>) -> Result<(), SweepError> {
+        let (cells, columns) = (row.len(), self.identity.columns.len());
+        if run >= self.identity.runs || !self.shard.holds(run) || cells != columns {
+            return Err(SweepError::input(format!(
+                "a row of {cells} cells for run {} is none of this sweep: expected {columns} cells and a run \
+                 of part {} of {} runs",
+                run + 1,
+                self.shard,
+                self.identity.runs
+            )));
+        }
+        match self.rows.get(&run) {
+            Some(before) if *before == row => Ok(()),
+            Some(_) => Err(SweepError::input(format!(
+                "run {} was made twice and came out differently: one of the machines computes wrongly",
+                run + 1
+            ))),
+            None => {
+                self.journal.append(run, &row)?;
+                self.rows.insert(run, row);
+                Ok(())
+            }
+        }
+    }
+
+    /// Ends before all rows are there, and says how far it came.
+    pub fn interrupted(&self) -> SweepError {
+        SweepError::Interrupted {
+            finished: self.finished(),
+            runs: self.runs(),
+            folder: self.target.clone(),
+        }
+    }
+
+    /// Writes everything that follows from the rows. The journal stays locked until then.
+    ///
+    /// # Errors
+    /// [`SweepError`] if files cannot be written; the rows stand.
+    pub fn finish(self) -> Result<Outcome, SweepError> {
+        Ok(write(&self.target, &self.target, &self.identity, self.shard, &self.rows)?)
+    }
 }
 
 /// The journal of this sweep in `target`, and the rows that are there.
@@ -88,18 +176,7 @@ fn open(plan: &Plan, target: &Path, force: bool) -> Result<(Journal, Rows), Swee
     }
     drop(replaced);
     let record = Record::read(target)?;
-    let mut differences = record.identity.differences(plan.identity());
-    if record.shard != plan.shard() {
-        differences.push(format!("--shard {} there, {} here", record.shard, plan.shard()));
-    }
-    if !differences.is_empty() {
-        return Err(SweepError::input(format!(
-            "`{}` holds another sweep: {}; choose another folder with --out, or replace it with \
-             --force",
-            target.display(),
-            differences.join("; ")
-        )));
-    }
+    refuse_other(&record, plan.identity(), plan.shard(), target)?;
     let opened = Journal::open(target, plan.identity(), plan.shard())?;
     refuse_edited_table(target, &record)?;
     Ok(opened)
@@ -117,13 +194,23 @@ fn create(plan: &Plan, target: &Path, force: bool) -> Result<(), SweepError> {
     Ok(())
 }
 
-/// Makes run `run`.
-fn row_of(plan: &Plan, run: usize) -> Vec<String> {
-    match plan.machine(run) {
-        Ok((scenario, mut machine)) => {
-            let summary = measured(&scenario, &mut machine, &mut |_, _, _| {});
-            row::of_summary(plan.values(run), &summary, plan.more())
-        }
-        Err(reason) => row::refused(plan.values(run), &reason, plan.more()),
+/// Refuses the record of another sweep, or of another part of this one.
+pub(super) fn refuse_other(
+    record: &Record,
+    identity: &Identity,
+    shard: Shard,
+    folder: &Path,
+) -> Result<(), SweepError> {
+    let mut differences = record.identity.differences(identity);
+    if record.shard != shard {
+        differences.push(format!("--shard {} there, {shard} here", record.shard));
     }
+    if differences.is_empty() {
+        return Ok(());
+    }
+    Err(SweepError::input(format!(
+        "`{}` holds another sweep: {}; choose another folder with --out, or replace it with --force",
+        folder.display(),
+        differences.join("; ")
+    )))
 }

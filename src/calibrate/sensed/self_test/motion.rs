@@ -3,26 +3,14 @@
 use super::Trial;
 use super::dice::Dice;
 use super::families::Moves;
+use crate::calibrate::record::passed;
 use crate::calibrate::sensed::recording::Recording;
 use crate::mechanism::{JointIndex, Mechanism, Reads};
 use std::f64::consts::TAU;
 
-/// Time in s for which commands rest.
-const REST: f64 = 0.05;
-
-/// Time in s in which they come to full speed.
-const RAMP: f64 = 0.25;
-
 /// Frequencies in Hz of waves and turns at size one; accelerations are alike at all sizes, so that they go with the
 /// root of the size.
 const FREQUENCIES: [f64; 2] = [0.7, 2.2];
-
-/// Time in s at full speed that has passed at time `t`: the integral of a smooth rise of the speed.
-fn passed(t: f64) -> f64 {
-    let s = (t - REST).max(0.0);
-    let x = (s / RAMP).min(1.0);
-    RAMP * (x * x * x - 0.5 * x.powi(4)) + (s - RAMP).max(0.0)
-}
 
 /// A drive's way: a rate of turning and two waves.
 struct Way {

@@ -4,20 +4,17 @@ use super::Trial;
 use super::motion::like;
 use super::rig::rig;
 use super::sized::Hidden;
+use crate::calibrate::record::clean;
 use crate::calibrate::result::control;
 use crate::calibrate::sensed::problem::{Problem, Stopped};
 use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::simulate::{record, with_noise};
-use crate::calibrate::sensed::start::{machine, released};
+use crate::calibrate::sensed::simulate::with_noise;
+use crate::calibrate::sensed::start::machine;
 use crate::effects::Setting;
 use crate::engine::StepControl;
 use crate::mechanism::{Mechanism, Sensor};
 use crate::model::parts_of;
 use crate::scenario::Scenario;
-use rayon::prelude::*;
-
-/// The replica that is recorded, of those that calibrations do not have: its tolerance is a fifth of theirs.
-const RECORDED: u64 = 16;
 
 /// A rig and what its runs are recorded like.
 pub(super) struct Bench {
@@ -60,12 +57,7 @@ impl Bench {
         } else {
             like.clone()
         };
-        let released = released(&self.rig, effects, &first, self.control).map_err(Stopped::from)?;
-        let machine = released.machine;
-        (0..replicas)
-            .into_par_iter()
-            .map(|replica| Ok(record(&machine, self.control, like, RECORDED + replica)?))
-            .collect()
+        clean((&self.rig, effects), &first, like, self.control, replicas)
     }
 
     /// The recording of run `run` that a clean one comes to by the noise of these sensors.

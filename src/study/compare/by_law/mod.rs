@@ -17,7 +17,7 @@ use crate::measure::student::t95;
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
 use crate::study::folder::Folder;
-use crate::study::run::{PAGE_FILE, SCENARIO_FILE, refused, to_json};
+use crate::study::run::{PAGE_FILE, keep_scenario, refused, scenario_files, to_json};
 use matching::{Matched, own, under};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::fs;
@@ -83,14 +83,14 @@ pub fn compare_laws(
         files: Vec::new(),
     };
     let pictures = page::pictures(&compared, &runs)?;
-    let texts = [LAWS_COMPARED_FILE, TABLE_FILE, SCENARIO_FILE, PAGE_FILE].map(str::to_owned);
+    let texts = [LAWS_COMPARED_FILE, TABLE_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let drawn = pictures.iter().map(|picture| picture.file.clone());
-    compared.files = texts.into_iter().chain(drawn).collect();
+    compared.files = texts.chain(scenario_files(scenario)).chain(drawn).collect();
     let json = to_json(&compared);
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
     write(LAWS_COMPARED_FILE, &json)?;
     write(TABLE_FILE, &result::csv(&compared))?;
-    write(SCENARIO_FILE, &scenario.to_toml())?;
+    keep_scenario(scenario, &folder)?;
     for picture in &pictures {
         write(&picture.file, &picture.svg)?;
     }

@@ -37,8 +37,8 @@ pub(super) fn page(compared: &LawsCompared, pictures: &[Picture]) -> String {
     ];
     let provenance = compared.provenance.lines("scenario", Some(SCENARIO_FILE), more);
     let parts = [
-        Part::Table(laws(compared)),
         Part::Table(dependences(compared)),
+        Part::Table(laws(compared)),
         Part::Pictures(pictures),
         Part::Provenance(&provenance),
     ];
@@ -127,8 +127,9 @@ pub(super) fn pictures(
         });
         Panel {
             title: quantity.label.to_owned(),
-            x_label: "law".to_owned(),
-            y_label: format!("({})", if quantity.unit.is_empty() { "1" } else { quantity.unit }),
+            x_label: "law".into(),
+            y_label: format!("({})", if quantity.unit.is_empty() { "1" } else { quantity.unit })
+                .into(),
             curves: curves.collect(),
         }
     };

@@ -1,0 +1,82 @@
+//! `freeplay evaluate`: one run for a program that drives many: parameters in, one line of figures out.
+
+use super::failure::{Failure, refuse_errors};
+use super::options::ScenarioOptions;
+use super::output;
+use crate::simulate::{assemble, findings};
+use crate::study::evaluate::{self, EvaluateError, Parameters};
+use clap::Args;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+/// Simulate once for a program that drives many runs: parameters in, one line of figures out
+///
+/// For Dakota, OpenMOLE, a shell, or whatever else chooses parameters. The parameters are paths of the scenario with
+/// their values: by --set, or in a file that --parameters names, one a line as `PATH = VALUE`, as JSON (`{\"PATH\": VALUE}`), or as
+/// Dakota writes them (`VALUE PATH`, or with --aprepro `{ PATH = VALUE }`). The figures are those of
+/// summary.json, and the line has them in the order of --figures, separated by blanks.
+///
+/// Where there are no figures (the machine cannot do what is asked, the run breaks down, the input is wrong) the line is
+/// `FAIL`; the reason goes to standard error. No file is written but that of --results. The figures are those of
+/// `freeplay sweep` and `freeplay run`, to the last digit.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+    /// Figures of summary.json, separated by commas
+    #[arg(long, value_name = "NAME,…", required = true, value_delimiter = ',')]
+    figures: Vec<String>,
+    /// Read parameters from this file
+    #[arg(long, value_name = "FILE")]
+    parameters: Option<PathBuf>,
+    /// Write the line into this file instead of to standard output
+    #[arg(long, value_name = "FILE")]
+    results: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  freeplay evaluate --figures peak_contact_force_N --set joints.clearance=1e-4
+  freeplay evaluate my.toml --figures rms_path_error_m,impacts --parameters params.in --results results.out
+
+Exit codes: 0 figures, 1 FAIL because of the run, 2 FAIL because of the input.";
+
+/// What stands in place of figures: Dakota's word for it.
+const FAIL: &str = "FAIL";
+
+pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    let figures = figures(arguments);
+    let line = figures.as_deref().unwrap_or(FAIL);
+    match &arguments.results {
+        None => output::print(&format!("{line}\n"))?,
+        Some(file) => fs::write(file, format!("{line}\n")).map_err(|error| {
+            Failure::Other(format!("cannot write the results `{}`: {error}", file.display()))
+        })?,
+    }
+    figures.map(drop)
+}
+
+/// The figures in one line.
+fn figures(arguments: &Arguments) -> Result<String, Failure> {
+    let mut sets = arguments.scenario.sets();
+    if let Some(file) = &arguments.parameters {
+        sets.extend(Parameters::read(file)?.sets());
+    }
+    let scenario = arguments.scenario.source()?.scenario(&sets)?;
+    let mut machine = assemble(&scenario)?;
+    refuse_errors(findings(&scenario, &mut machine))?;
+    // A signal ends the process: there is nothing to be kept.
+    let never = AtomicBool::new(false);
+    Ok(evaluate::figures(&scenario, &mut machine, &arguments.figures, &never)?.join(" "))
+}
+
+impl From<EvaluateError> for Failure {
+    fn from(error: EvaluateError) -> Self {
+        match error {
+            EvaluateError::Input(message) => Failure::Input(vec![message]),
+            error => Failure::Other(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! `freeplay record`: what the sensors of a scenario would record.
+
+use super::failure::{Failure, refuse_errors, warn_of_unused};
+use super::options::{FolderOptions, PrintOptions, Sets};
+use super::progress::Spinner;
+use super::table::{paragraph, table};
+use crate::calibrate::quantity;
+use crate::calibrate::record::{Done, RECORD_FILE, RIG_FILE, Rows, into_folder, prepare};
+use crate::scenario::Scenario;
+use crate::simulate::{assemble, findings};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Record what the sensors of a scenario would show: logs for `calibrate` and `predict`
+///
+/// Would my sensors see 20 µm of wear? The machine is simulated as it is, [[effect]]s included, and recorded
+/// through its sensors: their noise, resolution and filters ([[sensor]], or [sensors] of a template). The rig
+/// that is written beside the recordings declares everything but the effects, so that `freeplay calibrate` can
+/// be asked to find them. A table says by how much the declared rig misses the recordings, beside what noise and
+/// rattle leave to any model.
+///
+/// Two recordings: run-a.csv follows the motion, from rest on; run-b.csv does so at 0.8 of its pace, to validate
+/// on. A machine without drives is let go at its start, and at 0.8 of its joints' coordinates.
+///
+/// The results go into a new folder: index.html, rig.toml, run-a.csv, run-b.csv, truth.toml (the scenario with its
+/// effects) and record.json. Noise follows from the scenario's `seed`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// Scenario file (TOML), such as a rig; without one, the built-in scenario
+    #[arg(value_name = "SCENARIO")]
+    file: Option<PathBuf>,
+    #[command(flatten)]
+    sets: Sets,
+    /// Length in s of each recording
+    #[arg(long, value_name = "S", default_value_t = 3.0)]
+    duration: f64,
+    /// Rows a second
+    #[arg(long, value_name = "HZ", default_value_t = 1000.0)]
+    rate: f64,
+    #[command(flatten)]
+    folder: FolderOptions,
+    #[command(flatten)]
+    print: PrintOptions,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  freeplay record rig.toml --out synthetic                 nothing hidden: noise and rattle alone
+  freeplay record rig.toml --out worn --set effect.0.kind=joint-wear --set effect.0.joint=A1 \\
+    --set effect.0.clearance_m=1.2e-4                      0.02 mm of wear in A1
+  freeplay calibrate --rig worn/rig.toml --data worn/run-a.csv --validate worn/run-b.csv
+  freeplay record rig.toml --set seed=2 --json --quiet | jq .shows_floors";
+
+pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    let rows = Rows { rate: arguments.rate, duration: arguments.duration };
+    for (flag, value) in [("rate", rows.rate), ("duration", rows.duration)] {
+        if !(value.is_finite() && value > 0.0) {
+            let message = format!("--{flag}: is {value}; expected a number above 0");
+            return Err(Failure::Input(vec![message]));
+        }
+    }
+    // What is looked at beforehand is the motion up to the recordings' end.
+    let end = format!("simulation.duration={:?}", rows.duration);
+    let sets: Vec<String> = arguments.sets.all().into_iter().chain([end]).collect();
+    let scenario = Scenario::load(arguments.file.as_deref(), &sets)?;
+    warn_of_unused(&scenario);
+    let mut machine = assemble(&scenario)?;
+    refuse_errors(findings(&scenario, &mut machine))?;
+    let prepared = prepare(&scenario, &machine, rows)?;
+    let folder = arguments.folder.prepare("record", &scenario.name, RECORD_FILE)?;
+    let done = Spinner::during(arguments.print.quiet, |tell| into_folder(&prepared, folder, tell))?;
+    Ok(arguments.print.result(&done.json, || text(&done))?)
+}
+
+/// The result for people.
+fn text(done: &Done) -> String {
+    let recorded = &done.recorded;
+    let rows = recorded.errors.iter().map(|e| {
+        let [before, after, floor] =
+            [e.before, e.after, e.floor].map(|value| quantity(value, e.unit));
+        [e.run.clone(), e.channel.clone(), before, after, floor]
+    });
+    let heads = ["run", "channel", "as declared", "as it is", "floor"];
+    let rows = table("llrrr", heads, rows);
+    let folder = done.folder.display();
+    let file = |name: &str| done.folder.join(name).display().to_string();
+    let [a, b] = [0, 1].map(|i| file(&recorded.runs[i]));
+    format!(
+        "{}\n{rows}\nWritten to {folder}; open {}\nNow: freeplay calibrate --rig {} --data {a} --validate {b}\n",
+        paragraph("", "", &recorded.verdict()),
+        file("index.html"),
+        file(RIG_FILE),
+    )
+}

@@ -1,0 +1,90 @@
+//! Two models, or two results of runs, held beside each other: what differs, and by how much more than chance.
+
+mod models;
+mod page;
+mod result;
+mod results;
+mod series;
+
+pub use models::{diff_models, simulated_time};
+pub use result::{Diff, Row};
+pub use results::diff_results;
+
+use super::run::{RunError, SCENARIO_FILE, SUMMARY_FILE};
+use crate::scenario::{Problem, Problems, Scenario};
+use std::path::{Path, PathBuf};
+
+/// The JSON file by which a difference is known.
+pub const DIFF_FILE: &str = "diff.json";
+
+const TABLE_FILE: &str = "diff.csv";
+
+/// One of the two.
+#[derive(Debug)]
+pub enum Side {
+    /// The folder of a run, and the scenario that it ran.
+    Result(PathBuf, Box<Scenario>),
+    /// A scenario, such as a calibrated model.
+    Model(Box<Scenario>),
+}
+
+impl Side {
+    /// Reads a scenario file, or the folder of a run.
+    ///
+    /// # Errors
+    /// What is wrong with the scenario, or a folder that holds no run.
+    pub fn read(path: &Path, sets: &[String]) -> Result<Self, DiffError> {
+        if !path.is_dir() {
+            return Ok(Side::Model(Box::new(Scenario::load(Some(path), sets)?)));
+        }
+        for file in [SUMMARY_FILE, SCENARIO_FILE] {
+            if !path.join(file).is_file() {
+                let message = format!(
+                    "`{}` holds no {file}: expected the folder of a `freeplay run`, or a scenario file",
+                    path.display()
+                );
+                return Err(DiffError::Input(message));
+            }
+        }
+        let scenario = Scenario::load(Some(&path.join(SCENARIO_FILE)), sets)?;
+        Ok(Side::Result(path.to_owned(), Box::new(scenario)))
+    }
+
+    /// What was, or is to be, simulated.
+    pub fn scenario(&self) -> &Scenario {
+        match self {
+            Side::Result(_, scenario) | Side::Model(scenario) => scenario,
+        }
+    }
+}
+
+/// A finished comparison of two.
+#[derive(Debug)]
+pub struct Done {
+    /// All figures.
+    pub diff: Diff,
+    /// The text of `diff.json`.
+    pub json: String,
+    /// Where all files are.
+    pub folder: PathBuf,
+}
+
+/// Why there is none.
+#[derive(Debug, thiserror::Error)]
+pub enum DiffError {
+    /// Wrong input.
+    #[error("{0}")]
+    Input(String),
+    /// A scenario with problems.
+    #[error(transparent)]
+    Scenario(#[from] Problems),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Files(#[from] RunError),
+}
+
+impl From<Problem> for DiffError {
+    fn from(problem: Problem) -> Self {
+        Self::Scenario(problem.into())
+    }
+}

@@ -1,0 +1,93 @@
+//! The page and the files of a difference.
+
+use super::result::{Diff, Row};
+use super::{DIFF_FILE, DiffError, Done, TABLE_FILE};
+use crate::report::{Part, Picture, Table, document, length, number};
+use crate::study::folder::Folder;
+use crate::study::run::{PAGE_FILE, RunError, refused, to_json};
+use std::fs;
+
+/// The picture of every run.
+pub const RUNS_FILE: &str = "every-run.svg";
+
+/// Writes everything about a difference and gives the folder its name.
+pub fn write(mut diff: Diff, pictures: &[Picture], folder: Folder) -> Result<Done, DiffError> {
+    let texts = [DIFF_FILE, TABLE_FILE, PAGE_FILE].map(str::to_owned).into_iter();
+    diff.files = texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect();
+    let json = to_json(&diff);
+    let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
+    write(DIFF_FILE, &json)?;
+    write(TABLE_FILE, &diff.csv())?;
+    for picture in pictures {
+        write(&picture.file, &picture.svg)?;
+    }
+    write(PAGE_FILE, &page(&diff, pictures))?;
+    let folder = folder.finish().map_err(RunError::from)?;
+    Ok(Done { diff, json, folder })
+}
+
+fn page(diff: &Diff, pictures: &[Picture]) -> String {
+    let [a, b] = &diff.names;
+    let title = format!("{a} and {b}");
+    let lead: Vec<&str> = [diff.answer.as_str()]
+        .into_iter()
+        .chain(diff.warnings.iter().map(String::as_str))
+        .collect();
+    let more = [
+        ("Second", format!("{}, {}", b, diff.second.scenario_hash)),
+        ("Figures", format!("{DIFF_FILE}, {TABLE_FILE} beside this page")),
+        ("Time of computing", format!("{} s", number(diff.wall_s))),
+    ];
+    let provenance = diff.provenance.lines("first", None, more);
+    let parts = [Part::Table(table(diff)), Part::Pictures(pictures), Part::Provenance(&provenance)];
+    document(&title, &lead.join(" "), &parts)
+}
+
+fn table(diff: &Diff) -> Table {
+    let note = match diff.of {
+        "models" => format!(
+            "Means over {} starts. Floor: half of the 95 % interval of the difference; figures differ that are one and a half \
+             floors apart.",
+            diff.starts
+        ),
+        _ => "Figures of both summaries, and root mean squares of columns and of what the second has more. Floor: of places \
+              the sum of both runs' own errors, three times which differ; of summaries of runs that are not chaotic \
+              rounding; otherwise nobody knows it."
+            .to_owned(),
+    };
+    let header = [
+        "figure",
+        diff.names[0].as_str(),
+        diff.names[1].as_str(),
+        "difference",
+        "floor",
+        "differs",
+    ];
+    Table {
+        id: "figures",
+        title: "Figures".to_owned(),
+        header: header.map(str::to_owned).into(),
+        rows: diff.rows.iter().map(|row| row.cells().to_vec()).collect(),
+        note,
+    }
+}
+
+impl Row {
+    /// What tables show of it.
+    pub fn cells(&self) -> [String; 6] {
+        let value = |value: f64| match self.unit {
+            "m" => length(value),
+            "" => number(value),
+            unit => format!("{} {unit}", number(value)),
+        };
+        let [a, b] = self.values.map(value);
+        let differs = match self.differs {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None if self.one_draw => "one draw",
+            None => "unknown",
+        };
+        let floor = self.floor.map_or("–".to_owned(), value);
+        [self.label.clone(), a, b, value(self.difference), floor, differs.to_owned()]
+    }
+}

@@ -1,0 +1,186 @@
+//! Wear of bearing rings: where journals rub in a run, and what rings become over many cycles.
+//!
+//! Archard's law: of a ring of axial length L a journal removes the volume `V = k ∫ F_N |ds|`, k the dimensionless wear
+//! coefficient over the hardness of the softer surface, in 1/Pa (J. F. Archard, J. Appl. Phys. 24 (1953) 981–988).
+//! A run says how much force times sliding there is in a cycle, and where ([`Work::rubbed`](crate::engine::Work::rubbed));
+//! [`Play`] grows by it; `jumps.rs` takes as many cycles at once as their error allows.
+
+mod around;
+mod jumps;
+mod page;
+mod result;
+mod rings;
+
+pub use jumps::Stage;
+pub use result::{JointWear, RingWear, WearSummary};
+
+pub(super) use around::{WEAR_FILE, wear_csv, wear_picture, wearing};
+
+use super::folder::Folder;
+use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused, to_json};
+use crate::contact::Play;
+use crate::engine;
+use crate::model::{Machine, assemble, expand};
+use crate::report::ReportError;
+use crate::scenario::{Problem, Scenario};
+use rings::Ring;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant as Clock;
+
+/// The JSON file of a prediction of wear, by which its folder is known.
+pub const WEAR_PREDICTED_FILE: &str = "wear.json";
+
+/// The worn machine, a scenario like any other.
+const WORN_FILE: &str = "worn.toml";
+const STAGES_FILE: &str = "clearances.csv";
+const SHAPES_FILE: &str = "rings.csv";
+
+/// What is to be predicted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// How many cycles.
+    pub cycles: f64,
+    /// Time of one cycle in s.
+    pub period: f64,
+    /// Largest error of a jump over cycles, as a share of a joint's clearance.
+    pub tolerance: f64,
+}
+
+/// A finished prediction and its files.
+#[derive(Debug)]
+pub struct Predicted {
+    /// All figures.
+    pub summary: WearSummary,
+    /// The text of [`WEAR_PREDICTED_FILE`].
+    pub json: String,
+    /// Where the files are.
+    pub folder: PathBuf,
+}
+
+/// Why a prediction has no files.
+#[derive(Debug, thiserror::Error)]
+pub enum WearError {
+    /// The scenario has something that wear cannot be predicted of.
+    #[error(transparent)]
+    Problem(#[from] Problem),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Files(#[from] RunError),
+    /// A run broke down on the way.
+    #[error("after {cycles:.3e} cycles: {reason}")]
+    Halted {
+        /// Cycles until then.
+        cycles: f64,
+        /// Why.
+        reason: String,
+    },
+    /// Jumps became too short to come to an end.
+    #[error(
+        "after {cycles:.3e} cycles jumps of {jump:.1e} cycles still err by more than the tolerance: what is rubbed \
+         differs too much from run to run; try a longer --duration, or a larger --tolerance"
+    )]
+    TooShort {
+        /// Cycles until then.
+        cycles: f64,
+        /// Length of the jump that was tried.
+        jump: f64,
+    },
+    /// It was told to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<ReportError> for WearError {
+    fn from(error: ReportError) -> Self {
+        WearError::Files(error.into())
+    }
+}
+
+/// Time in s of one cycle of a scenario's motion, where the motion says it: a circle's period, a turn of the one joint
+/// that turns at a constant rate.
+pub fn period_of(scenario: &Scenario) -> Option<f64> {
+    rings::period(scenario)
+}
+
+/// Predicts wear and writes everything about it into `folder`. `progress` is told the cycles reached.
+///
+/// # Errors
+/// [`WearError`]; the folder is left as it was.
+pub fn wear(
+    scenario: &Scenario,
+    request: Request,
+    folder: Folder,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Predicted, WearError> {
+    let started = Clock::now();
+    let expanded = expand(scenario)?;
+    let machine = assemble(scenario)?;
+    let rings = rings::of(scenario, &expanded, &machine)?;
+    let start = rings.iter().map(|ring| ring.play(&machine.mechanism)).collect();
+    let mut rub = |plays: &[Play], cycles: f64| {
+        rubbed(scenario, &machine, &rings, plays, request.period, stop)
+            .map_err(|reason| WearError::Halted { cycles, reason })?
+            .ok_or(WearError::Interrupted)
+    };
+    let stages = jumps::predict(&rings, start, request, &mut rub, progress)?;
+    let mut summary = result::summary(scenario, &rings, request, &stages);
+    let pictures = page::pictures(&rings, &stages)?;
+    let texts =
+        [WEAR_PREDICTED_FILE, STAGES_FILE, SHAPES_FILE, SCENARIO_FILE, WORN_FILE, PAGE_FILE];
+    let drawn = pictures.iter().map(|picture| picture.file.clone());
+    summary.files = texts.map(str::to_owned).into_iter().chain(drawn).collect();
+    summary.wall_s = started.elapsed().as_secs_f64();
+    let json = to_json(&summary);
+    let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
+    write(WEAR_PREDICTED_FILE, &json)?;
+    write(STAGES_FILE, &result::stages_csv(&rings, &stages))?;
+    write(SHAPES_FILE, &result::shapes_csv(&rings, &stages))?;
+    write(SCENARIO_FILE, &scenario.to_toml())?;
+    write(WORN_FILE, &rings::worn(&expanded, &rings, &stages).to_toml())?;
+    for picture in &pictures {
+        write(&picture.file, &picture.svg)?;
+    }
+    write(PAGE_FILE, &page::page(&summary, &pictures))?;
+    let folder = folder.finish().map_err(RunError::from)?;
+    Ok(Predicted { summary, json, folder })
+}
+
+/// Force times sliding of each ring in J per cycle, in a run with rings that leave these rooms; none where it was told
+/// to stop. The start that is left out of a run's figures is left out here, too.
+fn rubbed(
+    scenario: &Scenario,
+    machine: &Machine,
+    rings: &[Ring],
+    plays: &[Play],
+    period: f64,
+    stop: &AtomicBool,
+) -> Result<Option<Vec<Vec<f64>>>, String> {
+    let mut mechanism = machine.mechanism.clone();
+    for (ring, play) in rings.iter().zip(plays) {
+        mechanism.revolutes[ring.joint].out_of_round = play.shape(ring.clearance);
+    }
+    let settle = scenario.simulation.settle() * (1.0 - 1e-9);
+    let mut before: Option<(f64, Vec<Vec<f64>>)> = None;
+    let (control, schedule) = (machine.control, machine.schedule);
+    let work = engine::run_balanced(&mechanism, control, schedule, stop, &mut |instant| {
+        if before.is_none() && instant.t >= settle {
+            before = instant.rubbed.map(|rubbed| (instant.t, rubbed.to_vec()));
+        }
+        ControlFlow::Continue(())
+    })
+    .map_err(|halt| halt.to_string())?;
+    if work.stopped {
+        return Ok(None);
+    }
+    let (Some(after), Some((begun, before))) = (work.rubbed, before) else { return Ok(None) };
+    let per_cycle = period / (work.reached - begun);
+    let of = |ring: &Ring| {
+        let pairs = after[ring.joint].iter().zip(&before[ring.joint]);
+        pairs.map(|(after, before)| (after - before) * per_cycle).collect()
+    };
+    Ok(Some(rings.iter().map(of).collect()))
+}

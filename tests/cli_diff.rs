@@ -1,0 +1,80 @@
+//! `freeplay diff`: what differs by more than chance. The real binary.
+
+mod cli_common;
+
+use cli_common::Place;
+use serde_json::Value;
+
+fn rows(place: &Place, folder: &str) -> Vec<Value> {
+    let text = place.read(&format!("{folder}/diff.json"));
+    let diff: Value = serde_json::from_str(&text).unwrap();
+    diff["rows"].as_array().unwrap().clone()
+}
+
+fn differing(rows: &[Value]) -> Vec<&str> {
+    let differ = rows.iter().filter(|row| row["differs"] == true);
+    differ.map(|row| row["key"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn models_differ_where_they_differ_by_more_than_from_start_to_start() {
+    let place = Place::new();
+    let machine = |clearance: &str| {
+        format!(
+            "[mechanism]\nkind = \"3rpr\"\n[joints]\nclearance = {clearance}\n[simulation]\nduration = 0.5\n"
+        )
+    };
+    place.write("wide.toml", &machine("5e-4"));
+    place.write("same.toml", &machine("5e-4"));
+    place.write("tight.toml", &machine("1e-4"));
+    let text = place.good("diff wide.toml same.toml --out same");
+    assert!(text.starts_with("wide.toml and same.toml differ in none of 15 figures"), "{text}");
+    place.good("diff wide.toml tight.toml --out other");
+    let found = rows(&place, "other");
+    let keys = differing(&found);
+    assert!(keys.contains(&"rms_path_error_m") && keys.contains(&"impacts_per_s"), "{keys:?}");
+    assert!(found.iter().all(|row| row["floor"].as_f64().unwrap() > 0.0), "{found:?}");
+    assert!(place.read("other/index.html").contains("data-plots"));
+}
+
+#[test]
+fn a_single_chaotic_run_is_told_for_one_draw() {
+    let place = Place::new();
+    place.good("run --duration 0.3 --out a --quiet");
+    place.good("run --duration 0.3 --set joints.clearance=4e-4 --out b --quiet");
+    let done = place.freeplay("diff a b --out d");
+    assert_eq!(done.code, 0, "{}", done.err);
+    for fragment in [
+        "warning: The machine is chaotic",
+        "one draw",
+        "freeplay diff a/scenario.toml b/scenario.toml",
+    ] {
+        assert!(done.err.contains(fragment), "{}", done.err);
+    }
+    let found = rows(&place, "d");
+    let row = |key: &str| found.iter().find(|row| row["key"] == key).unwrap();
+    assert_eq!(
+        (&row("peak_contact_force_N")["one_draw"], &row("peak_contact_force_N")["differs"]),
+        (&true.into(), &Value::Null)
+    );
+    // Places differ by more than both runs' own errors, before chaos parts them.
+    assert_eq!(row("x")["differs"], true);
+    // Without play there is no chance: figures differ or do not.
+    for (out, period) in [("i", "1"), ("j", "1"), ("k", "0.9")] {
+        place.good(&format!(
+            "run --set contact.law=ideal --duration 0.3 --set motion.period={period} --out {out} --quiet"
+        ));
+    }
+    place.good("diff i j --out same");
+    assert_eq!(differing(&rows(&place, "same")), [""; 0]);
+    place.good("diff i k --out other");
+    assert!(differing(&rows(&place, "other")).contains(&"peak_platform_acceleration_m_s2"));
+}
+
+#[test]
+fn what_is_neither_run_nor_scenario_is_refused() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("empty")).unwrap();
+    place.refused("diff empty empty", &["holds no summary.json", "freeplay run"]);
+    place.refused("diff no.toml no.toml", &["no.toml: cannot be read"]);
+}

@@ -1,0 +1,77 @@
+//! `freeplay record`: what sensors would show, and whether calibrations find in it what was hidden. The real binary.
+
+mod cli_common;
+
+use cli_common::Place;
+use serde_json::Value;
+
+const RIG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs/rig-1/rig.toml");
+const PLANAR: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs-planar/planar-1/rig.toml");
+
+/// 20 µm of wear in A1, under gravity, which keeps the joints loaded.
+const WORN: &str = "--set effect.0.kind=joint-wear --set effect.0.joint=A1 --set effect.0.clearance_m=1.2e-4 \
+                    --set environment.gravity=[0,-9.81]";
+
+fn json(place: &Place, name: &str) -> Value {
+    serde_json::from_str(&place.read(name)).unwrap()
+}
+
+#[test]
+fn twenty_micrometres_of_wear_are_recorded_and_found() {
+    let place = Place::new();
+    let text = place.good(&format!("record {RIG} {WORN} --duration 1.5 --out worn"));
+    assert!(text.contains("joint-wear at A1: shows"), "{text}");
+    let said = json(&place, "worn/record.json");
+    // The sensors see them by ten floors and more.
+    assert!(said["shows_floors"].as_f64().unwrap() > 10.0, "{said}");
+    assert!(!place.read("worn/rig.toml").contains("joint-wear"));
+    assert!(place.read("worn/truth.toml").contains("joint-wear"));
+    // The truth explains its own recording to within noise; the rig does not.
+    let predicted = |model: &str| {
+        place.good(&format!(
+            "predict worn/{model}.toml --data worn/run-b.csv --out {model} --quiet"
+        ));
+        let errors = json(&place, &format!("{model}/errors.json"))["errors"].clone();
+        let ratio = |e: &Value| e["after"].as_f64().unwrap() / e["floor"].as_f64().unwrap();
+        errors.as_array().unwrap().iter().map(ratio).fold(0.0, f64::max)
+    };
+    assert!(predicted("truth") < 1.5);
+    assert!(predicted("rig") > 5.0);
+    // And the loop closes.
+    place.good(
+        "calibrate --rig worn/rig.toml --data worn/run-a.csv --validate worn/run-b.csv --out found --quiet",
+    );
+    let found = json(&place, "found/report.json");
+    assert_eq!(
+        (&found["verdict"], &found["effects"][0]["kind"]),
+        (&"explained".into(), &"joint-wear".into())
+    );
+    let clearance = found["effects"][0]["params"]["clearance_m"]["value"].as_f64().unwrap();
+    assert!((clearance - 1.2e-4).abs() < 1e-6, "{clearance}");
+}
+
+#[test]
+fn recordings_follow_from_the_seed() {
+    let place = Place::new();
+    let record = |out: &str, more: &str| {
+        place.good(&format!("record {PLANAR} --duration 1.2 --out {out} --quiet {more}"));
+        place.read(&format!("{out}/run-a.csv"))
+    };
+    let first = record("a", "");
+    assert_eq!(record("b", ""), first);
+    assert_ne!(record("c", "--set seed=2"), first);
+    // Columns of the rig, at the rate asked for; nothing hidden, nothing missed.
+    assert!(first.starts_with("t,q_O_cmd,q_O,T_O,a_slider\n0.000000,"), "{}", &first[..60]);
+    assert_eq!(first.lines().count(), 1202);
+    assert!(json(&place, "a/record.json")["shows_floors"].is_null());
+}
+
+#[test]
+fn what_cannot_be_recorded_is_refused() {
+    let place = Place::new();
+    place.refused("record", &["sensor: is missing", "--set sensors.pose_std=4e-6"]);
+    place.refused(&format!("record {RIG} --rate 10"), &["10.0000 a second", "at least 200"]);
+    place.refused(&format!("record {RIG} --duration 0"), &["--duration: is 0"]);
+    place
+        .refused(&format!("record {RIG} --set contact.law=native"), &["contact.law", "hertz-step"]);
+}
