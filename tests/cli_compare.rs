@@ -155,7 +155,20 @@ fn a_comparison_whose_runs_do_not_balance_says_so() {
     assert_eq!(loose["tolerance_m_s"], 0.03);
     let faulty = loose["faulty"].as_u64().unwrap();
     assert!(faulty >= 1, "{loose}");
-    assert!(place.read("c/index.html").contains("with faults"));
+    assert!(place.read("c/index.html").contains(&format!("{faulty} with faults)")));
+}
+
+/// Runs of the law that break down are left out of its figures, which stood there with exit code 0.
+#[test]
+fn a_comparison_whose_runs_break_down_says_so() {
+    let place = Place::new();
+    let sets = "--set simulation.tolerance=0.1 --set simulation.settle=0.05";
+    let line = format!("compare --duration 0.15 --steps 1e-4 --starts 2 --out c {sets}");
+    let done = place.freeplay(&line);
+    assert_eq!(done.code, 1, "{}", done.out);
+    let said = "error: hertz-step at the tolerance: 2 of 2 runs: the simulation broke down at ";
+    assert!(done.err.contains(said), "{}", done.err);
+    assert!(place.read("c/index.html").contains("(2 broke down)"));
 }
 
 #[test]

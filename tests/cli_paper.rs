@@ -167,3 +167,13 @@ fn a_study_whose_runs_do_not_balance_says_so() {
     assert!(faulty > 0, "{cases:?}");
     assert!(place.read("p/index.html").contains("runs with faults"));
 }
+
+/// Runs that break down are left out of all means: a study that lost some says so, and does not end well.
+#[test]
+fn a_study_whose_runs_break_down_says_so() {
+    let place = Place::new();
+    let sets = "--set simulation.tolerance=0.1 --set simulation.settle=0.05";
+    let done = place.freeplay(&format!("paper --duration 0.1 --phases 2 --out p {sets}"));
+    assert_eq!(done.code, 1, "{}", done.out);
+    assert!(done.err.contains("of 2 runs: broke down"), "{}", done.err);
+}

@@ -14,7 +14,7 @@ enum Kind {
     /// As it stands, by those who have minutes.
     Minutes,
     /// Its flags alone: it reads what its reader has.
-    OwnRecordings,
+    OwnFiles,
 }
 
 /// A block and the line that it begins at.
@@ -47,7 +47,7 @@ fn blocks(page: &Path) -> Vec<Block> {
             "```sh" => {
                 let kind = match before {
                     "<!-- minutes -->" => Kind::Minutes,
-                    "<!-- recordings of your own -->" => Kind::OwnRecordings,
+                    "<!-- files of your own -->" => Kind::OwnFiles,
                     _ => Kind::Quick,
                 };
                 blocks.push(Block { line: i + 2, kind, text: String::new() });
@@ -81,7 +81,7 @@ fn copy(from: &Path, to: &Path) {
 }
 
 /// A clone, and programs that stand for `freeplay` and `cargo`. `freeplay` runs as it is; under `FLAGS_ALONE` it
-/// explains itself instead, after it has looked at its flags. `cargo install` has happened.
+/// explains itself instead, after it has looked at its flags. `cargo install` and `pip install` have happened.
 fn clone() -> TempDir {
     let place = TempDir::new().unwrap();
     copy(&root().join("assets"), &place.path().join("assets"));
@@ -91,7 +91,8 @@ fn clone() -> TempDir {
         "#!/bin/sh\nif [ -n \"$FLAGS_ALONE\" ]; then exec {0} \"$@\" --help >/dev/null; fi\nexec {0} \"$@\"\n",
         env!("CARGO_BIN_EXE_freeplay")
     );
-    for (name, text) in [("freeplay", freeplay.as_str()), ("cargo", "#!/bin/sh\n")] {
+    let done = ["cargo", "pip", "pytest"].map(|name| (name, "#!/bin/sh\n"));
+    for (name, text) in [("freeplay", freeplay.as_str())].iter().chain(&done) {
         let path = bin.join(name);
         fs::write(&path, text).unwrap();
         fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
@@ -177,7 +178,7 @@ fn every_block_is_safe_in_zsh() {
 fn every_long_block_works_in_bash() {
     for page in pages() {
         let clone = clone();
-        for block in blocks(&page).iter().filter(|block| block.kind != Kind::OwnRecordings) {
+        for block in blocks(&page).iter().filter(|block| block.kind != Kind::OwnFiles) {
             paste(&BASH, clone.path(), &page, block, false);
         }
     }

@@ -69,7 +69,7 @@ def test_every_name_is_typed_and_said(repository: Path) -> None:
 def test_the_job_array(binary: str, repository: Path, tmp_path: Path) -> None:
     """The blocks of a shell in docs/clusters.md, in their order; the queue is a loop here, a real one in `cli_slurm`."""
     page = (repository / "docs/clusters.md").read_text().replace("log:1000", "log:9")
-    forecast, job, resubmit = re.findall(r"```sh\n(.*?)```", page, re.S)
+    forecast, job, resubmit = re.findall(r"```(?:sh|text)\n(.*?)```", page, re.S)
     (tmp_path / "s.toml").write_text(fp.Scenario().set("simulation.duration", 0.02).to_toml())
     (tmp_path / "job.sh").write_text(job)
     (tmp_path / "sbatch").write_text('#!/bin/sh\necho "$1" > asked\n')

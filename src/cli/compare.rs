@@ -154,17 +154,17 @@ fn text(compared: &Compared) -> String {
     let rows = c.rows.iter().map(|row| {
         let step = row.step_s.map_or("tolerance".to_owned(), |step| format!("{step:e} s"));
         let [path, peak, fraction, impacts] = chosen.map(|key| figure(&row.quantities, key));
-        let said = if row.halted > 0 {
-            "broke down"
-        } else if !row.resolved {
-            "step too long"
-        } else if row.faulty > 0 {
-            "has faults"
-        } else {
-            ""
-        };
         let cost = number(row.wall_s_per_simulated_s);
-        [row.law.name().to_owned(), step, path, peak, fraction, impacts, cost, said.to_owned()]
+        [
+            row.law.name().to_owned(),
+            step,
+            path,
+            peak,
+            fraction,
+            impacts,
+            cost,
+            row.remark().unwrap_or_default(),
+        ]
     });
     text += &table("llrrrrrl", heads, rows);
     if let Some(chaos) = &c.chaos {

@@ -130,10 +130,11 @@ impl Constraints {
 /// leave 1e-16 to 1e-14 of it, rows that differ by a microradian leave 1e-12.
 const DEPENDENT: f64 = 1e-13;
 
-/// The same in shares of what is usual for the rows: within some 30 µrad of a singular pose. There the forces
+/// The same in shares of what is usual for the rows: within some 0.1 mrad of a singular pose. There the forces
 /// grow without limit, and make of the velocities' errors accelerations larger than those that the rows hold
-/// back.
-const SINGULAR: f64 = 1e-9;
+/// back. What is left out at c rad from the pose errs by c³, what rounding makes of it by c⁻²: of 1e-9 to 1e-5, 1e-8 errs
+/// least through the singular pose of two four-bars side by side, wherever steps end beside it.
+const SINGULAR: f64 = 1e-8;
 
 /// Cholesky solution of a symmetric positive definite system given by its lower triangle (row
 /// major); the right-hand side becomes the solution. Returns the smallest pivot in shares of its diagonal;

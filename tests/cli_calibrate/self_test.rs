@@ -72,6 +72,9 @@ fn a_self_test_refuses_what_it_cannot_do() {
         ["--hidden payload", "--machine arm", "--count 3", "--trials t.jsonl", "--keep kept"]
     {
         let name = flag.split(' ').next().unwrap();
-        place.refused(&format!("{beside_a_rig} {flag}"), &[name, "cannot be used with '--rig"]);
+        place.refused(
+            &format!("{beside_a_rig} {flag}"),
+            &[name, "cannot be used with", "'--rig <RIG.toml>'"],
+        );
     }
 }

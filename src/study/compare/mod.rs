@@ -223,6 +223,7 @@ fn row_result(row: &plan::Row, runs: &[Measured]) -> RowResult {
         resolved: row.resolved,
         starts: row.starts,
         halted: runs.len() - good().count(),
+        halt: runs.iter().find_map(|run| run.halted.clone()),
         faulty: faulty().count(),
         faults: faulty().next().map_or(Vec::new(), |run| run.faults.clone()),
         steps_per_s: mean(&|run| run.steps_per_s).mean,

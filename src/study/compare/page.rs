@@ -118,12 +118,7 @@ fn row_name(row: &RowResult) -> String {
         (None, Some(tolerance)) => format!("tolerance {}", number(tolerance)),
         (None, None) => String::new(),
     };
-    let remark = match (row.resolved, row.halted, row.faulty) {
-        (_, halted, _) if halted > 0 => format!(" ({halted} broke down)"),
-        (false, ..) => " (too long)".to_owned(),
-        (true, _, faulty) if faulty > 0 => format!(" ({faulty} with faults)"),
-        (true, ..) => String::new(),
-    };
+    let remark = row.remark().map_or(String::new(), |remark| format!(" ({remark})"));
     format!("{}, {how}{remark}", row.law.name())
 }
 

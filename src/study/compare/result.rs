@@ -77,6 +77,8 @@ pub struct RowResult {
     pub starts: usize,
     /// Runs that broke down, and are left out.
     pub halted: usize,
+    /// Why the first of those did.
+    pub halt: Option<String>,
     /// Runs with faults (energy that does not balance, rigid joints that came apart); they count like the others.
     pub faulty: usize,
     /// What the first of those says, in words.
@@ -88,6 +90,22 @@ pub struct RowResult {
     /// The compared quantities, as {key: {mean, sem}}.
     #[serde(serialize_with = "by_key")]
     pub quantities: Vec<Mean>,
+}
+
+impl RowResult {
+    /// What speaks against the row, in words.
+    pub fn remark(&self) -> Option<String> {
+        let mut said = Vec::new();
+        if self.halted > 0 {
+            said.push(format!("{} broke down", self.halted));
+        }
+        if !self.resolved {
+            said.push("step too long".to_owned());
+        } else if self.faulty > 0 {
+            said.push(format!("{} with faults", self.faulty));
+        }
+        (!said.is_empty()).then(|| said.join(", "))
+    }
 }
 
 /// What one quantity tends to under one law.
@@ -144,17 +162,20 @@ impl Comparison {
     /// Rows that should be without faults and are not, in words: those of the law and of ideal joints, at steps that resolve
     /// them. (Steps that are too long are there to be seen, and the engine's own contacts are judged by the law.)
     pub fn faults(&self) -> Vec<String> {
-        let faulty = |row: &&RowResult| row.law != Law::Native && row.resolved && row.faulty > 0;
-        let rows = self.rows.iter().filter(faulty);
-        rows.map(|row| {
+        let judged = self.rows.iter().filter(|row| row.law != Law::Native && row.resolved);
+        let faults = judged.flat_map(|row| {
             let how = match row.step_s {
                 Some(step) => format!("a step of {step:e} s"),
                 None => "the tolerance".to_owned(),
             };
-            let (law, faults) = (row.law.name(), row.faults.join("; "));
-            format!("{law} at {how}: {} of {} runs: {faults}", row.faulty, row.starts)
-        })
-        .collect()
+            let runs = format!("{} at {how}", row.law.name());
+            let halted = row.halt.iter().map(|reason| (row.halted, reason.clone()));
+            let faulty = (row.faulty > 0).then(|| (row.faulty, row.faults.join("; ")));
+            let said = halted.chain(faulty).collect::<Vec<_>>();
+            said.into_iter()
+                .map(move |(count, what)| format!("{runs}: {count} of {} runs: {what}", row.starts))
+        });
+        faults.collect()
     }
 
     /// The row of a law that is trusted most: the tolerance's, or the shortest step's.

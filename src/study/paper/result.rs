@@ -38,19 +38,21 @@ pub struct Paper {
 }
 
 impl Paper {
-    /// Variants with runs that have faults, in words.
+    /// Variants with runs that broke down or have faults, in words.
     pub fn faults(&self) -> Vec<String> {
-        let cases = self.variants.iter().flat_map(|variant| {
-            let faulty = variant.cases.iter().filter(|case| case.faulty > 0);
-            faulty.map(move |case| (variant.key, case))
-        });
-        cases
-            .map(|(key, case)| {
-                let (clearance, faults) = (case.clearance_m, case.faults.join("; "));
-                let (faulty, all) = (case.faulty, self.phases);
-                format!("{key} at {clearance:e} m of clearance: {faulty} of {all} runs: {faults}")
+        let cases = self
+            .variants
+            .iter()
+            .flat_map(|variant| variant.cases.iter().map(move |case| (variant.key, case)));
+        let faults = cases.flat_map(|(key, case)| {
+            let halted = (case.halted > 0).then(|| (case.halted, "broke down".to_owned()));
+            let faulty = (case.faulty > 0).then(|| (case.faulty, case.faults.join("; ")));
+            halted.into_iter().chain(faulty).map(move |(count, what)| {
+                let (clearance, all) = (case.clearance_m, self.phases);
+                format!("{key} at {clearance:e} m of clearance: {count} of {all} runs: {what}")
             })
-            .collect()
+        });
+        faults.collect()
     }
 }
 
