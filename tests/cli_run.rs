@@ -309,7 +309,7 @@ fn a_run_that_does_not_balance_says_so() {
         "run --out r --duration 0.28 --set simulation.tolerance=1e-2 --set environment.gravity=[0,-9.81]",
     );
     assert_eq!(done.code, 1, "{}", done.out);
-    assert!(done.err.starts_with("error: the energy is off by "), "{}", done.err);
+    assert!(done.err.contains("\nerror: the energy is off by "), "{}", done.err);
     let json: Value = serde_json::from_str(&place.read("r/summary.json")).unwrap();
     assert!(json["watched"]["energy"]["imbalance_share"].as_f64().unwrap() > 0.01);
     assert!(!json["watched"]["faults"].as_array().unwrap().is_empty());

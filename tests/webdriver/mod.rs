@@ -53,6 +53,13 @@ impl Browser {
     /// Loads a file.
     pub fn open(&self, file: &Path) {
         self.post("url", &json!({"url": format!("file://{}", file.display())}));
+        // The driver returns before the page's scripts have run where the machine is busy.
+        let ready = "return location.protocol === 'file:' && document.readyState === 'complete'";
+        let seconds = std::time::Instant::now();
+        while self.run(ready) != true {
+            assert!(seconds.elapsed().as_secs() < 60, "{} does not load", file.display());
+            std::thread::sleep(std::time::Duration::from_millis(50));
+        }
     }
 
     /// Shows pages as on a screen so many pixels wide, light or dark.

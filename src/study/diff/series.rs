@@ -29,15 +29,26 @@ impl Series {
         let heads: Vec<String> =
             rows.headers().map_err(|error| wrong(&error))?.iter().map(str::to_owned).collect();
         let mut columns = vec![Vec::new(); heads.len()];
-        for row in rows.records() {
+        for (line, row) in (2..).zip(rows.records()) {
             let row = row.map_err(|error| wrong(&error))?;
-            for (column, cell) in columns.iter_mut().zip(&row) {
+            for ((column, head), cell) in columns.iter_mut().zip(&heads).zip(&row) {
                 // An empty cell is a figure that the row does not have.
-                column.push(cell.parse().unwrap_or(f64::NAN));
+                let value = if cell.is_empty() { Ok(f64::NAN) } else { cell.parse() };
+                let told = |_| {
+                    wrong(&format!("line {line}, column {head}: expected a number, found `{cell}`"))
+                };
+                column.push(value.map_err(told)?);
             }
         }
         if heads.first().map(String::as_str) != Some("t") || columns[0].len() < 2 {
             return Err(wrong(&"expected a column t and at least two rows"));
+        }
+        let rises = |pair: &[f64]| pair[0] < pair[1] && pair.iter().all(|t| t.is_finite());
+        if let Some(row) = columns[0].windows(2).position(|pair| !rises(pair)) {
+            return Err(wrong(&format!(
+                "line {}: expected a time after that of the line before",
+                row + 3
+            )));
         }
         Ok(Self { heads, columns })
     }

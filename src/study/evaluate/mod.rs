@@ -65,7 +65,7 @@ pub fn figures(
         return Err(EvaluateError::Interrupted);
     }
     let row = row::of_summary(Vec::new(), &summary, &row::more(scenario));
-    if row::status(&row) != row::Status::Ok {
+    if row::said(row.last().map(String::as_str)) != row::Status::Ok {
         return Err(EvaluateError::Failed(row.last().cloned().unwrap_or_default()));
     }
     let figure = |(place, name): (usize, &String)| match row[place].as_str() {

@@ -7,6 +7,7 @@
 use super::record::sha256;
 use super::{Identity, Shard, SweepError};
 use crate::study::run::{RunError, refused};
+use csv::StringRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -17,7 +18,14 @@ use std::path::Path;
 pub(super) const JOURNAL_FILE: &str = "rows.jsonl";
 
 /// Rows by the number of their run.
-pub(super) type Rows = BTreeMap<usize, Vec<String>>;
+pub(super) type Rows = BTreeMap<usize, StringRecord>;
+
+/// A row as it is kept: its cells in one text, as long as they are.
+pub(super) fn kept(cells: &[String]) -> StringRecord {
+    let mut row = StringRecord::with_capacity(cells.iter().map(String::len).sum(), cells.len());
+    cells.iter().for_each(|cell| row.push_field(cell));
+    row
+}
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -105,7 +113,8 @@ pub(super) fn text(identity: &Identity, rows: &Rows) -> String {
     let hash = identity.hash();
     rows.iter()
         .map(|(run, cells)| {
-            let line = Line { run: *run, cells: cells.clone(), seal: seal(&hash, *run, cells) };
+            let cells: Vec<String> = cells.iter().map(str::to_owned).collect();
+            let line = Line { run: *run, seal: seal(&hash, *run, &cells), cells };
             serde_json::to_string(&line).unwrap_or_default() + "\n"
         })
         .collect()
@@ -150,10 +159,11 @@ fn parse(
         if cells != columns {
             return Err(damaged(format!("has {cells} cells, and the table {columns} columns")));
         }
-        if rows.get(&line.run).is_some_and(|before| *before != line.cells) {
+        let row = kept(&line.cells);
+        if rows.get(&line.run).is_some_and(|before| *before != row) {
             return Err(damaged(format!("contradicts an earlier row of run {}", line.run)));
         }
-        rows.insert(line.run, line.cells);
+        rows.insert(line.run, row);
     }
     Ok((rows, whole))
 }

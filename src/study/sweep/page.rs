@@ -38,7 +38,7 @@ fn lead(record: &Record, rows: &Rows) -> String {
         (record.refused, "cannot be done by the machine", Status::Refused),
     ] {
         let first = rows.values().find(|row| status(row) == wanted);
-        if let Some(reason) = first.and_then(|row| row.last()) {
+        if let Some(reason) = first.and_then(|row| row.iter().next_back()) {
             lead += &format!(", {count} {how} (the first: {reason})");
         }
     }

@@ -7,6 +7,7 @@
 use super::Identity;
 use super::journal::Rows;
 use super::row::{COUNTS, FIGURES};
+use csv::StringRecord;
 use parquet::basic::{LogicalType, Repetition, Type as PhysicalType};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -42,7 +43,7 @@ fn bytes(identity: &Identity, rows: &Rows) -> Result<Vec<u8>, ParquetError> {
     let mut writer = SerializedFileWriter::new(Vec::new(), Arc::new(schema), properties)?;
     let mut group = writer.next_row_group()?;
     for (i, kind) in kinds.iter().enumerate() {
-        let cells = || rows.values().map(move |row| row.get(i).map_or("", String::as_str));
+        let cells = || rows.values().map(move |row| row.get(i).unwrap_or_default());
         match kind {
             Kind::Count => column::<Int64Type>(&mut group, cells().map(|cell| cell.parse().ok()))?,
             Kind::Number => {
@@ -59,7 +60,7 @@ fn bytes(identity: &Identity, rows: &Rows) -> Result<Vec<u8>, ParquetError> {
 
 /// What column `i` holds.
 fn kind(name: &str, i: usize, rows: &Rows) -> Kind {
-    let number = |row: &Vec<String>| row.get(i).is_some_and(|cell| cell.parse::<f64>().is_ok());
+    let number = |row: &StringRecord| row.get(i).is_some_and(|cell| cell.parse::<f64>().is_ok());
     if COUNTS.contains(&name) {
         Kind::Count
     } else if FIGURES.contains(&name) || rows.values().all(number) {

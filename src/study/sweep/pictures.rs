@@ -6,6 +6,7 @@ use super::statistics::{Spread, is_start};
 use super::vary::Values;
 use super::{Identity, Vary};
 use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, panels_svg};
+use csv::StringRecord;
 use std::collections::BTreeMap;
 
 /// What is drawn: column, heading, label of the axis, factor to the axis' unit, and the column of the same of the machine
@@ -77,7 +78,7 @@ fn file(path: &str) -> String {
 pub(super) fn draw(identity: &Identity, rows: &Rows) -> Result<Vec<Picture>, ReportError> {
     // A record that was edited has been refused before; what cannot be read is not drawn.
     let varied: Vec<Vary> = identity.vary.iter().filter_map(|v| Vary::parse(v).ok()).collect();
-    let rows: Vec<&Vec<String>> = rows.values().filter(|row| status(row) == Status::Ok).collect();
+    let rows: Vec<&StringRecord> = rows.values().filter(|row| status(row) == Status::Ok).collect();
     (0..varied.len())
         .filter(|input| !rows.is_empty() && rows.iter().all(|row| cell(row, *input).is_some()))
         .map(|input| picture(identity, &varied, &rows, input))
@@ -87,7 +88,7 @@ pub(super) fn draw(identity: &Identity, rows: &Rows) -> Result<Vec<Picture>, Rep
 fn picture(
     identity: &Identity,
     varied: &[Vary],
-    rows: &[&Vec<String>],
+    rows: &[&StringRecord],
     input: usize,
 ) -> Result<Picture, ReportError> {
     let path = &varied[input].path;
@@ -102,9 +103,9 @@ fn picture(
         .iter()
         .filter_map(|output| {
             let column = identity.columns.iter().position(|name| name == output.0)?;
-            let points = |rows: &[&Vec<String>]| -> Vec<(f64, f64)> {
+            let points = |rows: &[&StringRecord]| -> Vec<(f64, f64)> {
                 let point =
-                    |row: &&Vec<String>| Some((cell(row, input)?, output.3 * cell(row, column)?));
+                    |row: &&StringRecord| Some((cell(row, input)?, output.3 * cell(row, column)?));
                 rows.iter().filter_map(point).collect()
             };
             let all = points(rows);
@@ -144,7 +145,7 @@ fn picture(
                 output.4.and_then(|name| identity.columns.iter().position(|c| c == name))
             {
                 let point =
-                    |row: &&Vec<String>| Some((cell(row, input)?, output.3 * cell(row, ideal)?));
+                    |row: &&StringRecord| Some((cell(row, input)?, output.3 * cell(row, ideal)?));
                 let mut points: Vec<(f64, f64)> = rows.iter().filter_map(point).collect();
                 points.sort_by(|a, b| a.0.total_cmp(&b.0));
                 points.dedup_by(|a, b| a.0 == b.0);
@@ -204,7 +205,7 @@ fn scale(value: f64, log: bool) -> f64 {
     if log { value.log10() } else { value }
 }
 
-fn cell(row: &[String], column: usize) -> Option<f64> {
+fn cell(row: &StringRecord, column: usize) -> Option<f64> {
     row.get(column)?.parse().ok()
 }
 
@@ -218,18 +219,18 @@ fn wide(values: impl Iterator<Item = f64>) -> bool {
 /// The runs by their values of the other lists and ranges if these are few, or all of them.
 fn groups<'a>(
     varied: &[Vary],
-    rows: &[&'a Vec<String>],
+    rows: &[&'a StringRecord],
     input: usize,
-) -> Vec<(String, Vec<&'a Vec<String>>)> {
+) -> Vec<(String, Vec<&'a StringRecord>)> {
     // In the order of the runs.
     let mut places: BTreeMap<String, usize> = BTreeMap::new();
-    let mut groups: Vec<(String, Vec<&Vec<String>>)> = Vec::new();
+    let mut groups: Vec<(String, Vec<&StringRecord>)> = Vec::new();
     for row in rows {
         let others = varied
             .iter()
             .enumerate()
             .filter(|(k, v)| *k != input && !v.is_random() && !is_start(&v.path));
-        let name: Vec<String> = others.map(|(k, v)| format!("{} = {}", v.path, row[k])).collect();
+        let name: Vec<String> = others.map(|(k, v)| format!("{} = {}", v.path, &row[k])).collect();
         let name = name.join(", ");
         let place = *places.entry(name.clone()).or_insert(groups.len());
         if place == groups.len() {

@@ -4,6 +4,7 @@ use super::Vary;
 use crate::mechanism::{Actuator, JointIndex};
 use crate::scenario::Scenario;
 use crate::simulate::{Summary, assemble};
+use csv::StringRecord;
 use serde_json::Value;
 
 /// The figures of a row, by their names in `summary.json`. What depends on the machine that computes
@@ -140,8 +141,13 @@ pub(super) fn refused(values: Vec<String>, reason: &str, more: &[String]) -> Vec
 }
 
 /// How the run of a row ended.
-pub(in crate::study) fn status(row: &[String]) -> Status {
-    match row.last().map(String::as_str) {
+pub(super) fn status(row: &StringRecord) -> Status {
+    said(row.iter().next_back())
+}
+
+/// How a run ended whose last cell this is.
+pub(in crate::study) fn said(status: Option<&str>) -> Status {
+    match status {
         Some(OK) => Status::Ok,
         Some(text) if text.starts_with(HALTED) => Status::Halted,
         _ => Status::Refused,

@@ -5,6 +5,7 @@ use super::journal::Rows;
 use super::row::{Status, status};
 use crate::measure::student::t95;
 use crate::study::compare::Mean;
+use csv::StringRecord;
 use std::collections::BTreeMap;
 
 /// The table of statistics.
@@ -62,10 +63,10 @@ pub(super) fn groups(identity: &Identity, rows: &Rows) -> Vec<Group> {
     let shared: Vec<usize> =
         varied(identity).filter(|(_, path)| !is_start(path)).map(|(column, _)| column).collect();
     let mut places: BTreeMap<Vec<String>, usize> = BTreeMap::new();
-    let mut found: Vec<(Vec<String>, Vec<&Vec<String>>)> = Vec::new();
+    let mut found: Vec<(Vec<String>, Vec<&StringRecord>)> = Vec::new();
     for row in rows.values().filter(|row| status(row) == Status::Ok) {
         let values: Vec<String> =
-            shared.iter().map(|column| row.get(*column).cloned().unwrap_or_default()).collect();
+            shared.iter().map(|column| row.get(*column).unwrap_or_default().to_owned()).collect();
         let place = *places.entry(values.clone()).or_insert(found.len());
         if place == found.len() {
             found.push((values, Vec::new()));
@@ -73,7 +74,7 @@ pub(super) fn groups(identity: &Identity, rows: &Rows) -> Vec<Group> {
         found[place].1.push(row);
     }
     let columns = identity.vary.len()..identity.columns.len();
-    let group = |(values, rows): (Vec<String>, Vec<&Vec<String>>)| {
+    let group = |(values, rows): (Vec<String>, Vec<&StringRecord>)| {
         let figure = |column: usize| {
             let values = rows.iter().filter_map(|row| row.get(column)?.parse().ok());
             let values: Vec<f64> = values.collect();

@@ -1,6 +1,6 @@
 //! A sweep at work: what is not in the journal yet is run, on all threads.
 
-use super::journal::{JOURNAL_FILE, Journal, Rows, lock};
+use super::journal::{JOURNAL_FILE, Journal, Rows, kept, lock};
 use super::result::{Outcome, PARQUET_FILE, TABLE_FILE, put, refuse_edited_table, write};
 use super::{Identity, Plan, RECORD_FILE, Record, Shard, SweepError};
 use crate::study::folder::Folder;
@@ -133,15 +133,16 @@ impl Ongoing {
                 self.identity.runs
             )));
         }
+        let kept = kept(&row);
         match self.rows.get(&run) {
-            Some(before) if *before == row => Ok(()),
+            Some(before) if *before == kept => Ok(()),
             Some(_) => Err(SweepError::input(format!(
                 "run {} was made twice and came out differently: one of the machines computes wrongly",
                 run + 1
             ))),
             None => {
                 self.journal.append(run, &row)?;
-                self.rows.insert(run, row);
+                self.rows.insert(run, kept);
                 Ok(())
             }
         }
