@@ -77,4 +77,15 @@ fn what_is_neither_run_nor_scenario_is_refused() {
     std::fs::create_dir(place.path("empty")).unwrap();
     place.refused("diff empty empty", &["holds no summary.json", "freeplay run"]);
     place.refused("diff no.toml no.toml", &["no.toml: cannot be read"]);
+
+    place.good("run --duration 0.01 --out a --quiet");
+    let series = place.read("a/timeseries.csv");
+    place.write("a/timeseries.csv", &series.replacen("\n0,", "\n0,far", 1));
+    place.refused(
+        "diff a a",
+        &["timeseries.csv: ", "line 2, column x: expected a number, found `far"],
+    );
+    let [first, second] = [series.lines().nth(1).unwrap(), series.lines().nth(2).unwrap()];
+    place.write("a/timeseries.csv", &series.replacen(second, first, 1));
+    place.refused("diff a a", &["timeseries.csv: ", "line 3: expected a time after that"]);
 }

@@ -122,6 +122,9 @@ fn what_is_missing_or_impossible_is_told() {
         "wear pin.toml --cycles 1 --period 0.4",
         &["--period: is 0.4 s", "at most what a run counts"],
     );
+    let short = "wear --cycles 1 --set contact.wear_coefficient=1e-14 --set motion.period=0.1 --duration 0.06";
+    let done = place.freeplay(&format!("{short} --out lengthened"));
+    assert!(done.err.contains("warning: runs take 0.13 s"), "{}", done.err);
     let quintic = "wear --cycles 1 --set contact.wear_coefficient=1e-13 --set motion.kind=quintic";
     place.refused(quintic, &["--period: is missing"]);
     place.refused(

@@ -5,6 +5,7 @@ use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::output;
 use super::progress::Progress;
 use super::signals;
+use super::table::table;
 use crate::report::{length, number};
 use crate::simulate::{assemble, findings};
 use crate::study::wear::{Predicted, Request, WEAR_PREDICTED_FILE, WearError, period_of, wear};
@@ -32,7 +33,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N")]
     cycles: f64,
     /// Time of one cycle in s [default: the period of a circle, or one turn of the joint that turns
-    /// at a constant rate]
+    /// at a constant rate; runs become that long where the scenario's count less]
     #[arg(long, value_name = "S")]
     period: Option<f64>,
     /// Largest error of a jump over cycles, as a share of a joint's clearance
@@ -46,7 +47,7 @@ pub(super) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  freeplay wear --cycles 1e6 --duration 1.2 --set contact.wear_coefficient=1e-14
+  freeplay wear --cycles 1e6 --set contact.wear_coefficient=1e-14
   freeplay wear my-machine.toml --cycles 1e5 --duration 3 --out worn
   freeplay wear my-machine.toml --cycles 1e5 --period 0.5 --engine direct
   freeplay run worn/worn.toml                        the worn machine";
@@ -73,14 +74,15 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     if !(tolerance > 0.0 && tolerance < 1.0) {
         return Err(wrong(format!("--tolerance: is {tolerance}; expected above 0 and below 1")));
     }
-    let scenario = arguments.scenario.load()?;
+    let mut scenario = arguments.scenario.load()?;
     let Some(period) = arguments.period.or_else(|| period_of(&scenario)) else {
         let message =
             "--period: is missing; the motion does not say how long a cycle is: give it in s";
         return Err(wrong(message.to_owned()));
     };
     let counted = scenario.simulation.duration - scenario.simulation.settle();
-    if !(period > 0.0 && counted >= period * (1.0 - 1e-9)) {
+    let whole = period > 0.0 && counted >= period * (1.0 - 1e-9);
+    if !whole && arguments.period.is_some() {
         let message = format!(
             "--period: is {period} s; expected above 0, and at most what a run counts: {} s of duration less its first \
              {} s (simulation.settle); a longer --duration counts more",
@@ -88,6 +90,16 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
             scenario.simulation.settle()
         );
         return Err(wrong(message));
+    }
+    if !whole {
+        let settle = scenario.simulation.settle();
+        scenario.simulation.settle = Some(settle);
+        scenario.simulation.duration = settle + period;
+        output::complain(&format!(
+            "warning: runs take {} s instead of what the scenario says: the first {settle} s, which do not count, and one \
+             cycle of {period} s",
+            scenario.simulation.duration
+        ));
     }
     refuse_errors(findings(&scenario, &mut assemble(&scenario)?))?;
     let folder = arguments.folder.prepare("wear", &scenario.name, WEAR_PREDICTED_FILE)?;
@@ -115,27 +127,20 @@ fn text(predicted: &Predicted) -> String {
         s.stages.len() - 1,
         number(s.wall_s)
     );
-    // Writing to a string cannot fail, here and below.
-    let _ = writeln!(
-        text,
-        "  {:<12}{:>14}{:>14}{:>14}{:>14}{:>12}",
-        "joint", "clearance new", "worn, mean", "largest", "deepest wear", "error"
-    );
-    for joint in &s.joints {
-        let [new, mean, largest, depth, error] = [
+    let heads = ["joint", "clearance new", "wider, mean", "at most", "deepest wear", "error"];
+    let rows = s.joints.iter().map(|joint| {
+        let lengths = [
             joint.new_clearance_m,
-            joint.worn.clearance_m,
-            joint.worn.largest_clearance_m,
+            joint.worn.clearance_m - joint.new_clearance_m,
+            joint.worn.largest_clearance_m - joint.new_clearance_m,
             joint.worn.depth_m,
             joint.error_m,
-        ]
-        .map(length);
-        let _ = writeln!(
-            text,
-            "  {:<12}{new:>14}{mean:>14}{largest:>14}{depth:>14}{error:>12}",
-            joint.joint
-        );
-    }
+        ];
+        let [new, mean, largest, depth, error] = lengths.map(length);
+        [joint.joint.clone(), new, mean, largest, depth, error]
+    });
+    text += &table("lrrrrr", heads, rows);
+    // Writing to a string cannot fail.
     let page = predicted.folder.join("index.html");
     let _ = writeln!(text, "\nWritten to {}; open {}", predicted.folder.display(), page.display());
     text
