@@ -3,20 +3,10 @@
 mod cli_common;
 
 use cli_common::Place;
+use freeplay::scenario::Mechanism;
 use serde_json::{Map, Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-const KINDS: [&str; 8] = [
-    "3rpr",
-    "drive-stage",
-    "pendulum",
-    "slider-crank",
-    "four-bar",
-    "five-bar",
-    "3rrr",
-    "double-pendulum",
-];
 
 /// What a value has against a schema: the parts of JSON Schema that ours uses, at the place `at`.
 fn against(schema: &Value, value: &Value, at: &str) -> Vec<String> {
@@ -142,7 +132,7 @@ fn the_schema_takes_what_the_reader_takes() {
         assert_eq!(against(&schema, &toml(&text), ""), [""; 0], "{}", path.display());
     }
     // Every template with every default filled in, and what it expands to.
-    for kind in KINDS {
+    for kind in Mechanism::KINDS {
         let written = place.good(&format!("init {kind}"));
         assert_eq!(against(&schema, &toml(&written), ""), [""; 0], "{kind}");
         place.write("begun.toml", &written);
@@ -176,7 +166,7 @@ fn the_schema_refuses_what_the_reader_refuses() {
 #[test]
 fn what_init_prints_can_be_used_at_once() {
     let place = Place::new();
-    for kind in KINDS {
+    for kind in Mechanism::KINDS {
         let scenario = place.good(&format!("init {kind}"));
         assert!(scenario.lines().filter(|line| line.starts_with("# ")).count() > 40, "{kind}");
         place.write("begun.toml", &scenario);

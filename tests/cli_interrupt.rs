@@ -220,8 +220,13 @@ fn other_commands_leave_nothing() {
     let place = Place::new();
     let rig = |file: &str| format!("{}/assets/rigs/rig-1/{file}", env!("CARGO_MANIFEST_DIR"));
     let (rig_file, log) = (rig("rig.toml"), rig("run-a.csv"));
+    place.write("two.toml", "[mechanism]\nkind = \"3rpr\"\n[simulation]\nduration = 2\n");
     for line in [
         "paper --out r".to_owned(),
+        "compare --laws all --out r".to_owned(),
+        "wear --cycles 1e6 --set contact.wear_coefficient=1e-14 --out r".to_owned(),
+        "diff two.toml two.toml --out r".to_owned(),
+        format!("record {rig_file} --duration 20 --out r"),
         format!("calibrate --rig {rig_file} --data {log} --out r"),
         format!("predict {rig_file} --data {log} --out r"),
     ] {
