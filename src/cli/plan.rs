@@ -58,11 +58,14 @@ pub(super) struct Arguments {
     acceleration: Vec<String>,
     /// Largest force or torque of a drive, N or N m
     #[arg(long, value_name = "[JOINT=]F", allow_hyphen_values = true)]
-    force: Vec<String>,
+    drive_force: Vec<String>,
     /// Distance from singular poses: how many times as far as a drive's error the machine's fastest point may move
     /// [default: 50]
     #[arg(long, value_name = "GAIN", allow_hyphen_values = true)]
     gain: Option<f64>,
+    /// Motions that are tried: more may be better, and take longer
+    #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(8..=100_000))]
+    candidates: u32,
     /// Another search
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -95,8 +98,9 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         stroke: arguments.stroke.clone(),
         speed: arguments.speed.clone(),
         acceleration: arguments.acceleration.clone(),
-        force: arguments.force.clone(),
+        force: arguments.drive_force.clone(),
         gain: arguments.gain,
+        candidates: arguments.candidates as usize,
         seed: arguments.seed,
     };
     let name = rig.name.clone();

@@ -130,7 +130,7 @@ impl Limit {
         match () {
             () if !positive(*speed) => none("speed"),
             () if !positive(*acceleration) => none("acceleration"),
-            () if force.is_some_and(|force| !positive(force)) => none("force"),
+            () if force.is_some_and(|force| !positive(force)) => none("drive-force"),
             () => None,
         }
     }

@@ -15,6 +15,10 @@ const NUMBERS: usize = 3 + 2 * WAVES;
 /// Share of a limit that is used: rounding of what is written, and of what interpolates it, stays within.
 const USED: f64 = 0.999;
 
+/// How far from home in rad a drive that turns may begin: from its file's `start`, a machine closes on its own branch within
+/// a part of a turn. Drives that slide may begin anywhere on their stroke.
+const NEAR: f64 = 0.5;
+
 /// A drift of this many times the stroke takes all of it in one direction; half the numbers that are drawn stay below a
 /// half of it.
 const DRIFT: f64 = 0.5;
@@ -93,8 +97,12 @@ impl Maker {
             if room[0] <= room[1] { room } else { [0.5 * (room[0] + room[1]); 2] }
         };
         let factor = size * largest;
-        let [first, last] = room(factor);
-        let start = first + middle * (last - first);
+        let mut reach = room(factor);
+        if limit.unit == "rad" {
+            let [first, last] = reach;
+            reach = [home - NEAR, home + NEAR].map(|end| end.clamp(first, last));
+        }
+        let start = reach[0] + middle * (reach[1] - reach[0]);
         let [first, last] = room(share * factor);
         let start = (home + share * (start - home)).clamp(first, last);
         shape.scaled(share * factor, start)

@@ -5,7 +5,7 @@ use super::instruments::{Ranked, missing, ranked, worth};
 use super::motion::{Maker, Motion};
 use super::path::Way;
 use super::prepare::Prepared;
-use super::search::{Effort, best};
+use super::search::best;
 use super::separation::{Apart, Posed, apart, detectable, named, nearest, sized};
 use super::sight::{Seen, Sight};
 use crate::calibrate::result::CalibrateError;
@@ -14,9 +14,6 @@ use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::SURE;
 use crate::effects::Setting;
 use rayon::prelude::*;
-
-/// What is tried: some 60 s on two cores for machines of four bodies, by measurement (docs/plan.md).
-pub const EFFORT: Effort = Effort { random: 48, starts: 3, children: 8, generations: 12 };
 
 /// Motions of random numbers by which effects are looked for that the present motion does not show.
 const RANDOM: usize = 8;
@@ -127,7 +124,7 @@ pub fn plan(prepared: &Prepared, tell: &(dyn Fn(&str) + Sync)) -> Result<Outcome
             tell,
         };
         let found = search.run(seed + round)?;
-        candidates += EFFORT.candidates();
+        candidates += prepared.effort.candidates();
         let better = chosen.as_ref().is_none_or(|chosen| found.worth > chosen.worth);
         let (linear, full) = (found.linear, found.worth);
         if better {
@@ -172,15 +169,16 @@ fn random(maker: &Maker, way: &Way, seed: u64) -> Vec<(Motion, Recording)> {
 
 /// What to say where the machine can follow nothing.
 fn no_motion(maker: &Maker, way: &Way) -> CalibrateError {
-    let still = maker.motion(&vec![0.0; maker.numbers()], 0.0);
-    let blocked = way.follows(&way.like(&still), &maker.limits).err();
+    // At rest, and in a small motion about home.
+    let tried = [0.0, 0.1].map(|share| maker.motion(&vec![1.0; maker.numbers()], share));
+    let blocked =
+        tried.iter().find_map(|motion| way.follows(&way.like(motion), &maker.limits).err());
     let why = match blocked {
         Some(blocked) => blocked.words(&maker.limits),
-        None => "the machine can rest at home, and no motion about it was found that it can follow"
-            .to_owned(),
+        None => "none was found that the machine can follow".to_owned(),
     };
     let message = format!(
-        "the limits leave no motion: {why}; give wider ones (--stroke, --speed, --acceleration, --force, --gain)"
+        "the limits leave no motion: {why}; give wider ones (--stroke, --speed, --acceleration, --drive-force, --gain)"
     );
     CalibrateError::Input(vec![message])
 }
@@ -257,9 +255,9 @@ fn pose(
         }
         Question::Between(a, b) => {
             // An effect of a report comes with its values.
-            let neutral =
-                reference.look(seen, std::slice::from_ref(a)).zip(reference.look(seen, &[]));
-            let given = neutral.is_some_and(|(with, without)| (with - without).norm() > 0.0);
+            let names: Vec<&'static str> = a.values().map(|(name, _)| name).collect();
+            let neutral = Setting::neutral(a.kind, a.target.clone(), &names, reference.declared());
+            let given = *a != neutral;
             let first = match given {
                 true => a.clone(),
                 false => {
@@ -348,13 +346,13 @@ impl Search<'_> {
             self.worth(self.frozen, &seen)
         };
         let said = |tried: usize, worth: f64| {
-            let all = self.before + EFFORT.candidates();
+            let all = self.before + self.prepared.effort.candidates();
             let tried = self.before + tried;
             (self.tell)(&format!(
                 "{tried} of {all} motions; the best has {worth:.2} of what answers all questions"
             ));
         };
-        let found = best(self.maker.numbers(), seed, EFFORT, &worth, &said);
+        let found = best(self.maker.numbers(), seed, self.prepared.effort, &worth, &said);
         (self.tell)("looking at the best motions with clearance and noise");
         let mut chosen: Option<Chosen> = None;
         for candidate in found {

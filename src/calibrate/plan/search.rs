@@ -25,6 +25,14 @@ pub struct Effort {
 }
 
 impl Effort {
+    /// About so many candidates: a sixth of them random, the rest children of the three best.
+    pub fn of(candidates: usize) -> Self {
+        let (starts, children) = (3, 8);
+        let random = (candidates / 6).max(children);
+        let generations = candidates.saturating_sub(random) / (starts * children);
+        Self { random, starts, children, generations }
+    }
+
     /// Candidates altogether.
     pub fn candidates(&self) -> usize {
         self.random + self.starts * self.children * self.generations
