@@ -37,7 +37,7 @@ fn a_planned_motion_shows_more_within_its_limits_and_can_be_run() {
     let rig = format!("{RIGS}/planar-1");
     let limits = "--stroke O=-0.5..1.5 --speed 12 --acceleration 150 --drive-force 4";
     let line = format!(
-        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv --detect payload --duration 1.5 --candidates 40 {limits}"
+        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv --detect payload:piston --duration 1.5 --candidates 40 {limits}"
     );
     let text = place.good(&format!("{line} --out planned"));
     assert!(text.contains("payload at piston") && text.contains("one more sensor"), "{text}");
@@ -144,6 +144,10 @@ fn what_cannot_be_planned_is_told() {
             &["joint-frction", "did you mean joint-friction?"],
         ),
         ("--between payload,payload", &["are the same"]),
+        (
+            "--between payload,joint-friction:O=3",
+            &["joint-friction:O=3", "belongs to the first effect"],
+        ),
         ("--between payload,joint-wear", &["--between joint-wear", "can act on", "joint-wear:A"]),
         (
             "--between payload,screw-ripple:O",
@@ -234,6 +238,31 @@ fn with_present_motion(place: &Place, rig: &str) {
         "present.toml",
         &format!("{text}\n[motion]\nkind = \"table\"\nfile = \"present.csv\"\n"),
     );
+}
+
+/// A delay of the command and a lag of the servo: the present motion is too calm to part them, the planned one is not.
+#[test]
+#[ignore = "a plan and twenty calibrations: half an hour"]
+fn rivals_that_the_present_motion_leaves_open_are_told_apart() {
+    let place = Place::new();
+    let rig = format!("{RIGS}/planar-1");
+    with_present_motion(&place, "planar-1");
+    place.good(&format!(
+        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv --between command-delay=1.5e-4,servo-lag --speed 40 \
+         --acceleration 600 --drive-force 5 --out planned --quiet"
+    ));
+    let question = &json(&place, "planned/plan.json")["questions"][0];
+    println!(
+        "{} and {} standard deviations",
+        question["before"]["sigma"], question["after"]["sigma"]
+    );
+    let mut right = [0; 2];
+    for (scenario, right) in ["present.toml", "planned/planned.toml"].iter().zip(&mut right) {
+        *right += named(&place, scenario, &["kind=command-delay", "delay_s=1.5e-4"], 1..=5);
+        *right += named(&place, scenario, &["kind=servo-lag", "time_constant_s=1.5e-4"], 6..=10);
+    }
+    println!("right in {} of 10 and {} of 10", right[0], right[1]);
+    assert!(right[1] >= 9 && right[0] <= 5, "{right:?}");
 }
 
 /// A payload of half the present detection limit is not named in recordings of the present motion, and is in those of

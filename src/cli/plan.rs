@@ -34,8 +34,9 @@ pub(super) struct Arguments {
     /// Present recordings, as `calibrate` takes them; the first one's motion is what the planned one is compared with
     #[arg(long, value_name = "RUN.csv", num_args = 1..)]
     data: Vec<PathBuf>,
-    /// Effects to be told apart, two or more
-    #[arg(long, value_name = "EFFECT,EFFECT")]
+    /// Effects to be told apart, two or more; of the first a size may be given behind a = [default: twice what the present
+    /// motion would just show]
+    #[arg(long, value_name = "EFFECT[=SIZE],EFFECT")]
     between: Vec<String>,
     /// An effect to be seen; its first parameter's distance from what is declared behind a = [default: what the present
     /// motion would just show]
@@ -64,7 +65,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "GAIN", allow_hyphen_values = true)]
     gain: Option<f64>,
     /// Motions that are tried: more may be better, and take longer
-    #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(8..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 240, value_parser = clap::value_parser!(u32).range(8..=100_000))]
     candidates: u32,
     /// Another search
     #[arg(long, value_name = "N", default_value_t = 1)]

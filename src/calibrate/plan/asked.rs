@@ -1,5 +1,6 @@
 //! What is to be told apart, or seen: as users write it, and as a report left it open.
 
+use super::separation::sized;
 use crate::effects::{ALL, Kind, Setting, Target, Targets, named};
 use crate::measure::spelling::nearest;
 use crate::mechanism::Mechanism;
@@ -11,7 +12,7 @@ const LARGEST: usize = 3;
 /// What a motion is to show.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Question {
-    /// Which of two effects it is. The first has the values that a report found, if one is given.
+    /// Which of two effects it is. The first has values where a report or a user gave some.
     Between(Setting, Setting),
     /// Whether an effect is there; of a size, where somebody gave one.
     Detect(Setting, Option<f64>),
@@ -41,17 +42,27 @@ pub fn between(text: &str, mechanism: &Mechanism) -> Result<Vec<Question>, Strin
     }
     let mut rivals = Vec::new();
     for part in parts {
-        let mut found =
-            effects(part, mechanism).map_err(|wrong| format!("--between {part}: {wrong}"))?;
+        let told = |wrong: String| format!("--between {part}: {wrong}");
+        let (effect, size) = of_size(part).map_err(told)?;
+        let mut found = effects(effect, mechanism).map_err(told)?;
         if found.len() > 1 {
             let names: Vec<String> = found.iter().map(|one| one.target.to_string()).collect();
-            return Err(format!(
-                "--between {part}: can act on {}; say on which, as in {part}:{}",
+            return Err(told(format!(
+                "can act on {}; say on which, as in {effect}:{}",
                 names.join("; "),
                 names[0].replace(", ", "+")
-            ));
+            )));
         }
-        rivals.append(&mut found);
+        match size {
+            Some(size) if rivals.is_empty() => found = sized(&found[0], size),
+            Some(_) => {
+                let wrong =
+                    "a size belongs to the first effect: those of its rivals follow from it";
+                return Err(told(wrong.to_owned()));
+            }
+            None => {}
+        }
+        rivals.extend(found.into_iter().next());
     }
     let mut questions = Vec::new();
     for (i, a) in rivals.iter().enumerate() {
@@ -70,20 +81,18 @@ pub fn between(text: &str, mechanism: &Mechanism) -> Result<Vec<Question>, Strin
 /// # Errors
 /// What is wrong with it.
 pub fn detect(text: &str, mechanism: &Mechanism) -> Result<Vec<Question>, String> {
-    let (effect, size) = match text.split_once('=') {
-        None => (text, None),
-        Some((effect, size)) => {
-            let size =
-                size.trim().parse::<f64>().ok().filter(|size| size.is_finite() && *size != 0.0);
-            let size = size.ok_or_else(|| {
-                format!("--detect {text}: expected a number other than 0 behind the =, in SI units")
-            })?;
-            (effect, Some(size))
-        }
-    };
-    let found =
-        effects(effect.trim(), mechanism).map_err(|wrong| format!("--detect {text}: {wrong}"))?;
+    let told = |wrong: String| format!("--detect {text}: {wrong}");
+    let (effect, size) = of_size(text).map_err(told)?;
+    let found = effects(effect, mechanism).map_err(told)?;
     Ok(found.into_iter().map(|effect| Question::Detect(effect, size)).collect())
+}
+
+/// An effect and the size behind its `=`, if there is one.
+fn of_size(text: &str) -> Result<(&str, Option<f64>), String> {
+    let Some((effect, size)) = text.split_once('=') else { return Ok((text.trim(), None)) };
+    let size = size.trim().parse::<f64>().ok().filter(|size| size.is_finite() && *size != 0.0);
+    let wrong = || "expected a number other than 0 behind the =, in SI units".to_owned();
+    Ok((effect.trim(), Some(size.ok_or_else(wrong)?)))
 }
 
 /// Effects at their neutral values that a text names: of the target that it names, else of all single ones.

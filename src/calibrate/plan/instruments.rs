@@ -8,7 +8,7 @@ use crate::model::laboratory;
 use crate::scenario::{self, Quantity, Scenario};
 
 /// Instruments that are looked at, at most: each costs the noise of one motion, a second or two.
-const MOST: usize = 12;
+const MOST: usize = 8;
 
 /// An instrument: its name for people, and the columns that it adds.
 #[derive(Clone, Debug)]

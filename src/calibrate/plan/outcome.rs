@@ -5,7 +5,7 @@ use super::instruments::{Ranked, missing, ranked, worth};
 use super::motion::{Maker, Motion};
 use super::path::Way;
 use super::prepare::Prepared;
-use super::search::best;
+use super::search::{Effort, best};
 use super::separation::{Apart, Posed, apart, detectable, named, nearest, sized};
 use super::sight::{Seen, Sight};
 use crate::calibrate::result::CalibrateError;
@@ -114,7 +114,12 @@ pub fn plan(prepared: &Prepared, tell: &(dyn Fn(&str) + Sync)) -> Result<Outcome
     let mut candidates = 0;
     let mut chosen: Option<Chosen> = None;
     for round in 0..2 {
+        // The second one refines what the first one found out about rivals.
+        let all = prepared.effort;
+        let effort =
+            if round == 0 { all } else { Effort { generations: all.generations / 2, ..all } };
         let search = Search {
+            effort,
             prepared,
             way: &way,
             maker: &maker,
@@ -124,7 +129,7 @@ pub fn plan(prepared: &Prepared, tell: &(dyn Fn(&str) + Sync)) -> Result<Outcome
             tell,
         };
         let found = search.run(seed + round)?;
-        candidates += prepared.effort.candidates();
+        candidates += effort.candidates();
         let better = chosen.as_ref().is_none_or(|chosen| found.worth > chosen.worth);
         let (linear, full) = (found.linear, found.worth);
         if better {
@@ -258,18 +263,25 @@ fn pose(
             let names: Vec<&'static str> = a.values().map(|(name, _)| name).collect();
             let neutral = Setting::neutral(a.kind, a.target.clone(), &names, reference.declared());
             let given = *a != neutral;
-            let first = match given {
-                true => a.clone(),
-                false => {
-                    let size = LARGE * size_of(a, (reference, seen), frozen, others)?;
-                    sized(a, size).into_iter().next().unwrap_or_else(|| a.clone())
-                }
+            let large = |effect: &Setting| -> Result<Setting, String> {
+                let size = LARGE * size_of(effect, (reference, seen), frozen, others)?;
+                Ok(sized(effect, size).into_iter().next().unwrap_or_else(|| effect.clone()))
             };
-            size_of(b, (reference, seen), frozen, others)?;
-            let second = nearest(reference, seen, std::slice::from_ref(&first), b);
-            let (second, _) = second
-                .ok_or_else(|| format!("{b}: no value of it makes a machine that moves so"))?;
-            Ok(Posed::Between([first, second]))
+            let by = |truth: &Setting, rival: &Setting| {
+                let found = nearest(reference, seen, std::slice::from_ref(truth), rival);
+                found
+                    .map(|(rival, _)| rival)
+                    .ok_or_else(|| format!("{rival}: no value of it makes a machine that moves so"))
+            };
+            let (first, second) = (if given { a.clone() } else { large(a)? }, large(b)?);
+            let rival = by(&first, b)?;
+            // What a report holds for as good is as large as it has to be.
+            let back = if given {
+                [rival.clone(), first.clone()]
+            } else {
+                [second.clone(), by(&second, a)?]
+            };
+            Ok(Posed::Between { rivals: [a.clone(), b.clone()], pairs: vec![[first, rival], back] })
         }
     }
 }
@@ -296,20 +308,21 @@ fn answered(sight: &Sight, posed: &Posed) -> (Posed, Answer) {
             });
             (posed.clone(), answer.unwrap_or_else(nothing))
         }
-        Posed::Between([a, b]) => {
-            let fits = [(a, b), (b, a)].map(|(truth, rival)| {
+        Posed::Between { rivals, pairs } => {
+            let fitted = |[truth, rival]: &[Setting; 2]| {
                 let (rival, apart) = nearest(sight, &seen, std::slice::from_ref(truth), rival)?;
-                Some((Posed::Between([truth.clone(), rival]), apart))
+                Some(([truth.clone(), rival], apart))
+            };
+            let fits: Option<Vec<_>> = pairs.iter().map(fitted).collect();
+            let Some(mut fits) = fits else { return (posed.clone(), nothing()) };
+            fits.sort_by(|a, b| a.1.sigma.total_cmp(&b.1.sigma));
+            let answer = fits.first().map(|(_, apart)| Answer {
+                sigma: apart.sigma,
+                carried: carried(apart),
+                smallest: None,
             });
-            let least = fits.into_iter().flatten().min_by(|a, b| a.1.sigma.total_cmp(&b.1.sigma));
-            least.map_or_else(
-                || (posed.clone(), nothing()),
-                |(posed, apart)| {
-                    let answer =
-                        Answer { sigma: apart.sigma, carried: carried(&apart), smallest: None };
-                    (posed, answer)
-                },
-            )
+            let pairs = fits.into_iter().map(|(pair, _)| pair).collect();
+            (Posed::Between { rivals: rivals.clone(), pairs }, answer.unwrap_or_else(nothing))
         }
     }
 }
@@ -321,6 +334,7 @@ struct Search<'a> {
     maker: &'a Maker,
     frozen: &'a Sight,
     posed: &'a [Posed],
+    effort: Effort,
     before: usize,
     tell: &'a (dyn Fn(&str) + Sync),
 }
@@ -346,13 +360,13 @@ impl Search<'_> {
             self.worth(self.frozen, &seen)
         };
         let said = |tried: usize, worth: f64| {
-            let all = self.before + self.prepared.effort.candidates();
+            let all = self.before + self.effort.candidates();
             let tried = self.before + tried;
             (self.tell)(&format!(
                 "{tried} of {all} motions; the best has {worth:.2} of what answers all questions"
             ));
         };
-        let found = best(self.maker.numbers(), seed, self.prepared.effort, &worth, &said);
+        let found = best(self.maker.numbers(), seed, self.effort, &worth, &said);
         (self.tell)("looking at the best motions with clearance and noise");
         let mut chosen: Option<Chosen> = None;
         for candidate in found {
@@ -416,7 +430,7 @@ fn forces(sight: &Sight) -> Vec<Option<f64>> {
 /// this size is named with `Φ(σ − √gain)` (Kay 1998, section 4.3).
 pub fn chance(posed: &Posed, sigma: f64) -> f64 {
     match posed {
-        Posed::Between(_) => normal(0.5 * sigma),
+        Posed::Between { .. } => normal(0.5 * sigma),
         Posed::Detect { .. } => normal(sigma - (named() - SURE)),
     }
 }

@@ -82,7 +82,8 @@ fn sensors(
         all.into_iter().next()
     };
     let (first, second) = match posed {
-        Posed::Between([a, b]) => {
+        Posed::Between { pairs, .. } => {
+            let Some([a, b]) = pairs.first() else { return Ok(None) };
             (recorded(std::slice::from_ref(a)), recorded(std::slice::from_ref(b)))
         }
         Posed::Detect { ways, .. } => {
@@ -101,7 +102,7 @@ fn sensors(
         panels.push(panel(sensor.column.clone(), "standard deviations", std::iter::once(one)));
     }
     let what = match posed {
-        Posed::Between([a, b]) => format!("with {a}, less with {b}"),
+        Posed::Between { rivals: [a, b], .. } => format!("with {a}, against {b}"),
         Posed::Detect { effect, .. } => format!("with {effect}, less without"),
     };
     Ok(Some(Picture {

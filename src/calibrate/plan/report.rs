@@ -227,7 +227,10 @@ fn question(answered: &Answered) -> QuestionReport {
             .collect(),
     };
     let (kind, effects) = match posed {
-        Posed::Between(rivals) => ("between", rivals.iter().map(effect).collect()),
+        // The pair that comes nearer.
+        Posed::Between { pairs, .. } => {
+            ("between", pairs.iter().take(1).flatten().map(effect).collect())
+        }
         Posed::Detect { ways, .. } => ("detect", ways.iter().take(1).map(effect).collect()),
     };
     QuestionReport {

@@ -37,8 +37,14 @@ const STARTS: usize = 2;
 /// A question with numbers: what models are held against each other.
 #[derive(Clone, Debug)]
 pub enum Posed {
-    /// Two rivals at values that are nearest to each other on the present motion.
-    Between([Setting; 2]),
+    /// Two rivals.
+    Between {
+        /// Both.
+        rivals: [Setting; 2],
+        /// What may be, and the other one at the values by which it comes nearest on the present motion: each of the two
+        /// may be the truth.
+        pairs: Vec<[Setting; 2]>,
+    },
     /// An effect in all its ways, each at the size that is to be seen.
     Detect {
         /// The effect.
@@ -52,7 +58,7 @@ impl Posed {
     /// Standard deviations that answer it.
     pub fn wanted(&self) -> f64 {
         match self {
-            Self::Between(_) => told(),
+            Self::Between { .. } => told(),
             Self::Detect { .. } => named(),
         }
     }
@@ -60,7 +66,7 @@ impl Posed {
     /// In words.
     pub fn words(&self) -> String {
         match self {
-            Self::Between([a, b]) => format!("{a} or {b}"),
+            Self::Between { rivals: [a, b], .. } => format!("{a} or {b}"),
             Self::Detect { effect, .. } => effect.to_string(),
         }
     }
@@ -86,19 +92,16 @@ pub fn apart(sight: &Sight, seen: &Seen, posed: &Posed) -> Option<Apart> {
                 |way: &Setting| Some(of(sight.look(seen, std::slice::from_ref(way))? - &base));
             least(ways.par_iter().map(one).collect::<Option<Vec<_>>>()?)
         }
-        Posed::Between(rivals) => {
-            let looks = rivals
-                .par_iter()
-                .map(|rival| {
-                    let look = |values: &[f64]| sight.look(seen, &[rival.with(values)]);
-                    let effects = std::slice::from_ref(rival);
-                    let here = look(&values(effects))?;
-                    let derivative = jacobian(&look, &free(effects), &values(effects), &here)?;
-                    Some((here, derivative))
-                })
-                .collect::<Option<Vec<_>>>()?;
-            let difference = &looks[0].0 - &looks[1].0;
-            least(looks.iter().map(|(_, derivative)| of(beyond(&difference, derivative))).collect())
+        Posed::Between { pairs, .. } => {
+            let one = |[truth, rival]: &[Setting; 2]| {
+                let look = |values: &[f64]| sight.look(seen, &[rival.with(values)]);
+                let effects = std::slice::from_ref(rival);
+                let here = look(&values(effects))?;
+                let derivative = jacobian(&look, &free(effects), &values(effects), &here)?;
+                let difference = sight.look(seen, std::slice::from_ref(truth))? - &here;
+                Some(of(beyond(&difference, &derivative)))
+            };
+            least(pairs.par_iter().map(one).collect::<Option<Vec<_>>>()?)
         }
     }
 }
