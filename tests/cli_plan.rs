@@ -149,11 +149,11 @@ fn what_cannot_be_planned_is_told() {
             &["joint-friction:O=3", "belongs to the first effect"],
         ),
         ("--between payload,joint-wear", &["--between joint-wear", "can act on", "joint-wear:A"]),
+        ("--between payload,screw-ripple:O", &["screw-ripple cannot act on this machine"]),
         (
-            "--between payload,screw-ripple:O",
-            &["screw-ripple", "cannot act on", "here it can act on slide"],
+            "--between payload,joint-wear:slide",
+            &["cannot act on \"slide\"", "here it can act on A; B"],
         ),
-        ("--between payload,leg-density", &["leg-density cannot act on this machine"]),
         ("--detect joint-wear:Z", &["joint-wear cannot act on \"Z\"", "A", "B"]),
         ("--detect payload=much", &["--detect payload=much", "a number other than 0"]),
         ("--detect impulse", &["\"impulse\" is not an effect"]),
@@ -200,7 +200,8 @@ fn what_no_sensor_can_see_is_told() {
     );
 }
 
-/// Calibrates recordings of a motion in which `truth` is hidden, ten seeds; how often it alone is named.
+/// Calibrates recordings of a motion in which `truth` is hidden, seed by seed; how often it alone is named, and nothing
+/// as good.
 fn named(place: &Place, rig: &str, truth: &[&str], seeds: std::ops::RangeInclusive<u32>) -> usize {
     let mut right = 0;
     for seed in seeds {
@@ -218,7 +219,11 @@ fn named(place: &Place, rig: &str, truth: &[&str], seeds: std::ops::RangeInclusi
                 value.parse::<f64>().is_ok() || effect[key] == value
             })
         };
-        let found = effects.len() == 1 && own(&effects[0]) && report["verdict"] == "explained";
+        let alone = |effect: &Value| effect["as_good"].as_array().unwrap().is_empty();
+        let found = effects.len() == 1
+            && own(&effects[0])
+            && alone(&effects[0])
+            && report["verdict"] == "explained";
         let names: Vec<String> =
             effects.iter().map(|e| format!("{} {}", e["kind"], e["as_good"])).collect();
         println!("{rig} seed {seed}: {} {names:?}", report["verdict"]);
@@ -248,7 +253,7 @@ fn rivals_that_the_present_motion_leaves_open_are_told_apart() {
     let rig = format!("{RIGS}/planar-1");
     with_present_motion(&place, "planar-1");
     place.good(&format!(
-        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv --between command-delay=1.5e-4,servo-lag --speed 40 \
+        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv --between command-delay=8e-5,servo-lag --speed 40 \
          --acceleration 600 --drive-force 5 --out planned --quiet"
     ));
     let question = &json(&place, "planned/plan.json")["questions"][0];
@@ -258,8 +263,8 @@ fn rivals_that_the_present_motion_leaves_open_are_told_apart() {
     );
     let mut right = [0; 2];
     for (scenario, right) in ["present.toml", "planned/planned.toml"].iter().zip(&mut right) {
-        *right += named(&place, scenario, &["kind=command-delay", "delay_s=1.5e-4"], 1..=5);
-        *right += named(&place, scenario, &["kind=servo-lag", "time_constant_s=1.5e-4"], 6..=10);
+        *right += named(&place, scenario, &["kind=command-delay", "delay_s=8e-5"], 1..=5);
+        *right += named(&place, scenario, &["kind=servo-lag", "time_constant_s=8e-5"], 6..=10);
     }
     println!("right in {} of 10 and {} of 10", right[0], right[1]);
     assert!(right[1] >= 9 && right[0] <= 5, "{right:?}");
@@ -271,17 +276,17 @@ fn rivals_that_the_present_motion_leaves_open_are_told_apart() {
 #[ignore = "a plan and twenty calibrations: half an hour"]
 fn half_of_what_could_be_seen_becomes_visible() {
     let place = Place::new();
-    let rig = format!("{RIGS}/planar-2");
-    with_present_motion(&place, "planar-2");
+    let rig = format!("{RIGS}/planar-1");
+    with_present_motion(&place, "planar-1");
     place.good(&format!(
-        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv {rig}/run-b.csv --detect payload:rocker --out planned --quiet"
+        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv {rig}/run-b.csv --detect payload:piston --out planned --quiet"
     ));
     let question = &json(&place, "planned/plan.json")["questions"][0];
     let [before, after] = ["before", "after"].map(|motion| number(&question[motion]["smallest"]));
     println!("smallest payload: {before} kg present, {after} kg planned");
     assert!(after <= 0.5 * before, "{before} {after}");
     let mass = format!("mass_kg={}", 0.5 * before);
-    let truth = ["kind=payload", "body=rocker", mass.as_str()];
+    let truth = ["kind=payload", "body=piston", mass.as_str()];
     let old = named(&place, "present.toml", &truth, 1..=10);
     let new = named(&place, "planned/planned.toml", &truth, 1..=10);
     println!("named in {old} of 10 and {new} of 10");

@@ -6,7 +6,7 @@ use super::motion::{Maker, Motion};
 use super::path::Way;
 use super::prepare::Prepared;
 use super::search::{Effort, best};
-use super::separation::{Apart, Posed, apart, detectable, named, nearest, sized};
+use super::separation::{Apart, Posed, apart, detectable, named, nearest, shows, sized};
 use super::sight::{Seen, Sight};
 use crate::calibrate::result::CalibrateError;
 use crate::calibrate::sensed::estimate::effort_sensor;
@@ -219,20 +219,10 @@ fn size_of(
     frozen: &Sight,
     others: &[Seen],
 ) -> Result<f64, String> {
-    let room = effect.values().next().and_then(|(name, neutral)| {
-        let [low, high] = effect.kind.parameter(name)?.bounds;
-        Some((high - neutral).abs().max((neutral - low).abs()))
-    });
-    let room = room.unwrap_or(f64::INFINITY);
-    let shows = |size: &f64| size.is_finite() && *size <= room;
-    let present = detectable(reference.0, reference.1, effect).filter(shows);
+    let present = detectable(reference.0, reference.1, effect);
     let elsewhere = || {
-        let sizes: Vec<f64> = others
-            .iter()
-            .filter_map(|seen| detectable(frozen, seen, effect))
-            .filter(shows)
-            .collect();
-        sizes.into_iter().reduce(f64::min)
+        let sizes = others.iter().filter_map(|seen| detectable(frozen, seen, effect));
+        sizes.reduce(f64::min)
     };
     present.or_else(elsewhere).ok_or_else(|| {
         let columns: Vec<&str> = reference.0.declared().sensors.iter().map(|s| s.column.as_str()).collect();
@@ -255,7 +245,10 @@ fn pose(
     match question {
         Question::Detect(effect, size) => {
             let found = size_of(effect, (reference, seen), frozen, others)?;
-            let ways = sized(effect, size.unwrap_or(found));
+            let mut ways = sized(effect, size.unwrap_or(found));
+            ways.retain(|way| {
+                shows(reference, seen, way) || others.iter().any(|seen| shows(frozen, seen, way))
+            });
             Ok(Posed::Detect { effect: effect.clone(), ways })
         }
         Question::Between(a, b) => {
@@ -300,7 +293,7 @@ fn answered(sight: &Sight, posed: &Posed) -> (Posed, Answer) {
     match posed {
         Posed::Detect { effect, .. } => {
             let found = apart(sight, &seen, posed);
-            let smallest = detectable(sight, &seen, effect).filter(|size| size.is_finite());
+            let smallest = detectable(sight, &seen, effect);
             let answer = found.map(|apart| Answer {
                 sigma: apart.sigma,
                 carried: carried(&apart),

@@ -30,6 +30,9 @@ pub fn told() -> f64 {
     TWINS.sqrt() + SURE
 }
 
+/// Standard deviations below which a change is none: rounding of poses that are closed to a tenth of a picometre.
+const NOTHING: f64 = 1e-3;
+
 /// Steps of the fit of a rival, and starts of it that are followed.
 const STEPS: usize = 8;
 const STARTS: usize = 2;
@@ -201,18 +204,27 @@ fn stepped(neutral: &Setting) -> Vec<Setting> {
     ways(neutral, value, step).iter().map(|values| neutral.with(values)).collect()
 }
 
-/// The size of an effect at which a look would name it, its first value's distance from neutral; infinite where no size
-/// shows.
+/// The size of an effect at which a look would name it in all of its ways that show at all, its first value's distance
+/// from neutral: a mass in a body's fixed pivot moves nothing, whatever it is. None where no way shows at a size that
+/// makes sense, or no machine can be looked at.
 pub fn detectable(sight: &Sight, seen: &Seen, effect: &Setting) -> Option<f64> {
     let base = sight.look(seen, &[])?;
-    let (_, neutral) = effect.values().next()?;
+    let (name, neutral) = effect.values().next()?;
+    let [low, high] = effect.kind.parameter(name)?.bounds;
+    let room = (high - neutral).abs().max((neutral - low).abs());
     let one = |way: &Setting| {
         let (_, value) = way.values().next()?;
         let column = sight.look(seen, std::slice::from_ref(way))? - &base;
-        Some(named() * (value - neutral).abs() / column.norm())
+        let size = named() * (value - neutral).abs() / column.norm();
+        (size.is_finite() && size <= room).then_some(size)
     };
-    let sizes = stepped(effect).par_iter().map(one).collect::<Option<Vec<f64>>>()?;
-    sizes.into_iter().reduce(f64::max)
+    stepped(effect).par_iter().filter_map(one).collect::<Vec<f64>>().into_iter().reduce(f64::max)
+}
+
+/// Whether a model changes what is seen of a machine at all.
+pub fn shows(sight: &Sight, seen: &Seen, effect: &Setting) -> bool {
+    let looks = sight.look(seen, &[]).zip(sight.look(seen, std::slice::from_ref(effect)));
+    looks.is_some_and(|(without, with)| (with - without).norm() > NOTHING)
 }
 
 /// The effect in all its ways at a size (the first value's distance from neutral), within bounds.
