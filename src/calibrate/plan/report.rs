@@ -195,7 +195,8 @@ pub fn into_folder(
         files: texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect(),
     };
     let motion = motion_csv(prepared, &outcome)?;
-    let scenario = planned_scenario(prepared)?.to_toml();
+    // The only file that it reads: drives that take forces from files are refused.
+    let scenario = planned_scenario(prepared).to_toml_with_files(&[MOTION_FILE.to_owned()]);
     planned.wall_s = started.elapsed().as_secs_f64();
     let (json, page) = (to_json(&planned), page::page(&planned, &pictures));
     let texts =
@@ -326,7 +327,7 @@ fn poses(machine: &Mechanism, interval: f64, samples: usize) -> Vec<[f64; 3]> {
 }
 
 /// The rig with the planned motion: of a platform by its pose, else by the coordinates of its joints.
-fn planned_scenario(prepared: &Prepared) -> Result<Scenario, CalibrateError> {
+fn planned_scenario(prepared: &Prepared) -> Scenario {
     let by_pose = matches!(prepared.rig.mechanism, scenario::Mechanism::ThreeRpr(_));
     let mut planned = if by_pose { prepared.rig.clone() } else { prepared.described.clone() };
     if !by_pose {
@@ -334,7 +335,7 @@ fn planned_scenario(prepared: &Prepared) -> Result<Scenario, CalibrateError> {
     }
     planned.motion = scenario::Motion::Table(scenario::Table { file: MOTION_FILE.to_owned() });
     planned.simulation.duration = (prepared.samples - 1) as f64 * prepared.interval;
-    Ok(planned)
+    planned
 }
 
 impl From<crate::report::ReportError> for CalibrateError {
