@@ -181,6 +181,10 @@ fn every_kind_of_page(place: &Place) -> Vec<&'static str> {
         ("by-law", "compare --laws hertz-step,flores,hunt-crossley --starts 2 --duration 0.1".to_owned()),
         ("paper", "paper --phases 2 --duration 0.05".to_owned()),
         ("record", format!("record {rig}/rig.toml --duration 1.2")),
+        (
+            "plan",
+            format!("plan --rig {rig}/rig.toml --data {rig}/run-a.csv --detect payload --duration 1 --candidates 8"),
+        ),
         ("predict", format!("predict {rig}/rig.toml --data {rig}/run-b.csv")),
         (
             "calibrate",

@@ -38,6 +38,9 @@ fn every_command_prints_at_most_80_columns() {
         "diff run/scenario.toml other/scenario.toml --starts 2",
         "study emps",
         &format!("record {rig}/rig.toml --duration 1.2 --out record"),
+        &format!(
+            "plan --rig {rig}/rig.toml --data {rig}/run-a.csv --detect payload --duration 1 --candidates 8"
+        ),
         &format!("predict {rig}/rig.toml --data {rig}/run-b.csv"),
         "calibrate --rig record/rig.toml --data record/run-a.csv --validate record/run-b.csv",
     ] {

@@ -1,7 +1,7 @@
 //! From a recorded run to the effect that the model lacks: [`outcome::calibrate`] is the method. Around it:
 //! [`recording`] and [`plausibility`] take files and refuse what cannot be right, [`rattle`] decides how often
 //! to simulate, [`result`] and [`predict`] write folders of results; [`record`] makes the recordings that a rig
-//! would show.
+//! would show; [`plan`] says what to record next.
 
 pub mod axes;
 pub mod baseline;
@@ -21,6 +21,7 @@ pub mod model;
 pub mod needed;
 pub mod outcome;
 mod page;
+pub mod plan;
 pub mod plausibility;
 pub mod predict;
 mod predict_page;

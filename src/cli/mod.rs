@@ -25,6 +25,7 @@ mod options;
 mod output;
 mod paper;
 mod parts;
+mod plan;
 mod predict;
 mod progress;
 mod record;
@@ -71,6 +72,7 @@ Examples:
   freeplay evaluate --figures impacts --parameters params.in    one line, for programs that drive runs
   freeplay calibrate --rig rig.toml --data run.csv   what a declared model lacks, by measured data
   freeplay record rig.toml                      what a rig's sensors would show
+  freeplay plan --rig rig.toml --detect payload    the motion that shows it best
   freeplay expand                               the same machine, body by body, to be changed
   freeplay init four-bar                        a scenario to begin with, every key explained
   freeplay effects payload                      what a scenario can add to a machine
@@ -91,6 +93,7 @@ enum Command {
     Calibrate(calibrate::Arguments),
     Predict(predict::Arguments),
     Record(record::Arguments),
+    Plan(plan::Arguments),
     Check(check::Arguments),
     Sweep(sweep::Arguments),
     Merge(merge::Arguments),
@@ -118,6 +121,7 @@ pub fn main() -> ExitCode {
         Command::Calibrate(arguments) => calibrate::main(&arguments),
         Command::Predict(arguments) => predict::main(&arguments),
         Command::Record(arguments) => record::main(&arguments),
+        Command::Plan(arguments) => plan::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
         Command::Sweep(arguments) => sweep::main(&arguments),
         Command::Merge(arguments) => merge::main(&arguments),

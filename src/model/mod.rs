@@ -25,4 +25,4 @@ pub use ideal::{Ideal, IdealInstant};
 pub use layout::{Layout, Written};
 pub use native::FIT_SPEED;
 pub use path::{DrivenPath, Singular};
-pub use templates::{LegUse, expand, instrumented, leg_use};
+pub use templates::{LegUse, expand, instrumented, laboratory, leg_use};

@@ -294,6 +294,12 @@ impl Scenario {
         (text, sources.zip(names).collect())
     }
 
+    /// The same for a folder in which the files that the scenario reads have these names, in the order of
+    /// [`Scenario::files`].
+    pub fn to_toml_with_files(&self, names: &[String]) -> String {
+        write::text_with_files(self, names)
+    }
+
     /// SHA-256 of [`Scenario::to_toml`] in hexadecimal: the same for files that mean the same.
     pub fn hash(&self) -> String {
         Sha256::digest(self.to_toml()).iter().map(|byte| format!("{byte:02x}")).collect()

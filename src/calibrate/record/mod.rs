@@ -21,7 +21,7 @@ use crate::report::{Picture, Style};
 use crate::scenario::{Law, Scenario};
 use crate::simulate::{Machine, Provenance};
 use crate::study::{Folder, PAGE_FILE, RunError};
-use run::{Made, like};
+pub(super) use run::{Made, like};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant as Clock;

@@ -92,7 +92,7 @@ fn simplest<'a>(candidates: impl Iterator<Item = &'a Setting>) -> Vec<&'a Settin
 }
 
 /// Values at which a candidate is looked at: a step from neutral, for each place where a search for it starts.
-fn ways(candidate: &Setting, neutral: f64, step: f64) -> Vec<Vec<f64>> {
+pub(in crate::calibrate) fn ways(candidate: &Setting, neutral: f64, step: f64) -> Vec<Vec<f64>> {
     let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
     let own: Vec<f64> = candidate.values().map(|(_, value)| value).collect();
     let moved = |mut values: Vec<f64>| {

@@ -29,7 +29,7 @@ pub mod outcome;
 mod page;
 mod periodic;
 pub mod predict;
-mod prepare;
+pub(in crate::calibrate) mod prepare;
 pub mod problem;
 pub mod recording;
 pub mod report;

@@ -16,7 +16,7 @@ use std::path::Path;
 #[derive(Debug)]
 pub struct Prepared {
     pub(super) rig: Scenario,
-    pub(super) recordings: Vec<Recording>,
+    pub(in crate::calibrate) recordings: Vec<Recording>,
     /// How many of them, the first ones, values are fitted to.
     pub(super) fits: usize,
     /// How.
@@ -25,7 +25,7 @@ pub struct Prepared {
 
 /// How a machine is calibrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(in crate::calibrate) enum Way {
     /// Nothing holds it: by windows.
     Windows,
     /// Sampled controllers hold it: by what they ask of their drives.
@@ -35,7 +35,8 @@ pub(super) enum Way {
 }
 
 impl Way {
-    fn of(machine: &Mechanism) -> Self {
+    /// The way of a machine.
+    pub(in crate::calibrate) fn of(machine: &Mechanism) -> Self {
         if suits(machine) {
             Self::Windows
         } else if held::bench::suits(machine) {
@@ -72,7 +73,12 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
 }
 
 /// What speaks against a rig by itself.
-fn against_rig(rig: &Scenario, built: &Mechanism, way: Way, fits: usize) -> Vec<String> {
+pub(in crate::calibrate) fn against_rig(
+    rig: &Scenario,
+    built: &Mechanism,
+    way: Way,
+    fits: usize,
+) -> Vec<String> {
     let mut wrong: Vec<String> = Vec::new();
     if built.sensors.is_empty() {
         let help = "describe each column of the recordings by a [[sensor]]";

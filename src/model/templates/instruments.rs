@@ -71,6 +71,28 @@ const LABORATORY: Sensors = Sensors {
 const ANGLE_RESOLUTION: f64 = 2e-5;
 const TORQUE_STD: f64 = 0.002;
 
+/// The same of an accelerometer as small as a fingernail: m/s², and the corner of its filter in Hz.
+const ACCELERATION_STD: f64 = 0.05;
+const ACCELERATION_LOWPASS: f64 = 300.0;
+
+/// A sensor of a quantity, of a revolute joint where it `turns`, with the noise of a good laboratory; a command is exact.
+pub fn laboratory(quantity: Quantity, turns: bool, column: &str, of: &str) -> Sensor {
+    let bare = exact(Source::new(column, 1.0), quantity, of);
+    let Sensors { pose_std, angle_std, length_resolution, force_std, force_lowpass } = LABORATORY;
+    match quantity {
+        Quantity::X | Quantity::Y => Sensor { std: pose_std, ..bare },
+        Quantity::Angle => Sensor { std: angle_std, ..bare },
+        Quantity::Position if turns => Sensor { resolution: ANGLE_RESOLUTION, ..bare },
+        Quantity::Position => Sensor { resolution: length_resolution, ..bare },
+        Quantity::Force if turns => Sensor { std: TORQUE_STD, lowpass: force_lowpass, ..bare },
+        Quantity::Force => Sensor { std: force_std, lowpass: force_lowpass, ..bare },
+        Quantity::Acceleration => {
+            Sensor { std: ACCELERATION_STD, lowpass: ACCELERATION_LOWPASS, ..bare }
+        }
+        Quantity::Command | Quantity::Output | Quantity::Added => bare,
+    }
+}
+
 /// Natural angular frequency in rad/s of a servo that turns a whole machine, 20 Hz, and its damping ratio: those of common
 /// drives. The gains of `[drive]` are for prismatic joints.
 const STIFF: f64 = 20.0 * std::f64::consts::TAU;
@@ -109,10 +131,8 @@ pub fn instrumented(scenario: &Scenario) -> Result<Scenario, Problem> {
                 if let Some(point) = point {
                     let tracked = format!("{output}.{point}");
                     let place = [("x", Quantity::X), ("y", Quantity::Y)];
-                    described.sensors.extend(place.map(|(column, quantity)| Sensor {
-                        std: LABORATORY.pose_std,
-                        ..exact(Source::new(column, 1.0), quantity, &tracked)
-                    }));
+                    let sensor = |(column, quantity)| laboratory(quantity, false, column, &tracked);
+                    described.sensors.extend(place.map(sensor));
                 }
             }
             Ok(rig)
@@ -122,31 +142,21 @@ pub fn instrumented(scenario: &Scenario) -> Result<Scenario, Problem> {
 
 /// A command, an encoder and an effort of each drive; an encoder of each joint of a machine without drives.
 fn all_sensors(mechanism: &crate::mechanism::Mechanism) -> Vec<Sensor> {
-    let sensor =
-        |column: String, quantity, of: &str| exact(Source::new(&column, 1.0), quantity, of);
     let mut sensors = Vec::new();
     for drive in &mechanism.actuators {
         let name = &drive.name;
-        let (letter, resolution, std, lowpass) = match drive.joint {
-            JointIndex::Prismatic(_) => {
-                let Sensors { length_resolution, force_std, force_lowpass, .. } = LABORATORY;
-                ("F", length_resolution, force_std, force_lowpass)
-            }
-            JointIndex::Revolute(_) => {
-                ("T", ANGLE_RESOLUTION, TORQUE_STD, LABORATORY.force_lowpass)
-            }
-        };
-        sensors.push(sensor(format!("q_{name}_cmd"), Quantity::Command, name));
-        sensors
-            .push(Sensor { resolution, ..sensor(format!("q_{name}"), Quantity::Position, name) });
-        let effort = sensor(format!("{letter}_{name}"), Quantity::Force, name);
-        sensors.push(Sensor { std, lowpass, ..effort });
+        let turns = matches!(drive.joint, JointIndex::Revolute(_));
+        let letter = if turns { "T" } else { "F" };
+        sensors.extend([
+            laboratory(Quantity::Command, turns, &format!("q_{name}_cmd"), name),
+            laboratory(Quantity::Position, turns, &format!("q_{name}"), name),
+            laboratory(Quantity::Force, turns, &format!("{letter}_{name}"), name),
+        ]);
     }
     if sensors.is_empty() {
         let joints = mechanism.revolutes.iter();
-        sensors.extend(joints.map(|joint| Sensor {
-            resolution: ANGLE_RESOLUTION,
-            ..sensor(format!("q_{}", joint.name), Quantity::Position, &joint.name)
+        sensors.extend(joints.map(|joint| {
+            laboratory(Quantity::Position, true, &format!("q_{}", joint.name), &joint.name)
         }));
     }
     sensors

@@ -12,7 +12,7 @@ mod slider_crank;
 mod three_rpr;
 mod three_rrr;
 
-pub use instruments::instrumented;
+pub use instruments::{instrumented, laboratory};
 pub use three_rpr::{LegUse, leg_use};
 
 use crate::scenario::{Mechanism, Problem, Scenario};

@@ -1,0 +1,23 @@
+//! What to record next: a motion that tells rivals apart, or shows an effect, as well as the machine's limits allow.
+//!
+//! [`prepare`](prepare::prepare) reads what is asked ([`asked`]) and within which [`limits`]; [`series`] and [`motion`] make
+//! motions out of numbers, [`path`] says whether the machine can follow them; [`sight`] is what a calibration would see
+//! along one, [`separation`] how far apart models are there; [`search`] finds the numbers; [`outcome`] is the whole way,
+//! [`instruments`] what one more sensor would bring, [`report`] what is written.
+
+pub mod asked;
+pub mod instruments;
+pub mod limits;
+pub mod motion;
+pub mod outcome;
+mod page;
+pub mod path;
+pub mod prepare;
+pub mod report;
+pub mod search;
+pub mod separation;
+pub mod series;
+pub mod sight;
+
+pub use prepare::{Prepared, Request, prepare};
+pub use report::{Done, PLAN_FILE, Planned, into_folder};
