@@ -1,8 +1,9 @@
 //! By how much predictions miss a recording, column by column, and by how much any would.
 
+use super::left::up_to;
 use super::recording::Recording;
 use super::simulate::noisy;
-use super::thresholds::{DRAWS, TRIM};
+use super::thresholds::{DRAWS, MET, TRIM};
 use crate::calibrate::errors::ChannelError;
 use crate::measure::filter::ZeroPhase;
 use crate::mechanism::Mechanism;
@@ -32,11 +33,10 @@ fn rms(a: &Recording, b: &Recording, sensor: usize) -> Option<f64> {
     (!inner.is_empty()).then(|| (squares / inner.len() as f64).sqrt())
 }
 
-/// What sensor noise and rattle leave in a column to a perfect model: a replica with noise against the mean of
-/// the others.
-fn floor(machine: &Mechanism, clean: &[Recording], sensor: usize) -> Option<f64> {
-    let mut squares = 0.0;
-    for draw in 0..DRAWS {
+/// What sensor noise and rattle leave in a column to a perfect model, draw by draw: a replica with noise against the
+/// mean of the others.
+fn floors(machine: &Mechanism, clean: &[Recording], sensor: usize) -> Option<Vec<f64>> {
+    let draw = |draw: usize| {
         let own = draw % clean.len();
         let seen = noisy(&clean[own], machine, 5000 + draw as u64);
         let others: Vec<Recording> = if clean.len() > 1 {
@@ -45,9 +45,26 @@ fn floor(machine: &Mechanism, clean: &[Recording], sensor: usize) -> Option<f64>
         } else {
             clean.to_vec()
         };
-        squares += rms(&seen, &mean(&others, machine.sensors.len()), sensor)?.powi(2);
-    }
-    Some((squares / DRAWS as f64).sqrt())
+        rms(&seen, &mean(&others, machine.sensors.len()), sensor)
+    };
+    (0..DRAWS).map(draw).collect()
+}
+
+/// Errors of the calibrated model in a run that are met: within [`MET`] floors, or as far from them as chance leads one of
+/// the model's own replicas (`after`), whose rattle is calmer in one run than in another.
+pub fn are_met(machine: &Mechanism, errors: &[ChannelError], after: &[Recording]) -> bool {
+    let sensor = |error: &ChannelError| {
+        machine.sensors.iter().position(|sensor| sensor.column == error.channel)
+    };
+    let by_chance = |error: &ChannelError| {
+        let floors = sensor(error).and_then(|sensor| floors(machine, after, sensor));
+        floors.is_some_and(|floors| error.after <= up_to(&floors))
+    };
+    errors.iter().all(|error| error.after <= MET * error.floor || by_chance(error))
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
 /// Errors of all measured columns of a recording of a machine: `before` and `after` are noiseless recordings of
@@ -72,7 +89,7 @@ pub fn of_run(
                 unit: sensors[i].unit(machine),
                 before: rms(recording, &declared, i)?,
                 after: rms(recording, &predicted, i)?,
-                floor: floor(machine, after, i)?,
+                floor: root_mean_square(&floors(machine, after, i)?),
             })
         })
         .collect()

@@ -64,9 +64,9 @@ fn mean_square(white: &DVector<f64>, places: &[(usize, f64)], k: usize) -> f64 {
     sum / f64::max(count, 1.0)
 }
 
-/// The mean square up to which chance leads, out of those of draws of noise: where journals lean under forces no larger
-/// than a sensor's noise, they are scattered far more than those of normal numbers.
-fn up_to(draws: &[f64]) -> f64 {
+/// The value up to which chance leads, out of those of draws of noise: mean squares of journals that lean under forces no
+/// larger than a sensor's noise are scattered far more than those of normal numbers, and so are those of rattles.
+pub fn up_to(draws: &[f64]) -> f64 {
     let count = draws.len().max(2) as f64;
     let mean = draws.iter().sum::<f64>() / count;
     let spread = draws.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (count - 1.0);

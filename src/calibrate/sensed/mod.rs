@@ -6,7 +6,7 @@
 //! a right model leaves of them; [`fit`] and [`settle`] give a model its values, [`left`] says what it leaves;
 //! [`search`] finds which effects are missing, by what `screen` finds promising, [`hypotheses`] simulates and `unseen`
 //! tries where residuals are blind; `calm` what shows in a
-//! rattle's size alone, `simpler` which of their values are needed; [`outcome`] is the
+//! rattle's size alone, `simpler` which of their values are needed, `rivals` what would explain as much in their place; [`outcome`] is the
 //! whole way, [`report`] what is written of it. [`self_test`] says how often it is right.
 
 pub mod baseline;
@@ -34,6 +34,7 @@ pub mod problem;
 pub mod recording;
 pub mod report;
 pub mod residual;
+mod rivals;
 mod screen;
 pub mod search;
 pub mod self_test;

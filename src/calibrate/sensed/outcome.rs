@@ -1,7 +1,7 @@
 //! The whole way: from a rig and its recordings to a verdict, values with intervals, and errors.
 
 use super::candidates::candidates;
-use super::errors::{mean, of_run};
+use super::errors::{are_met, mean, of_run};
 use super::events::{Event, search::beside};
 use super::fit::Fit;
 use super::hypotheses::Round;
@@ -10,9 +10,10 @@ use super::limits::{Limit, limits};
 use super::noise::{self, OtherNoise};
 use super::problem::{Problem, Segment, Split, Stopped};
 use super::recording::Recording;
+use super::rivals::Rest;
 use super::search::{Found, Search};
 use super::settle::Model;
-use super::thresholds::{CLEARED, MET, PREDICTING};
+use super::thresholds::{CLEARED, PREDICTING};
 use super::unnamed::{Described, describe};
 use crate::calibrate::errors::{ChannelError, is_worse};
 use crate::calibrate::outcome::{Verdict, inverse_normal, pull};
@@ -36,6 +37,8 @@ pub struct Outcome {
     pub described: Option<Described>,
     /// What the search held for the best, whatever the verdict.
     pub tried: Vec<Setting>,
+    /// What speaks against that although it leaves no more than noise.
+    pub rest: Option<Rest>,
     /// What is left of the residuals under the declared and under the best model.
     pub before: Vec<Left>,
     /// See there.
@@ -99,11 +102,13 @@ pub fn calibrate(
             }
         }
     }
-    let Found { best, declared, rounds } = found;
+    let Found { best, declared, rounds, rest } = found;
     let search = asked.search(problem);
     let (before, after) = (search.left(&declared), search.left(&best));
-    let noise = is_noise(&after);
-    let limits = limits(&search, &best);
+    // What no simulation bears out is nothing that the declared model lacks.
+    let rest = rest.filter(|_| is_noise(&after) && !best.fit.effects.is_empty());
+    let noise = is_noise(&after) && rest.is_none();
+    let limits = if noise { limits(&search, &best) } else { Vec::new() };
     let mut described = match noise || !unnamed {
         true => None,
         false => {
@@ -128,7 +133,7 @@ pub fn calibrate(
         errors = of_all(problem, &predicting);
     }
     let nothing = best.fit.effects.is_empty() && events.is_empty();
-    let verdict = match (noise && met(&errors), nothing) {
+    let verdict = match (noise && met(problem, &errors, &predicting), nothing) {
         (true, true) => Verdict::NothingMissing,
         (true, false) => Verdict::Explained,
         (false, _) => Verdict::Unexplained,
@@ -147,6 +152,7 @@ pub fn calibrate(
         described: described.map(|(described, _)| described),
         verdict,
         tried: best.fit.effects.clone(),
+        rest,
         before,
         after,
         noises,
@@ -189,6 +195,7 @@ fn searched(problem: &mut Problem, asked: &Asked, rattle: &mut f64) -> Result<Fo
             let search = asked.search(problem);
             let best = search.settle(&effects, 2)?.unwrap_or(found.best);
             found.best = search.simplified(best)?;
+            found.rest = search.rest(&found.best);
         }
     }
     Ok(found)
@@ -211,9 +218,13 @@ fn what_does_not_last(
     beside(problem, effects, &simulated)
 }
 
-/// Whether errors are met: a model that misses the run that it was fitted to lacks something.
-fn met(errors: &[ChannelError]) -> bool {
-    errors.iter().all(|error| error.after <= MET * error.floor)
+/// Whether the errors of all runs are met: a model that misses the run that it was fitted to lacks something.
+fn met(problem: &Problem, errors: &[ChannelError], predicting: &Predicting) -> bool {
+    problem.runs.iter().zip(&predicting.calibrated).all(|(run, calibrated)| {
+        let own = errors.iter().filter(|error| error.run == run.recording.name);
+        let own: Vec<ChannelError> = own.cloned().collect();
+        are_met(&problem.declared, &own, calibrated)
+    })
 }
 
 /// Errors of all runs of two models, simulated replica by replica.

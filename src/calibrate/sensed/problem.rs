@@ -38,8 +38,10 @@ pub struct Run {
 /// Where a run of a model begins.
 #[derive(Clone, Debug)]
 pub struct Start {
-    /// The machine.
-    pub machine: Mechanism,
+    /// The machine as it was let go.
+    released: Released,
+    /// Effects that it has.
+    effects: Vec<Setting>,
     /// The same without a swing; none of one that is held at the first row.
     still: Option<Mechanism>,
 }
@@ -173,9 +175,9 @@ impl Problem {
     /// An effect that the machine cannot take, a run that broke down.
     pub fn starts(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
         let start = |run: usize| -> Result<Start, Stopped> {
-            let machine = self.released(effects, run)?.machine;
-            let still = still(&machine, self.control)?;
-            Ok(Start { machine, still })
+            let released = self.released(effects, run)?;
+            let still = still(&released.machine, self.control)?;
+            Ok(Start { released, effects: effects.to_vec(), still })
         };
         (0..self.runs.len()).into_par_iter().map(start).collect()
     }
@@ -192,18 +194,19 @@ impl Problem {
         Ok(machine)
     }
 
-    /// The machine with the `drawn` effects where one with these effects was let go in run `index`: where that was is as
-    /// uncertain whatever their values, and costs more than a simulation to find.
+    /// The machine with the `drawn` effects about where the model that begins at `start` was let go in run `index`, as
+    /// far as nobody knows that: it is as uncertain whatever their values, and costs more than a simulation to find.
     fn let_go_like(
         &self,
-        effects: &[Setting],
+        start: &Start,
         drawn: &[Setting],
         index: usize,
+        replica: u64,
     ) -> Result<Mechanism, Stopped> {
-        let coordinates = self.released(effects, index)?.coordinates;
-        if coordinates.is_empty() {
+        if start.released.coordinates.is_empty() {
             return Ok(self.released(drawn, index)?.machine);
         }
+        let coordinates = start.released.drawn(replica);
         let recording = &self.runs[index].recording;
         Ok(let_go_at(&self.rig, drawn, recording, &coordinates, self.control)?)
     }
@@ -244,9 +247,15 @@ impl Problem {
                 let like = &self.runs[run].recording;
                 let record =
                     |machine: &Mechanism| simulate::record(machine, self.control, like, replica);
+                let start = &starts[run];
+                // Where joints rattle a hair at the start is another run soon, and what nobody knows of it no hair.
+                let open = self.replicas > 1 && replica > 0 && start.released.is_fitted();
                 Ok(match &about[replica as usize] {
-                    Some(drawn) => record(&self.let_go_like(effects, drawn, run)?)?,
-                    None => record(&starts[run].machine)?,
+                    Some(drawn) => record(&self.let_go_like(start, drawn, run, replica)?)?,
+                    None if open => {
+                        record(&self.let_go_like(start, &start.effects, run, replica)?)?
+                    }
+                    None => record(&start.released.machine)?,
                 })
             })
             .collect::<Result<Vec<Recording>, Stopped>>()?;
@@ -300,7 +309,10 @@ impl Problem {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn let_go(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
-        let start = |run| Ok(Start { machine: self.released(effects, run)?.machine, still: None });
+        let start = |run| {
+            let released = self.released(effects, run)?;
+            Ok(Start { released, effects: effects.to_vec(), still: None })
+        };
         (0..self.runs.len()).into_par_iter().map(start).collect()
     }
 

@@ -11,7 +11,8 @@ use super::outcome::{Outcome, calibrate};
 use super::page;
 use super::prepare::{Prepared, Way};
 use super::problem::{Problem, Stopped};
-use super::search::name;
+use super::rivals::Rest;
+use super::search::{name, names};
 use super::windows::report::{Windows, into_folder as by_windows};
 use crate::calibrate::errors::{ChannelError, worst};
 use crate::calibrate::outcome::Verdict;
@@ -188,7 +189,13 @@ fn summary(outcome: &Outcome) -> String {
             "With what does not last the declared model explains the recordings to within noise{worst}."
         ),
         Verdict::Explained => format!(
-            "The declared model lacks {list}. With it the recordings are explained to within noise{worst}."
+            "The declared model lacks {list}. With it the recordings are explained to within noise{worst}.{}",
+            as_good(outcome)
+        ),
+        Verdict::Unexplained if outcome.rest.is_some() => format!(
+            "{} leaves no more than noise{worst}, but {}: it imitates something that has no name here.",
+            names(&outcome.tried),
+            outcome.rest.as_ref().map_or_else(String::new, Rest::words)
         ),
         Verdict::Unexplained => format!(
             "What the declared model misses stands above noise, and no effect with a name that was tried \
@@ -203,6 +210,18 @@ fn summary(outcome: &Outcome) -> String {
             }
         ),
     }
+}
+
+/// What explains the recordings as well as what was found does.
+fn as_good(outcome: &Outcome) -> String {
+    let all = outcome.effects.iter().filter_map(|(effect, _)| {
+        let mut rounds = outcome.rounds.iter();
+        let own = rounds.find(|round| round.added.as_ref().is_some_and(|a| a.is(effect)))?;
+        let others = own.as_good.iter().map(name).collect::<Vec<_>>().join(" or ");
+        (!others.is_empty())
+            .then(|| format!(" In place of {} these do not rule out {others}.", name(effect)))
+    });
+    all.collect()
 }
 
 /// What is said of instruments that are noisier or quieter than declared.

@@ -7,6 +7,7 @@ use super::hypotheses::{Round, price};
 use super::left::is_noise;
 use super::problem::{Problem, Split, Stopped};
 use super::residual::Name;
+use super::rivals::Rest;
 use super::settle::Model;
 use super::thresholds::{BUDGET, EFFECTS, HYPOTHESES, TWINS};
 use crate::effects::Setting;
@@ -20,6 +21,8 @@ pub struct Found {
     pub declared: Model,
     /// Round by round.
     pub rounds: Vec<Round>,
+    /// What still stands out of what the best model leaves, however little that is.
+    pub rest: Option<Rest>,
 }
 
 /// What is searched in.
@@ -78,7 +81,9 @@ impl<'a> Search<'a> {
         let mut best = declared.clone();
         let mut rounds = Vec::new();
         let mut hypotheses = vec![declared.clone()];
-        while best.fit.effects.len() < EFFECTS && !self.is_spent() && !self.is_noise(&best) {
+        // What is no larger than noise as a whole may still be an effect that stands out of it.
+        let mut lacks = !self.is_noise(&best) || self.rest(&best).is_some();
+        while best.fit.effects.len() < EFFECTS && !self.is_spent() && lacks {
             let mut next: Vec<Model> = Vec::new();
             let mut round = Round::default();
             let mut enough: Option<Setting> = None;
@@ -106,7 +111,10 @@ impl<'a> Search<'a> {
             }
             let cost = next[0].cost();
             round.added = next[0].fit.effects.last().cloned();
-            let near = next.iter().skip(1).filter(|model| model.cost() < cost + TWINS);
+            let near = next
+                .iter()
+                .skip(1)
+                .filter(|model| model.cost() < cost + TWINS[usize::from(best.baseline.rattles)]);
             round.as_good = near.filter_map(|model| model.fit.effects.last().cloned()).collect();
             rounds.push(round);
             let before = best.cost();
@@ -119,6 +127,7 @@ impl<'a> Search<'a> {
             next.retain(|model| before - model.cost() > 0.7 * (before - cost));
             next.truncate(HYPOTHESES);
             hypotheses = next;
+            lacks = !self.is_noise(&best);
         }
         // What is noise already is not explained any better; that recorded joints rattle less than a model's does
         // not show in what is left, only in its size.
@@ -128,6 +137,17 @@ impl<'a> Search<'a> {
             let Some(calmer) = calmer else { break };
             best = calmer;
         }
+        let (best, rest) = self.borne_out(best, &mut rounds)?;
+        Ok(Found { best, declared, rounds, rest })
+    }
+
+    /// A model that was found with its values settled, without what it does not need, held against its rivals; and, where it
+    /// leaves no more than noise, what still stands out of that.
+    fn borne_out(
+        &self,
+        mut best: Model,
+        rounds: &mut [Round],
+    ) -> Result<(Model, Option<Rest>), Stopped> {
         if !best.fit.effects.is_empty() {
             // Values that leave noise are left alone: looks alone do not find them as well again.
             if !self.is_noise(&best) {
@@ -141,8 +161,17 @@ impl<'a> Search<'a> {
                 best = self.refined(best)?;
             }
         }
-        credited(&mut rounds, &best.fit.effects);
-        Ok(Found { best, declared, rounds })
+        credited(rounds, &best.fit.effects);
+        if !self.is_noise(&best) {
+            return Ok((best, None));
+        }
+        best = self.beside_rivals(best, rounds)?;
+        let mut rest = self.rest(&best);
+        if rest.is_some() && !best.baseline.rattles {
+            best = self.refined(best)?;
+            rest = self.rest(&best);
+        }
+        Ok((best, rest))
     }
 }
 

@@ -23,7 +23,7 @@ impl Search<'_> {
                 let fit = self.target(&best.baseline, false).fit(&effects, STEPS)?;
                 let held = self.target(&best.baseline, true).look(&fit.effects)?.chi2;
                 let lost = held - best.held;
-                (lost < GAIN_PER_VALUE * fewer as f64 + TWINS).then_some((fit, held))
+                (lost < GAIN_PER_VALUE * fewer as f64 + TWINS[0]).then_some((fit, held))
             });
             let Some((fit, held)) = simpler else { continue };
             (self.tell)(&format!("settling a simpler {}", name(&fit.effects[i])));

@@ -4,6 +4,7 @@ use super::estimate::position_sensor;
 use super::recording::Recording;
 use super::simulate::{deviation, record};
 use crate::calibrate::least_squares::{Effort, Free, least_squares};
+use crate::calibrate::outcome::inverse_normal;
 use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};
 use crate::measure::spline::CubicSpline;
@@ -13,7 +14,10 @@ use crate::mechanism::{
 };
 use crate::model::recorded;
 use crate::scenario::{Problem, Scenario};
-use nalgebra::{DVector, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -281,7 +285,31 @@ pub struct Released {
     pub machine: Mechanism,
     /// Coordinates in m or rad, at the first row, of the joints that its drives leave free and that held it there.
     pub coordinates: Vec<f64>,
+    /// Their covariance, as far as the recording leaves them open; none where nothing was fitted.
+    covariance: Option<DMatrix<f64>>,
 }
+
+impl Released {
+    /// Whether where it was let go was fitted to a recording.
+    pub fn is_fitted(&self) -> bool {
+        self.covariance.is_some()
+    }
+
+    /// Coordinates as far from those that were fitted as nobody knows them, drawn by a number.
+    pub fn drawn(&self, number: u64) -> Vec<f64> {
+        let factor = self.covariance.clone().and_then(DMatrix::cholesky);
+        let Some(factor) = factor else { return self.coordinates.clone() };
+        let mut random = ChaCha8Rng::seed_from_u64(number);
+        random.set_stream(STARTS);
+        let away =
+            DVector::from_fn(self.coordinates.len(), |_, _| StandardNormal.sample(&mut random));
+        let away: DVector<f64> = factor.l() * away;
+        self.coordinates.iter().zip(&away).map(|(value, away)| value + away).collect()
+    }
+}
+
+/// Stream of random numbers that starts are drawn from, beside those of effects' values.
+const STARTS: u64 = 1;
 
 /// The machine of a rig with these effects as it was let go: a driven one at rest at its first commands, some
 /// time before the first row, or, where a sampled controller holds it, where it was at the first row; one that drives
@@ -308,7 +336,7 @@ pub fn released(
         } else {
             mechanism.epoch = -LEAD;
         }
-        return Ok(Released { machine: mechanism, coordinates: Vec::new() });
+        return Ok(Released { machine: mechanism, coordinates: Vec::new(), covariance: None });
     }
     let let_go = |values: &[f64]| let_go_at(rig, effects, recording, values, control);
     let missed = |values: &[f64], seconds: f64| -> Option<DVector<f64>> {
@@ -328,12 +356,15 @@ pub fn released(
     let mut values: Vec<f64> = held.iter().map(|(_, value)| *value).collect();
     let free = vec![Free { step: SMALL, bounds: [-f64::MAX, f64::MAX] }; values.len()];
     let mut seconds = SEEN;
+    let mut covariance = None;
     loop {
         let look = |values: &[f64]| missed(values, seconds);
         let Some(best) = least_squares(&look, &free, values.clone(), EFFORT, None) else { break };
         // What a model does not show is no reason to have started elsewhere.
         let shown = mean_square(&best.residual) <= KEPT;
         if shown || seconds == SEEN {
+            let inverse = best.jacobian.as_ref().and_then(inverse_normal);
+            covariance = inverse.map(|inverse| inverse * mean_square(&best.residual).max(1.0));
             values = best.values;
         }
         if !shown || seconds >= recording.duration() {
@@ -341,7 +372,7 @@ pub fn released(
         }
         seconds *= 2.0;
     }
-    Ok(Released { machine: let_go(&values)?, coordinates: values })
+    Ok(Released { machine: let_go(&values)?, coordinates: values, covariance })
 }
 
 /// The machine of a rig with these effects, let go at its first row with these coordinates (m or rad) of the joints that
@@ -463,4 +494,31 @@ pub fn still(released: &Mechanism, control: StepControl) -> Result<Option<Mechan
     })?;
     machine.epoch = -SHORT;
     Ok(Some(machine))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::parts_of;
+
+    /// Starts are drawn as far apart as their covariance says, and where they were fitted without one.
+    #[test]
+    fn starts_are_drawn_as_far_apart_as_they_are_open() {
+        let covariance = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 1.0]);
+        let rig = include_str!("../../../assets/rigs-planar/planar-4/rig.toml");
+        let machine = parts_of(&Scenario::from_text(rig, "rig", &[]).unwrap()).unwrap();
+        let mut released =
+            Released { machine, coordinates: vec![5.0, -7.0], covariance: Some(covariance) };
+        let drawn: Vec<Vec<f64>> = (0..4000).map(|number| released.drawn(number)).collect();
+        let product = |i: usize, j: usize| {
+            let of =
+                |d: &Vec<f64>| (d[i] - released.coordinates[i]) * (d[j] - released.coordinates[j]);
+            drawn.iter().map(of).sum::<f64>() / drawn.len() as f64
+        };
+        assert!((product(0, 0) - 4.0).abs() < 0.4, "{}", product(0, 0));
+        assert!((product(0, 1) - 1.0).abs() < 0.2, "{}", product(0, 1));
+        assert!((product(1, 1) - 1.0).abs() < 0.1, "{}", product(1, 1));
+        released.covariance = None;
+        assert_eq!(released.drawn(3), released.coordinates);
+    }
 }

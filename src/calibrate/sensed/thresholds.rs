@@ -55,8 +55,16 @@ pub const GAIN_PER_VALUE: f64 = 2.0;
 /// Most effects that are added: more than any machine was seen to need, so that a search ends.
 pub const EFFECTS: usize = 5;
 
-/// Drop of cost within which two hypotheses are as good as each other: chance gives one of two rivals as much.
-pub const TWINS: f64 = 10.0;
+/// Drop of cost within which two hypotheses are as good as each other. One that is d standard deviations from the truth
+/// costs `d² + 2 d z` more, z normal: by 10 less in one of a thousand recordings, whatever d. Where joints rattle, as much
+/// as bias and noise from few replicas make of one and the same model ([`GAIN`]).
+pub const TWINS: [f64; 2] = [10.0, 200.0];
+
+/// Candidates that are simulated in place of an effect that was found, and the share of its part that they have to take
+/// up by looks: what leaves a third of it is beaten by more than chance as soon as the effect shows at all.
+pub const RIVALS: usize = 3;
+/// See [`RIVALS`].
+pub const RIVAL: f64 = 0.67;
 
 /// Hypotheses that are followed at once; candidates of each that are fitted by more than one linear step, and of
 /// these that are simulated.

@@ -127,8 +127,9 @@ fn answer(outcome: &Outcome) -> String {
     let worst = crate::calibrate::errors::worst(&outcome.errors).map_or_else(String::new, |e| {
         format!("{} of {} by {:.2} floors", e.channel, e.run, e.after / e.floor)
     });
+    let rest = outcome.rest.as_ref().map_or_else(String::new, |rest| format!("; {}", rest.words()));
     format!(
-        "tried {}; leaves mean square {}, largest {}; misses {worst}{noises}",
+        "tried {}; leaves mean square {}, largest {}; misses {worst}{rest}{noises}",
         list(&outcome.tried),
         most(&|left| left.mean_square),
         most(&|left| left.largest),

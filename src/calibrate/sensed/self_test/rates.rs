@@ -28,6 +28,9 @@ const ROWS: &[Row] = &[
         },
     ),
     ("explained by a name that is not hidden", "≤ 3 %", |_, a| vec![a.wrong_name]),
+    ("the same, and what is hidden is not held for as good", "", |_, a| {
+        vec![a.wrong_name && !a.as_good]
+    }),
     ("nothing hidden, but not `nothing-missing`", "≤ 3 %", |t, a| {
         when(lacks_none(t), a.verdict != Verdict::NothingMissing)
     }),

@@ -24,8 +24,9 @@ const NEAR: f64 = 0.3;
 /// The same of the last size that was tried, where a rattle scatters them.
 const NEAR_ENOUGH: f64 = 0.5;
 
-/// Replicas of a machine that rattles: two are the fewest that tell a floor.
-const REPLICAS: u64 = 2;
+/// Replicas of a machine that rattles: of two, one and the same machine showed by six floors now and then, and a size
+/// was taken for what chance did.
+const REPLICAS: u64 = 4;
 
 /// Factor by which noise is larger than declared where that is hidden.
 const NOISIER: f64 = 2.0;
@@ -167,27 +168,38 @@ impl<'a> Look<'a> {
         let mut problem = bench.of(clean)?;
         let rattles = problem.look_for_rattle(&[])? > SEEN;
         let replicas = if rattles { REPLICAS } else { 1 };
+        problem.replicas = replicas as usize;
         let driven = !bench.declared.actuators.is_empty();
-        let declared = if driven { Some(declared(&problem, replicas)?) } else { None };
+        let declared = if driven { Some(shown(&problem, &[])?) } else { None };
         Ok(Self { bench, replicas, declared })
     }
 
-    /// The largest error of the declared model on the validation run of one with these effects, in floors of that.
+    /// The largest error of the declared model on the validation run of one with these effects, in floors of that: the root
+    /// mean square over replicas of the truth, so that none counts for what its rattle happens to do.
     fn floors(&self, effects: &[Setting]) -> Result<f64, Stopped> {
         let truth = self.bench.clean(effects, VALIDATION, self.replicas)?;
-        let noisy = self.bench.noisy(&truth[0], &self.bench.declared.sensors, VALIDATION);
-        let problem = self.bench.of(vec![noisy])?;
-        let before = match &self.declared {
-            Some(declared) => declared.clone(),
-            None => declared(&problem, self.replicas)?,
-        };
-        let recording = &problem.runs[0].recording;
-        let errors = of_run(&problem.declared, recording, "validation", &before, &truth);
-        Ok(errors.iter().map(|error| error.before / error.floor).fold(0.0, f64::max))
+        let mut squares: Vec<f64> = Vec::new();
+        // Where a machine falls from is fitted to each recording anew, which costs more than to simulate it.
+        let recorded = if self.declared.is_some() { truth.len() } else { 1 };
+        for clean in &truth[..recorded] {
+            let noisy = self.bench.noisy(clean, &self.bench.declared.sensors, VALIDATION);
+            let mut problem = self.bench.of(vec![noisy])?;
+            problem.replicas = self.replicas as usize;
+            let (before, known) = match &self.declared {
+                Some(declared) => (declared.clone(), truth.clone()),
+                None => (shown(&problem, &[])?, shown(&problem, effects)?),
+            };
+            let recording = &problem.runs[0].recording;
+            let errors = of_run(&problem.declared, recording, "validation", &before, &known);
+            squares.resize(errors.len(), 0.0);
+            let ratios = errors.iter().map(|error| (error.before / error.floor).powi(2));
+            squares.iter_mut().zip(ratios).for_each(|(sum, square)| *sum += square);
+        }
+        Ok(squares.into_iter().fold(0.0, f64::max).sqrt() / (recorded as f64).sqrt())
     }
 }
 
-/// What the declared model shows of a problem's one run, so many replicas.
-fn declared(problem: &Problem, replicas: u64) -> Result<Vec<Recording>, Stopped> {
-    Ok(problem.simulated(&problem.let_go(&[])?, replicas as usize)?.swap_remove(0))
+/// What a model with these effects shows of a problem's one run, as many replicas as the problem takes.
+fn shown(problem: &Problem, effects: &[Setting]) -> Result<Vec<Recording>, Stopped> {
+    Ok(problem.simulated(&problem.let_go(effects)?, problem.replicas)?.swap_remove(0))
 }

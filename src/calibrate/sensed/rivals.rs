@@ -1,0 +1,138 @@
+//! What explains the recordings in place of what was found.
+//!
+//! A round simulates the few candidates that promise most beside a model that lacks an effect, whose looks are wrong by as
+//! much as that lacks. Beside the model that was found, less one of its effects, looks are as right as they can be: what
+//! takes up most of that effect's part there is simulated, too, and compared on all runs. Two models that are no further
+//! apart than chance are as good as each other.
+
+use super::hypotheses::{Round, price};
+use super::problem::Stopped;
+use super::search::{Search, names};
+use super::settle::Model;
+use super::thresholds::{GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
+use crate::effects::Setting;
+
+/// What still stands out of what a model leaves, and by how much it would lower the sum of squares in units of noise.
+#[derive(Clone, Debug)]
+pub enum Rest {
+    /// An effect beside its own.
+    Effect(Setting, f64),
+    /// Other values of its own effects for the runs that they were not fitted to.
+    Values(f64),
+}
+
+impl Rest {
+    /// The same in a sentence.
+    pub fn words(&self) -> String {
+        match self {
+            Rest::Effect(effect, gain) => {
+                format!("beside it {effect} would still take {gain:.0} off the sum of squares")
+            }
+            Rest::Values(gain) => format!(
+                "other values of it would take {gain:.0} off the sum of squares of the other recordings"
+            ),
+        }
+    }
+}
+
+/// Steps of Gauss and Newton from values that fit one run to those that fit the others, at most.
+const STEPS: usize = 6;
+
+impl Search<'_> {
+    /// The model, or one with rivals in place of its effects that explains all runs better; `rounds` hear what is as
+    /// good as each effect.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub(super) fn beside_rivals(
+        &self,
+        model: Model,
+        rounds: &mut [Round],
+    ) -> Result<Model, Stopped> {
+        let mut best = model;
+        for i in 0..best.fit.effects.len() {
+            let mut others = best.fit.effects.clone();
+            let own = others.remove(i);
+            let mut all = vec![(own.clone(), best.clone())];
+            for rival in self.rivals(&best, i, rounds) {
+                let effects = [others.as_slice(), std::slice::from_ref(&rival)].concat();
+                (self.tell)(&format!("simulating with {} in place of {own}", names(&effects)));
+                let times = if best.baseline.rattles { 1 } else { 2 };
+                let Some(settled) = self.settle(&effects, times)? else { continue };
+                // What does not come down to noise explains nothing, whatever it costs.
+                if self.is_noise(&settled) {
+                    all.push((rival, settled));
+                }
+            }
+            all.sort_by(|(_, a), (_, b)| self.whole(a).total_cmp(&self.whole(b)));
+            let enough = self.whole(&all[0].1) + TWINS[usize::from(best.baseline.rattles)];
+            let near = all.iter().skip(1).filter(|(_, model)| self.whole(model) < enough);
+            let near: Vec<Setting> = near.map(|(effect, _)| effect.clone()).collect();
+            let (won, model) = all.swap_remove(0);
+            let round = rounds
+                .iter_mut()
+                .find(|round| round.added.as_ref().is_some_and(|added| added.is(&own)));
+            if let Some(round) = round {
+                round.added = Some(won);
+                for effect in near {
+                    if !round.as_good.iter().any(|known| known.is(&effect)) {
+                        round.as_good.push(effect);
+                    }
+                }
+            }
+            best = model;
+        }
+        Ok(best)
+    }
+
+    /// The candidates that take up most of what an effect of a model does, in its place, and that were not simulated
+    /// there.
+    fn rivals(&self, model: &Model, place: usize, rounds: &[Round]) -> Vec<Setting> {
+        let mut others = model.fit.effects.clone();
+        let own = others.remove(place);
+        let looks = [false, true].map(|held| self.target(&model.baseline, held).look(&others));
+        let [Some(fit), Some(held)] = looks else { return Vec::new() };
+        let gain = held.chi2 - model.held;
+        let without = Model { fit, held: held.chi2, misfit: held.chi2, ..model.clone() };
+        // With nothing else found the first round simulated them where they are.
+        let simulated = |effect: &Setting| {
+            let first = rounds.first().filter(|_| others.is_empty());
+            let mut tried = first.into_iter().flat_map(|round| &round.tried);
+            tried.any(|tried| tried.simulated && tried.effect.is(effect))
+        };
+        let mut found: Vec<Setting> = Vec::new();
+        for tried in self.screened(&without) {
+            let known = found.iter().any(|known| known.is(&tried.effect)) || tried.effect.is(&own);
+            if !known && !simulated(&tried.effect) && tried.gain > RIVAL * gain {
+                found.push(tried.effect);
+            }
+        }
+        found.truncate(RIVALS);
+        found
+    }
+
+    /// What would still take more off what a model leaves than chance does, on data that it is not fitted to: a candidate
+    /// beside its effects, or other values of them on another run than that which they were fitted to. A model that is right
+    /// leaves neither; one that imitates what is missing does, even where what it leaves is no larger than noise.
+    pub(super) fn rest(&self, model: &Model) -> Option<Rest> {
+        let values: usize = model.fit.effects.iter().map(|effect| effect.values().count()).sum();
+        let enough = |values: usize| price(model) + 2.0 * GAIN_PER_VALUE * values as f64;
+        let refitted = self.target(&model.baseline, true).fit(&model.fit.effects, STEPS);
+        let drop = refitted.map_or(0.0, |refitted| model.held - refitted.chi2);
+        if drop > enough(values) {
+            return Some(Rest::Values(drop));
+        }
+        let all = self.screened(model).into_iter();
+        let mut certain = all.filter(|tried| tried.gain > enough(tried.effect.values().count()));
+        certain.next().map(|tried| Rest::Effect(tried.effect, tried.gain))
+    }
+
+    /// What a model costs on all data: those that it was fitted to tell rivals apart as well, at Akaike's price.
+    fn whole(&self, model: &Model) -> f64 {
+        let values: usize = model.fit.effects.iter().map(|effect| effect.values().count()).sum();
+        let on = &self.split.on;
+        let own = if model.baseline.rattles { model.baseline.log_determinant(on) } else { 0.0 };
+        let noise = own + model.baseline.lost(on);
+        model.cost() + model.fit.chi2 + noise + GAIN_PER_VALUE * values as f64
+    }
+}
