@@ -157,7 +157,7 @@ fn friction_is_under_control_too() {
 }
 
 /// Drive forces of rows against the reference curves, at a tolerance at which the run is converged
-/// to the curves' own digits.
+/// to the curves' own digits: at 1e-7 m/s hits have made some 2e-10 m of the errors of steps by then, which is 2e-3 N.
 #[test]
 fn drive_forces_agree_with_the_converged_run() {
     for (case, curve, ..) in studies() {
@@ -167,7 +167,7 @@ fn drive_forces_agree_with_the_converged_run() {
         let interval = t[1] - t[0];
         let (mut k, mut worst) = (0, 0.0f64);
         let schedule = Schedule { duration: 0.02, interval };
-        run(&case.mechanism(), StepControl::Tolerance(1e-7), schedule, &mut |instant: &Instant| {
+        run(&case.mechanism(), StepControl::Tolerance(1e-8), schedule, &mut |instant: &Instant| {
             for (force, column) in instant.evaluation.drive_forces.iter().zip(&forces) {
                 worst = worst.max((force - column[k]).abs());
             }

@@ -27,7 +27,7 @@ pub fn named() -> f64 {
 
 /// Standard deviations from which a calibration calls no rival as good.
 pub fn told() -> f64 {
-    TWINS.sqrt() + SURE
+    TWINS[0].sqrt() + SURE
 }
 
 /// Standard deviations below which a change is none: rounding of poses that are closed to a tenth of a picometre.
