@@ -254,7 +254,7 @@ fn rivals_that_the_present_motion_leaves_open_are_told_apart() {
     let rig = format!("{RIGS}/planar-1");
     with_present_motion(&place, "planar-1");
     place.good(&format!(
-        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv --between command-delay=8e-5,servo-lag --speed 40 \
+        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv --between command-delay=1.2e-4,servo-lag --speed 40 \
          --acceleration 600 --drive-force 5 --out planned --quiet"
     ));
     let question = &json(&place, "planned/plan.json")["questions"][0];
@@ -264,8 +264,8 @@ fn rivals_that_the_present_motion_leaves_open_are_told_apart() {
     );
     let mut right = [0; 2];
     for (scenario, right) in ["present.toml", "planned/planned.toml"].iter().zip(&mut right) {
-        *right += named(&place, scenario, &["kind=command-delay", "delay_s=8e-5"], 1..=5);
-        *right += named(&place, scenario, &["kind=servo-lag", "time_constant_s=8e-5"], 6..=10);
+        *right += named(&place, scenario, &["kind=command-delay", "delay_s=1.2e-4"], 1..=5);
+        *right += named(&place, scenario, &["kind=servo-lag", "time_constant_s=1.2e-4"], 6..=10);
     }
     println!("right in {} of 10 and {} of 10", right[0], right[1]);
     assert!(right[1] >= 9 && right[0] <= 5, "{right:?}");
