@@ -42,7 +42,7 @@ fn a_long_run_takes_no_more_memory_than_a_short_one() {
     assert!(short > 0 && long < short + 8192, "{short} kB for 2 s, {long} kB for 40 s");
 }
 
-/// The rows of the table are held until it is written, some kilobytes each; machines, or their rows over time, would show.
+/// The rows of the table are held until it is written, a kilobyte or two each; machines, or their rows over time, would show.
 #[test]
 fn ten_times_the_runs_of_a_sweep_take_little_more_memory() {
     let place = Place::new();

@@ -135,12 +135,14 @@ fn text(done: &Done) -> String {
         true => String::new(),
         false => format!("\n{}", table("ll", ["one more sensor", "planned, with it"], sensors)),
     };
-    let folder = done.folder.display();
     let file = |name: &str| done.folder.join(name).display().to_string();
-    format!(
-        "{}\n{questions}{sensors}\nIn standard deviations of the residuals' noise. Written to {folder}; open {}\nNow: follow {}, and calibrate what it shows\n",
-        paragraph("", "", &planned.summary),
-        file("index.html"),
-        file("motion.csv"),
-    )
+    let written = format!(
+        "In standard deviations of the residuals' noise. Written to {}; open {}",
+        done.folder.display(),
+        file("index.html")
+    );
+    let next = format!("Now: follow {}, and calibrate what it shows", file("motion.csv"));
+    let [summary, written, next] =
+        [&planned.summary, &written, &next].map(|text| paragraph("", "", text));
+    format!("{summary}\n{questions}{sensors}\n{written}{next}")
 }
