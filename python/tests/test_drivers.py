@@ -52,8 +52,8 @@ def test_dakota(page: str, path: dict[str, str], tmp_path: Path) -> None:
     for clearance, mass, force, error in rows:
         values = {"joints.clearance": clearance, "mechanism.platform_mass": mass, "simulation.duration": 0.1}
         ours = fp.evaluate(fp.Scenario().set(values), ["peak_contact_force_N", "rms_path_error_m"])
-        # The table has ten digits of the parameters; a rattle of 0.1 s makes little of the eleventh.
-        assert list(ours.values()) == pytest.approx([force, error], rel=1e-2)
+        # The table has all digits of the parameters.
+        assert list(ours.values()) == pytest.approx([force, error], rel=1e-12)
     # A machine without mass: each run is FAIL, and Dakota recovers as it was told.
     rows = study(text.replace("1e-4  0.16", "1e-4 -0.20").replace("5e-4  0.24", "5e-4 -0.10"), path, tmp_path)
     assert all(row[2:] == [1e9, 1e9] for row in rows)

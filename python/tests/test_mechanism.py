@@ -9,7 +9,7 @@ import pytest
 
 
 def four_bar() -> fp.Mechanism:
-    """The machine of the README."""
+    """The machine of docs/mechanisms.md."""
     m = fp.Mechanism("mine", gravity=(0.0, -9.81))
     m.ground(O=(0.0, 0.0), D=(0.2, 0.0))
 
@@ -27,9 +27,9 @@ def four_bar() -> fp.Mechanism:
     return m.motion("line", joint="O", velocity=12.566)
 
 
-def test_it_is_the_machine_of_the_readme(repository: Path) -> None:
-    readme = (repository / "README.md").read_text()
-    (block,) = (b.split("```")[0] for b in readme.split("```toml\n")[1:] if b.startswith('name = "mine"'))
+def test_it_is_the_machine_of_the_docs(repository: Path) -> None:
+    page = (repository / "docs/mechanisms.md").read_text()
+    (block,) = (b.split("```")[0] for b in page.split("```toml\n")[1:] if b.startswith('name = "mine"'))
     assert four_bar().to_toml() == fp.Scenario.from_toml(block).to_toml()
 
 
