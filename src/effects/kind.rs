@@ -224,6 +224,11 @@ impl Kind {
         self.parameter("at_s").is_none()
     }
 
+    /// Whether it is an error of an instrument, not of the machine.
+    pub fn is_instrument(&self) -> bool {
+        matches!(self.targets, Targets::Sensor(_) | Targets::Tracker)
+    }
+
     /// Names of the joints of `mechanism` that this effect can be given one of.
     pub fn joints_of(&self, mechanism: &Mechanism) -> Vec<String> {
         let Some(joints) = self.targets.joints() else { return Vec::new() };

@@ -2,12 +2,14 @@
 //! which is noise.
 
 use super::estimate::View;
-use super::problem::{Problem, Segment, Stopped};
-use super::simulate::with_noise;
+use super::problem::{Problem, Segment, Start, Stopped};
+use super::recording::Recording;
+use super::simulate::{apart, with_noise};
 use super::start::machine;
-use super::thresholds::{DRAWS, MISSED};
+use super::thresholds::{DRAWS, MISSED, SEEN};
 use crate::calibrate::spectrum::Noise;
 use crate::effects::Setting;
+use crate::mechanism::Mechanism;
 use crate::scenario::Problem as Wrong;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -18,8 +20,17 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 struct Part {
     segment: Segment,
-    bias: Vec<Vec<f64>>,
+    /// The model's machine.
+    machine: Mechanism,
+    bias: Coefficients,
+    /// Residuals of the data less that.
+    left: Coefficients,
     noise: Noise,
+    /// A simulation of the model without noise, and draws of the same one with noise.
+    clean: View,
+    noisy: Vec<View>,
+    /// What of the noise's logarithm of the determinant is not the sensors'.
+    rattle: f64,
     /// What noise alone may look like in units of what other draws have of it, draw by draw.
     draws: Vec<DVector<f64>>,
     /// What the noise has more of, as a logarithm of its determinant, for a recorded swing that is not the
@@ -36,6 +47,9 @@ pub struct Baseline {
 }
 
 type Coefficients = Vec<Vec<f64>>;
+
+/// Draws that tell by how much a look at noise shrinks: the same ones before and after, so that two will do.
+const SHRUNK: usize = 2;
 
 /// Parts of the draws of a machine that does not rattle, each of which is held against the others: of sixteen the
 /// twelve others know a covariance nearly as well as all.
@@ -54,7 +68,7 @@ impl Baseline {
         segments: &[Segment],
     ) -> Result<Self, Stopped> {
         let starts = problem.starts(effects)?;
-        let simulated = problem.simulated_about(effects, deviations, &starts, problem.replicas)?;
+        let (simulated, rattles) = replicas(problem, effects, deviations, &starts)?;
         let still = problem.still(&starts)?;
         let sensors = &problem.declared.sensors;
         let singular = || {
@@ -65,7 +79,7 @@ impl Baseline {
         for segment in segments {
             let run = &problem.runs[segment.run];
             let machine = machine(&problem.rig, effects, &run.recording)?;
-            let look = |recording: &super::recording::Recording| {
+            let look = |recording: &Recording| {
                 let view = View::new(recording, sensors.len());
                 problem.coefficients(&view, &machine, segment)
             };
@@ -74,15 +88,18 @@ impl Baseline {
                 clean.par_iter().map(look).collect::<Option<_>>().ok_or_else(singular)?;
             let bias = mean(&seen);
             // A replica stands for the data, the mean of the others for the bias.
-            let draws: Vec<Coefficients> = (0..DRAWS)
+            let noisy =
+                |draw: usize| with_noise(&clean[draw % clean.len()], sensors, draw as u64 + 1000);
+            let looked: Vec<Coefficients> = (0..DRAWS)
                 .into_par_iter()
-                .map(|draw| {
-                    let own = draw % clean.len();
-                    let noisy = look(&with_noise(&clean[own], sensors, draw as u64 + 1000))?;
-                    Some(difference(&noisy, &without(&bias, &seen[own], seen.len())))
-                })
+                .map(|draw| look(&noisy(draw)))
                 .collect::<Option<_>>()
                 .ok_or_else(singular)?;
+            let beside = |of: &dyn Fn(usize) -> Coefficients| -> Vec<Coefficients> {
+                let own = looked.iter().enumerate();
+                own.map(|(draw, noisy)| difference(noisy, &of(draw % seen.len()))).collect()
+            };
+            let draws = beside(&|own| without(&bias, &seen[own], seen.len()));
             // Where loads keep joints in contact, bodies swing in their play, and nobody knows how they
             // were let go: what the same machine does without a swing tells where that shows.
             let still = still[segment.run].as_ref().map(look).unwrap_or(None);
@@ -105,10 +122,26 @@ impl Baseline {
                 true => (SQRT_2, lost, price),
                 false => (MISSED, near, 0.0),
             };
+            let of_sensors = Noise::from_draws(&beside(&|own| seen[own].clone()), &swing(0.0));
+            let rattle = noise.log_determinant() - of_sensors.log_determinant();
             let draws = by_the_others(&draws, clean.len(), &swing(share));
-            parts.push(Part { segment: segment.clone(), bias, noise, draws, lost });
+            let view = |recording: &Recording| View::new(recording, sensors.len());
+            // Those of the first replica.
+            let noisy = (0..SHRUNK).map(|k| view(&noisy(k * clean.len()))).collect();
+            let (segment, clean) = (segment.clone(), view(&clean[0]));
+            parts.push(Part {
+                segment,
+                machine,
+                bias,
+                left,
+                noise,
+                clean,
+                noisy,
+                rattle,
+                draws,
+                lost,
+            });
         }
-        let rattles = problem.replicas > 1;
         Ok(Self { parts: Arc::new(parts), rattles })
     }
 
@@ -134,7 +167,34 @@ impl Baseline {
         Ok(Some(DVector::from_vec(all)))
     }
 
-    /// The same with what a simulation of that very model says of it in place of the bias.
+    /// How much of the sum of squares of noise alone other effects than its own take away on segments: a softer servo
+    /// makes less of its encoder's steps, and is not right for that; none where there is no such machine.
+    pub fn shrunk(
+        &self,
+        problem: &Problem,
+        effects: &[Setting],
+        segments: &[Segment],
+    ) -> Option<f64> {
+        let mut sum = 0.0;
+        for part in self.parts.iter().filter(|part| segments.contains(&part.segment)) {
+            let recording = &problem.runs[part.segment.run].recording;
+            let other = machine(&problem.rig, effects, recording).ok()?;
+            let power = |machine: &Mechanism| -> Option<f64> {
+                let look = |view: &View| problem.coefficients(view, machine, &part.segment);
+                let clean = look(&part.clean)?;
+                let own = |noisy: &View| {
+                    let noise = difference(&look(noisy)?, &clean);
+                    Some(part.noise.whiten(&noise).norm_squared())
+                };
+                part.noisy.iter().map(own).sum::<Option<f64>>()
+            };
+            sum += (power(&part.machine)? - power(&other)?) / SHRUNK as f64;
+        }
+        Some(sum)
+    }
+
+    /// The same with what a simulation of that very model says of it in place of the bias; both are seen through the
+    /// baseline's own model.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -147,13 +207,12 @@ impl Baseline {
         let mut all = Vec::new();
         let sensors = problem.declared.sensors.len();
         for part in self.parts.iter().filter(|part| segments.contains(&part.segment)) {
-            let run = &problem.runs[part.segment.run];
-            let machine = machine(&problem.rig, effects, &run.recording)?;
             let simulated = problem.one(effects, part.segment.run, part.segment.rows.end)?;
-            let pair = [&run.view, &View::new(&simulated, sensors)]
-                .map(|view| problem.coefficients(view, &machine, &part.segment));
-            let [Some(seen), Some(own)] = pair else { return Ok(None) };
-            all.extend(part.noise.whiten(&difference(&seen, &own)).iter());
+            let view = View::new(&simulated, sensors);
+            let own = problem.coefficients(&view, &part.machine, &part.segment);
+            let Some(own) = own else { return Ok(None) };
+            let left = difference(&part.left, &difference(&own, &part.bias));
+            all.extend(part.noise.whiten(&left).iter());
         }
         Ok(Some(DVector::from_vec(all)))
     }
@@ -177,10 +236,11 @@ impl Baseline {
         parts.map(|part| part.lost).sum()
     }
 
-    /// Logarithm of the determinant of the noise on segments: what a model pays for being noisy.
+    /// Logarithm of the determinant of the noise on segments, less that of the sensors' noise seen through the same model:
+    /// what a model pays for rattling. (What changes the look at noise changes both.)
     pub fn log_determinant(&self, segments: &[Segment]) -> f64 {
         let parts = self.parts.iter().filter(|part| segments.contains(&part.segment));
-        parts.map(|part| part.noise.log_determinant()).sum()
+        parts.map(|part| part.rattle).sum()
     }
 
     /// Residual (by its place among the names) and frequency in Hz of each number of [`white`](Self::white).
@@ -194,6 +254,28 @@ impl Baseline {
             })
             .collect()
     }
+}
+
+/// Noiseless recordings of a model, run by run, and whether they rattle. Of a machine that does as declared a model need
+/// not: what presses its journals on their rings makes it as predictable as any, and one simulation stands for it.
+fn replicas(
+    problem: &Problem,
+    effects: &[Setting],
+    deviations: &[f64],
+    starts: &[Start],
+) -> Result<(Vec<Vec<Recording>>, bool), Stopped> {
+    let mut simulated = problem.simulated(starts, problem.replicas.min(2))?;
+    let sensors = &problem.declared.sensors;
+    let apart = |logs: &Vec<Recording>| logs.len() > 1 && apart(sensors, &logs[0], &logs[1]) > SEEN;
+    let rattles = simulated.iter().any(apart);
+    let exact = if rattles && deviations.is_empty() { 2 } else { 1 };
+    simulated.iter_mut().for_each(|logs| logs.truncate(exact));
+    if rattles {
+        let others = exact..problem.replicas;
+        let others = problem.simulated_about(effects, deviations, starts, others)?;
+        simulated.iter_mut().zip(others).for_each(|(logs, others)| logs.extend(others));
+    }
+    Ok((simulated, rattles))
 }
 
 /// Draws of noise of so many replicas in units of what the others have of it, as a recording is seen: replicas that a

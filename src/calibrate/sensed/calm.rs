@@ -37,7 +37,14 @@ impl Search<'_> {
             let gain = model.cost() - settled.cost();
             let effect = settled.fit.effects[model.fit.effects.len()].clone();
             // It removes nothing that stands above noise.
-            round.tried.push(Tried { effect, gain, share: 0.0, simulated: true });
+            round.tried.push(Tried {
+                effect,
+                gain,
+                share: 0.0,
+                fitted: true,
+                chance: 0.0,
+                simulated: true,
+            });
             if best.as_ref().is_none_or(|best| settled.cost() < best.cost()) {
                 best = Some(settled);
             }

@@ -15,6 +15,10 @@ pub struct Tried {
     pub gain: f64,
     /// Share of what was there that this is.
     pub share: f64,
+    /// Whether its values were fitted by more than one linear step, and what shrinks of the noise is no gain.
+    pub fitted: bool,
+    /// Drop that draws of noise bring it by chance.
+    pub chance: f64,
     /// Whether the machine was simulated with it.
     pub simulated: bool,
 }

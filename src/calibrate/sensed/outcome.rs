@@ -198,7 +198,7 @@ fn searched(problem: &mut Problem, asked: &Asked, rattle: &mut f64) -> Result<Fo
             found.rest = search.rest(&found.best);
         }
     }
-    Ok(found)
+    asked.search(problem).remembered(found)
 }
 
 /// What does not last, beside the declared model, or, where nothing of it shows there, beside what was found.
@@ -249,7 +249,7 @@ impl Predicting {
     fn of(problem: &mut Problem, effects: &[Setting], deviations: &[f64]) -> Result<Self, Stopped> {
         let replicas = if problem.replicas > 1 { PREDICTING } else { 1 };
         let starts = problem.starts(effects)?;
-        let calibrated = problem.simulated_about(effects, deviations, &starts, replicas)?;
+        let calibrated = problem.simulated_about(effects, deviations, &starts, 0..replicas)?;
         let acting = std::mem::take(&mut problem.rig.effects);
         let declared = match effects.is_empty() && acting.is_empty() {
             true => calibrated.clone(),

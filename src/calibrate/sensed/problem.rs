@@ -46,6 +46,18 @@ pub struct Start {
     still: Option<Mechanism>,
 }
 
+impl Start {
+    /// Whether drives hold the whole machine there.
+    pub fn is_held(&self) -> bool {
+        self.coordinates().is_empty()
+    }
+
+    /// Where it was let go, in m or rad: the coordinates that drives leave free.
+    pub fn coordinates(&self) -> &[f64] {
+        &self.released.coordinates
+    }
+}
+
 /// A stretch of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Segment {
@@ -203,7 +215,7 @@ impl Problem {
         index: usize,
         replica: u64,
     ) -> Result<Mechanism, Stopped> {
-        if start.released.coordinates.is_empty() {
+        if start.is_held() {
             return Ok(self.released(drawn, index)?.machine);
         }
         let coordinates = start.released.drawn(replica);
@@ -220,11 +232,11 @@ impl Problem {
         starts: &[Start],
         replicas: usize,
     ) -> Result<Vec<Vec<Recording>>, Stopped> {
-        self.simulated_about(&[], &[], starts, replicas)
+        self.simulated_about(&[], &[], starts, 0..replicas)
     }
 
-    /// The same of a model with these effects: the first replica with exactly these values, the others with values
-    /// as far away as `deviations` say that nobody knows them (none: all exactly), as they are let go.
+    /// The same of a model with these effects, these of its replicas: the first one with exactly these values, the others
+    /// with values as far away as `deviations` say that nobody knows them (none: all exactly), as they are let go.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -233,12 +245,13 @@ impl Problem {
         effects: &[Setting],
         deviations: &[f64],
         starts: &[Start],
-        replicas: usize,
+        replicas: Range<usize>,
     ) -> Result<Vec<Vec<Recording>>, Stopped> {
+        let numbers = || replicas.clone().map(|replica| replica as u64);
         let about: Vec<Option<Vec<Setting>>> =
-            (0..replicas as u64).map(|replica| drawn(effects, deviations, replica)).collect();
+            numbers().map(|replica| drawn(effects, deviations, replica)).collect();
         let jobs: Vec<(usize, u64)> = (0..starts.len())
-            .flat_map(|run| (0..replicas as u64).map(move |replica| (run, replica)))
+            .flat_map(|run| numbers().map(move |replica| (run, replica)))
             .collect();
         self.simulations.fetch_add(jobs.len(), Ordering::Relaxed);
         let recorded = jobs
@@ -250,7 +263,7 @@ impl Problem {
                 let start = &starts[run];
                 // Where joints rattle a hair at the start is another run soon, and what nobody knows of it no hair.
                 let open = self.replicas > 1 && replica > 0 && start.released.is_fitted();
-                Ok(match &about[replica as usize] {
+                Ok(match &about[replica as usize - replicas.start] {
                     Some(drawn) => record(&self.let_go_like(start, drawn, run, replica)?)?,
                     None if open => {
                         record(&self.let_go_like(start, &start.effects, run, replica)?)?
@@ -259,7 +272,7 @@ impl Problem {
                 })
             })
             .collect::<Result<Vec<Recording>, Stopped>>()?;
-        Ok(recorded.chunks(replicas).map(<[Recording]>::to_vec).collect())
+        Ok(recorded.chunks(replicas.len()).map(<[Recording]>::to_vec).collect())
     }
 
     /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it.
@@ -278,6 +291,26 @@ impl Problem {
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
         self.simulations.fetch_add(1, Ordering::Relaxed);
         Ok(simulate::record(&machine, self.control, &recording.first(seconds), 0)?)
+    }
+
+    /// A noiseless recording of run `index` of a model with these effects, let go at these coordinates (m or rad) where its
+    /// drives leave it free.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn from(
+        &self,
+        effects: &[Setting],
+        index: usize,
+        coordinates: &[f64],
+    ) -> Result<Recording, Stopped> {
+        let recording = &self.runs[index].recording;
+        let machine = match coordinates.is_empty() {
+            true => self.released(effects, index)?.machine,
+            false => let_go_at(&self.rig, effects, recording, coordinates, self.control)?,
+        };
+        self.simulations.fetch_add(1, Ordering::Relaxed);
+        Ok(simulate::record(&machine, self.control, recording, 0)?)
     }
 
     /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held

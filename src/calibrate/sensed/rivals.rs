@@ -6,6 +6,7 @@
 //! apart than chance are as good as each other.
 
 use super::hypotheses::{Round, price};
+use super::linear::Columns;
 use super::problem::Stopped;
 use super::search::{Search, names};
 use super::settle::Model;
@@ -38,6 +39,13 @@ impl Rest {
 /// Steps of Gauss and Newton from values that fit one run to those that fit the others, at most.
 const STEPS: usize = 6;
 
+/// Of effects that explain recordings alike the one that is named, by its place: an instrument's error before one of the
+/// machine, the earlier before the later.
+pub(super) fn preferred(alike: &[Setting]) -> Option<usize> {
+    let instrument = alike.iter().position(|effect| effect.kind.is_instrument());
+    instrument.or((!alike.is_empty()).then_some(0))
+}
+
 impl Search<'_> {
     /// The model, or one with rivals in place of its effects that explains all runs better; `rounds` hear what is as
     /// good as each effect.
@@ -68,7 +76,15 @@ impl Search<'_> {
             let enough = self.whole(&all[0].1) + TWINS[usize::from(best.baseline.rattles)];
             let near = all.iter().skip(1).filter(|(_, model)| self.whole(model) < enough);
             let near: Vec<Setting> = near.map(|(effect, _)| effect.clone()).collect();
-            let (won, model) = all.swap_remove(0);
+            // What is as good by chance alone is no reason to blame the machine.
+            let least = self.whole(&all[0].1) + TWINS[0];
+            let twins = all.iter().take_while(|(_, model)| self.whole(model) < least);
+            let twins: Vec<Setting> = twins.map(|(effect, _)| effect.clone()).collect();
+            let won = preferred(&twins).unwrap_or(0);
+            let first = (won > 0).then(|| all[0].0.clone());
+            let near: Vec<Setting> =
+                near.into_iter().filter(|effect| !effect.is(&all[won].0)).chain(first).collect();
+            let (won, model) = all.swap_remove(won);
             let round = rounds
                 .iter_mut()
                 .find(|round| round.added.as_ref().is_some_and(|added| added.is(&own)));
@@ -117,13 +133,27 @@ impl Search<'_> {
     pub(super) fn rest(&self, model: &Model) -> Option<Rest> {
         let values: usize = model.fit.effects.iter().map(|effect| effect.values().count()).sum();
         let enough = |values: usize| price(model) + 2.0 * GAIN_PER_VALUE * values as f64;
-        let refitted = self.target(&model.baseline, true).fit(&model.fit.effects, STEPS);
-        let drop = refitted.map_or(0.0, |refitted| model.held - refitted.chi2);
-        if drop > enough(values) {
+        let hold = self.target(&model.baseline, true);
+        let refitted = hold.fit(&model.fit.effects, STEPS);
+        let shrunk = |effects: &[Setting]| {
+            model.baseline.shrunk(self.problem, effects, &self.split.hold).unwrap_or(0.0)
+        };
+        let drop = refitted
+            .as_ref()
+            .map_or(0.0, |refitted| model.held - refitted.chi2 - shrunk(&refitted.effects));
+        let chance = || {
+            let on = model.fit.jacobian.clone()?;
+            let columns = Columns { on, hold: hold.jacobian(refitted.as_ref()?)?, known: 0 };
+            columns.refitted(&self.draws(model))
+        };
+        if drop > enough(values) && chance().is_none_or(|chance| drop > chance) {
             return Some(Rest::Values(drop));
         }
         let all = self.screened(model).into_iter();
-        let mut certain = all.filter(|tried| tried.gain > enough(tried.effect.values().count()));
+        let mut certain = all.filter(|tried| {
+            let enough = enough(tried.effect.values().count()).max(tried.chance);
+            tried.fitted && tried.gain > enough
+        });
         certain.next().map(|tried| Rest::Effect(tried.effect, tried.gain))
     }
 
@@ -131,8 +161,7 @@ impl Search<'_> {
     fn whole(&self, model: &Model) -> f64 {
         let values: usize = model.fit.effects.iter().map(|effect| effect.values().count()).sum();
         let on = &self.split.on;
-        let own = if model.baseline.rattles { model.baseline.log_determinant(on) } else { 0.0 };
-        let noise = own + model.baseline.lost(on);
+        let noise = self.noisiness(&model.baseline, on) + model.baseline.lost(on);
         model.cost() + model.fit.chi2 + noise + GAIN_PER_VALUE * values as f64
     }
 }

@@ -3,9 +3,10 @@
 use super::candidates::starts;
 use super::fit::Target;
 use super::hypotheses::Tried;
+use super::linear::{Columns, Step};
 use super::search::Search;
 use super::settle::Model;
-use super::thresholds::{AS_MUCH, CLOSER, GAIN_PER_VALUE};
+use super::thresholds::{AS_MUCH, CLOSER, GAIN, GAIN_PER_VALUE};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -23,16 +24,20 @@ impl Search<'_> {
             let fit = target.look(&model.fit.effects)?;
             target.jacobian(&fit)
         });
+        let draws = self.draws(model);
         let linear = |candidate: &&Setting| {
-            starts(&on, &model.fit, candidate)
+            let best = starts(&on, &model.fit, candidate)
                 .into_iter()
                 .filter_map(|start| self.linear(&on, &hold, model, &jacobians, start))
-                .map(|(effect, left)| {
-                    let gain = held.chi2 - left;
-                    let share = (gain / held.chi2).clamp(0.0, 1.0);
-                    Tried { effect, gain, share, simulated: false }
-                })
-                .max_by(|a, b| a.gain.total_cmp(&b.gain))
+                .min_by(|a, b| a.left.total_cmp(&b.left))?;
+            let gain = held.chi2 - best.left;
+            let share = (gain / held.chi2).clamp(0.0, 1.0);
+            let chance = match gain > 0.5 * GAIN[0] {
+                true => best.columns.chance(&best.step, &draws)?,
+                false => 0.0,
+            };
+            let (effect, fitted, simulated) = (best.effect, false, false);
+            Some(Tried { effect, gain, share, fitted, chance, simulated })
         };
         let mut tried: Vec<Tried> =
             fresh.par_iter().filter_map(linear).filter(|tried| tried.gain.is_finite()).collect();
@@ -48,8 +53,16 @@ impl Search<'_> {
                 let fit = on.fit(&start, 8)?;
                 let there = hold.look(&fit.effects)?;
                 let gain = held.chi2 - there.chi2;
+                let shrunk = || model.baseline.shrunk(self.problem, &fit.effects, &self.split.hold);
+                let gain = if gain > 0.0 { gain - shrunk()? } else { gain };
                 let share = (gain / held.chi2).clamp(0.0, 1.0);
-                Some(Tried { effect: fit.effects[own].clone(), gain, share, simulated: false })
+                Some(Tried {
+                    effect: fit.effects[own].clone(),
+                    gain,
+                    share,
+                    fitted: true,
+                    ..(*near).clone()
+                })
             })
             .collect();
         for better in closer {
@@ -66,6 +79,12 @@ impl Search<'_> {
         tried
     }
 
+    /// Draws of a model's noise, on the data that values are fitted on and on those that candidates are judged on.
+    pub(super) fn draws(&self, model: &Model) -> Vec<[DVector<f64>; 2]> {
+        let [on, hold] = [&self.split.on, &self.split.hold].map(|part| model.baseline.draws(part));
+        on.into_iter().zip(hold).map(|(on, hold)| [on, hold]).collect()
+    }
+
     /// A candidate's values by one linear step from where it starts, and what they leave on the data that
     /// candidates are judged on; none where there is no such machine.
     fn linear(
@@ -75,7 +94,7 @@ impl Search<'_> {
         model: &Model,
         jacobians: &[Option<DMatrix<f64>>; 2],
         start: Setting,
-    ) -> Option<(Setting, f64)> {
+    ) -> Option<Linear> {
         let own: Vec<f64> = start.values().map(|(_, value)| value).collect();
         let free = crate::calibrate::fit::free(std::slice::from_ref(&start));
         let look = |target: &Target, values: &[f64]| {
@@ -95,41 +114,27 @@ impl Search<'_> {
             Some(DMatrix::from_columns(&columns))
         };
         let base = look(on, &own)?;
-        let matrix = columns(on, &base, &jacobians[0])?;
-        let known = matrix.ncols() - own.len();
-        let mut held: Vec<bool> = vec![false; own.len()];
-        // Values that a bound holds stay there, and the others are solved for again.
-        let mut step = DVector::zeros(matrix.ncols());
-        for _ in 0..=own.len() {
-            let moving: Vec<usize> =
-                (0..matrix.ncols()).filter(|&c| c < known || !held[c - known]).collect();
-            let part = matrix.select_columns(&moving);
-            let scales: Vec<f64> =
-                part.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
-            let unit =
-                DMatrix::from_fn(part.nrows(), part.ncols(), |r, c| part[(r, c)] / scales[c]);
-            let mut normal = unit.transpose() * &unit;
-            for k in 0..normal.nrows() {
-                normal[(k, k)] += 1e-9;
-            }
-            let solved = normal.cholesky()?.solve(&-(unit.transpose() * &base));
-            step.fill(0.0);
-            for (k, &c) in moving.iter().enumerate() {
-                step[c] = solved[k] / scales[k];
-            }
-            let leaving = (0..own.len()).find(|&k| {
-                let [low, high] = free[k].bounds;
-                !held[k] && !(low..=high).contains(&(own[k] + step[known + k]))
-            });
-            let Some(k) = leaving else { break };
-            held[k] = true;
-        }
         let base_held = look(hold, &own)?;
-        let matrix = columns(hold, &base_held, &jacobians[1])?;
-        let left = (base_held + matrix * &step).norm_squared();
-        let values: Vec<f64> = own.iter().enumerate().map(|(k, v)| v + step[known + k]).collect();
-        left.is_finite().then(|| (start.with(&values), left))
+        let columns = Columns {
+            on: columns(on, &base, &jacobians[0])?,
+            hold: columns(hold, &base_held, &jacobians[1])?,
+            known: jacobians[0].as_ref().map_or(0, DMatrix::ncols),
+        };
+        let step = columns.step(&base, &own, &free)?;
+        let left = (base_held + &columns.hold * &step.change).norm_squared();
+        let change = step.change.iter().skip(columns.known);
+        let values: Vec<f64> = own.iter().zip(change).map(|(own, change)| own + change).collect();
+        left.is_finite().then(|| Linear { effect: start.with(&values), left, columns, step })
     }
+}
+
+/// A candidate's values by one linear step.
+struct Linear {
+    effect: Setting,
+    /// Σ of squares that they leave on data to judge on.
+    left: f64,
+    columns: Columns,
+    step: Step,
 }
 
 /// Puts the variant with the fewest values that leaves no more than [`AS_MUCH`] times what the best one of its

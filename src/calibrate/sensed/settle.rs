@@ -3,7 +3,7 @@
 use super::baseline::Baseline;
 use super::fit::Fit;
 use super::hypotheses::price;
-use super::problem::Stopped;
+use super::problem::{Segment, Stopped};
 use super::search::{Search, name, names};
 use super::thresholds::GAIN_PER_VALUE;
 use super::trajectory::fitted;
@@ -58,10 +58,7 @@ impl Search<'_> {
             let Some(held) = self.target(&baseline, true).look(&fit.effects) else { break };
             let change = change(&effects, &fit);
             effects.clone_from(&fit.effects);
-            let own = match baseline.rattles {
-                true => baseline.log_determinant(&self.split.hold),
-                false => 0.0,
-            };
+            let own = self.noisiness(&baseline, &self.split.hold);
             let noise = own + baseline.lost(&self.split.hold);
             let (rattles, known) = (baseline.rattles, !deviations.is_empty());
             let model = Model { fit, held: held.chi2, misfit: held.chi2 + noise, baseline };
@@ -79,6 +76,12 @@ impl Search<'_> {
         Ok(settled)
     }
 
+    /// What models pay on segments for their noise, as logarithms of its determinant: where none rattles it is that of the
+    /// sensors, the same for all.
+    pub(super) fn noisiness(&self, baseline: &Baseline, segments: &[Segment]) -> f64 {
+        if self.problem.replicas > 1 { baseline.log_determinant(segments) } else { 0.0 }
+    }
+
     /// The model with values from whole simulations, where joints do not rattle and that is better.
     pub(super) fn refined(&self, model: Model) -> Result<Model, Stopped> {
         if model.baseline.rattles || model.fit.effects.is_empty() {
@@ -92,7 +95,8 @@ impl Search<'_> {
         let Some(mut fit) = on.look(&effects) else { return Ok(model) };
         fit.jacobian = on.jacobian(&fit);
         let Some(held) = self.target(&baseline, true).look(&effects) else { return Ok(model) };
-        let misfit = held.chi2 + baseline.lost(&self.split.hold);
+        let own = self.noisiness(&baseline, &self.split.hold);
+        let misfit = held.chi2 + own + baseline.lost(&self.split.hold);
         let refined = Model { fit, held: held.chi2, misfit, baseline };
         Ok(if refined.misfit < model.misfit { refined } else { model })
     }

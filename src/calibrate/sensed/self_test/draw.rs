@@ -8,7 +8,6 @@ use super::{Case, NOISE, Trial};
 use crate::calibrate::sensed::basis::Basis;
 use crate::calibrate::sensed::candidates::candidates;
 use crate::calibrate::sensed::start::machine;
-use crate::effects::{Kind, Targets};
 use crate::mechanism::Mechanism;
 use crate::model::parts_of;
 use crate::scenario::Problem;
@@ -115,16 +114,12 @@ fn case(dice: &mut Dice) -> Case {
     Case::One
 }
 
-/// Whether an effect is an instrument's.
-pub(super) fn is_instrument(kind: &Kind) -> bool {
-    matches!(kind.targets, Targets::Sensor(_) | Targets::Tracker)
-}
-
 /// The kinds of effects that a case hides: any that the catalogue has for the machine, each as likely.
 fn kinds(case: Case, mechanism: &Mechanism, dice: &mut Dice) -> Vec<String> {
     let instrument = case == Case::Instrument;
     let all = candidates(mechanism, &[]);
-    let fitting = all.iter().map(|effect| effect.kind).filter(|k| is_instrument(k) == instrument);
+    let fitting =
+        all.iter().map(|effect| effect.kind).filter(|kind| kind.is_instrument() == instrument);
     let mut kinds: Vec<&str> = fitting.map(|kind| kind.name).collect();
     kinds.dedup();
     if instrument {
