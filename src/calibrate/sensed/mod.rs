@@ -33,7 +33,6 @@ pub mod predict;
 pub(in crate::calibrate) mod prepare;
 pub mod problem;
 pub mod recording;
-mod remembered;
 pub mod report;
 pub mod residual;
 mod rivals;
@@ -48,7 +47,6 @@ pub mod thresholds;
 pub mod trajectory;
 pub mod unnamed;
 mod unseen;
-mod whole;
 pub mod windows;
 
 pub use prepare::prepare;

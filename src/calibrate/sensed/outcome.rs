@@ -198,7 +198,7 @@ fn searched(problem: &mut Problem, asked: &Asked, rattle: &mut f64) -> Result<Fo
             found.rest = search.rest(&found.best);
         }
     }
-    asked.search(problem).remembered(found)
+    Ok(found)
 }
 
 /// What does not last, beside the declared model, or, where nothing of it shows there, beside what was found.

@@ -46,18 +46,6 @@ pub struct Start {
     still: Option<Mechanism>,
 }
 
-impl Start {
-    /// Whether drives hold the whole machine there.
-    pub fn is_held(&self) -> bool {
-        self.coordinates().is_empty()
-    }
-
-    /// Where it was let go, in m or rad: the coordinates that drives leave free.
-    pub fn coordinates(&self) -> &[f64] {
-        &self.released.coordinates
-    }
-}
-
 /// A stretch of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Segment {
@@ -215,7 +203,7 @@ impl Problem {
         index: usize,
         replica: u64,
     ) -> Result<Mechanism, Stopped> {
-        if start.is_held() {
+        if start.released.coordinates.is_empty() {
             return Ok(self.released(drawn, index)?.machine);
         }
         let coordinates = start.released.drawn(replica);
@@ -291,26 +279,6 @@ impl Problem {
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
         self.simulations.fetch_add(1, Ordering::Relaxed);
         Ok(simulate::record(&machine, self.control, &recording.first(seconds), 0)?)
-    }
-
-    /// A noiseless recording of run `index` of a model with these effects, let go at these coordinates (m or rad) where its
-    /// drives leave it free.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn from(
-        &self,
-        effects: &[Setting],
-        index: usize,
-        coordinates: &[f64],
-    ) -> Result<Recording, Stopped> {
-        let recording = &self.runs[index].recording;
-        let machine = match coordinates.is_empty() {
-            true => self.released(effects, index)?.machine,
-            false => let_go_at(&self.rig, effects, recording, coordinates, self.control)?,
-        };
-        self.simulations.fetch_add(1, Ordering::Relaxed);
-        Ok(simulate::record(&machine, self.control, recording, 0)?)
     }
 
     /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held
