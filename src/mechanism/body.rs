@@ -72,7 +72,8 @@ impl BodyState {
 
 /// The rotation by `angle` rad. Steps turn bodies by far less than 0.01 rad, where seven terms of
 /// the series are exact to the last digit and cost a fifth of a sine and a cosine.
-fn turn(angle: f64) -> UnitComplex<f64> {
+#[inline]
+pub fn turn(angle: f64) -> UnitComplex<f64> {
     if angle.abs() > 0.01 {
         return UnitComplex::new(angle);
     }
