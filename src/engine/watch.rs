@@ -93,11 +93,10 @@ impl Watch {
             *seen = end && contact.normal_force > 0.0;
         }
         for (at, forces) in stepper.looks().into_iter().flat_map(|looks| looks.within(self.t, t)) {
+            let new = at > self.row;
             for ((tally, seen), force) in self.tallies.iter_mut().zip(&mut self.seen).zip(forces) {
                 *seen |= *force > 0.0;
-                if at > self.row {
-                    tally.peak = tally.peak.max(*force);
-                }
+                tally.peak = if new { tally.peak.max(*force) } else { tally.peak };
             }
         }
         for ((tally, contact), seen) in self.tallies.iter_mut().zip(contacts).zip(&self.seen) {

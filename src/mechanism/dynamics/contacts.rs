@@ -43,6 +43,7 @@ impl Dynamics {
 }
 
 /// Describes revolute joint `i`, and adds what its contact does; `memory` is what it remembers.
+#[inline]
 pub(super) fn touch(
     i: usize,
     memory: Option<After>,
