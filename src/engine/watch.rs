@@ -96,7 +96,9 @@ impl Watch {
             let new = at > self.row;
             for ((tally, seen), force) in self.tallies.iter_mut().zip(&mut self.seen).zip(forces) {
                 *seen |= *force > 0.0;
-                tally.peak = if new { tally.peak.max(*force) } else { tally.peak };
+                if new && *force > tally.peak {
+                    tally.peak = *force;
+                }
             }
         }
         for ((tally, contact), seen) in self.tallies.iter_mut().zip(contacts).zip(&self.seen) {

@@ -52,6 +52,7 @@ impl Path {
     }
 
     /// Keeps what acts at a stage.
+    #[inline]
     pub fn keep(&mut self, stage: usize, node: &Node) {
         let row = self.row.as_flattened_mut().as_chunks_mut().0.iter_mut();
         for (a, now) in row.zip(&node.evaluation.accelerations) {
@@ -68,7 +69,7 @@ impl Path {
     pub fn go<const I: usize>(&mut self, h: f64, start: &[BodyState], states: &mut [BodyState]) {
         let lanes = self.ways.iter_mut().zip(&mut self.row);
         for ((way, rate), (start, a)) in lanes.zip(self.starts.iter().zip(&self.accelerations)) {
-            (*way, *rate) = stage::<I>(h, start, a);
+            stage::<I>(h, start, a, way, rate);
         }
         let bodies = start.iter().zip(states);
         // Bodies that slide on each other turn alike.

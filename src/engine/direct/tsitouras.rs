@@ -88,10 +88,17 @@ pub type Lanes = [f64; 4];
 /// Accelerations of some coordinates (m/s² or rad/s²) at each stage.
 pub type Accelerations = [Lanes; STAGES];
 
-/// How far some coordinates have come at stage `I` of a step of `h` s, and their rates there, from their rates at the
-/// step's start and their accelerations at the stages before.
-#[inline(always)]
-pub fn stage<const I: usize>(h: f64, start: &Lanes, a: &Accelerations) -> (Lanes, Lanes) {
+/// Puts `way` to how far some coordinates have come at stage `I` of a step of `h` s, and `rate` to their rates there,
+/// from their rates at the step's start and their accelerations at the stages before.
+// Inlined, it is taken for a loop over rows of lanes, not over the lanes of a row.
+#[inline(never)]
+pub fn stage<const I: usize>(
+    h: f64,
+    start: &Lanes,
+    a: &Accelerations,
+    way: &mut Lanes,
+    rate: &mut Lanes,
+) {
     let (mut once, mut twice) = ([0.0; 4], [0.0; 4]);
     // The bound is a constant: unrolled, and nothing is left of coefficients that are zero.
     for j in 0..I {
@@ -105,8 +112,10 @@ pub fn stage<const I: usize>(h: f64, start: &Lanes, a: &Accelerations) -> (Lanes
         }
     }
     let (along, square) = (C[I] * h, h * h);
-    let way = std::array::from_fn(|lane| start[lane] * along + twice[lane] * square);
-    (way, std::array::from_fn(|lane| start[lane] + once[lane] * h))
+    for lane in 0..4 {
+        way[lane] = start[lane] * along + twice[lane] * square;
+        rate[lane] = start[lane] + once[lane] * h;
+    }
 }
 
 /// Estimated errors of the rates of some coordinates at the end of a step of `h` s.
@@ -133,7 +142,8 @@ mod tests {
         k[0][0] = a(0.0, start[0]);
         macro_rules! at {
             ($i:literal) => {{
-                let (way, rate) = stage::<$i>(h, &[start[1], 0.0, 0.0, 0.0], &k);
+                let (mut way, mut rate) = ([0.0; 4], [0.0; 4]);
+                stage::<$i>(h, &[start[1], 0.0, 0.0, 0.0], &k, &mut way, &mut rate);
                 k[$i][0] = a(C[$i] * h, start[0] + way[0]);
                 [start[0] + way[0], rate[0]]
             }};

@@ -10,7 +10,7 @@ mod groups;
 mod pairs;
 mod projection;
 
-use self::contacts::{reached, touch, touches};
+use self::contacts::{Touched, reached, touch, touches};
 use self::groups::Group;
 use self::pairs::{Pair, PlainServo};
 use super::constraints::{Constraints, Rigid, groups};
@@ -177,8 +177,10 @@ impl Dynamics {
     ) {
         out.t = t;
         out.wrenches.copy_from_slice(&self.weights);
-        for i in 0..mechanism.revolutes.len() {
-            touch(i, self.memory(i, t), mechanism, states, out);
+        let Evaluation { contacts, reactions, wrenches, .. } = out;
+        let joints = mechanism.revolutes.iter().zip(contacts.iter_mut().zip(reactions));
+        for (i, (joint, (contact, reaction))) in joints.enumerate() {
+            touch(joint, self.memory(i, t), states, Touched { contact, reaction, wrenches });
         }
         self.push(mechanism, t, states, out);
     }
@@ -194,15 +196,16 @@ impl Dynamics {
     ) {
         out.t = t;
         out.wrenches.copy_from_slice(&self.weights);
-        for (i, joint) in mechanism.revolutes.iter().enumerate() {
+        let Evaluation { contacts, reactions, wrenches, .. } = out;
+        let joints = mechanism.revolutes.iter().zip(contacts.iter_mut().zip(reactions));
+        for (i, (joint, (contact, reaction))) in joints.enumerate() {
             let Bearing::Clearance(clearance) = &joint.bearing else { continue };
             let eccentricity = joint.journal.centre(states) - joint.ring.centre(states);
             let flies = eccentricity.norm() - clearance.radial() <= 0.0;
             if flies && joint.out_of_round.is_none() {
-                out.contacts[i] = Contact::default();
-                out.reactions[i] = Vector2::zeros();
+                (*contact, *reaction) = (Contact::default(), Vector2::zeros());
             } else {
-                touch(i, self.memory(i, t), mechanism, states, out);
+                touch(joint, self.memory(i, t), states, Touched { contact, reaction, wrenches });
             }
         }
         self.push(mechanism, t, states, out);
