@@ -45,7 +45,9 @@ impl Path {
     /// Starts at an instant.
     pub fn begin(&mut self, start: &Node) {
         let twists = start.states.iter().map(|state| &state.twist);
-        for (rates, twist) in self.starts.as_flattened_mut().as_chunks_mut().0.iter_mut().zip(twists) {
+        for (rates, twist) in
+            self.starts.as_flattened_mut().as_chunks_mut().0.iter_mut().zip(twists)
+        {
             *rates = [twist.x, twist.y, twist.z];
         }
         self.keep(0, start);

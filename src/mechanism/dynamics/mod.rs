@@ -32,6 +32,8 @@ pub struct Dynamics {
     telescopes: Vec<Pair>,
     /// The other rigid joints, group by group.
     groups: Vec<Group>,
+    /// Bodies that none of these holds.
+    unpaired: Vec<usize>,
     /// All drives that push, where each is a plain servo on one of the pairs.
     servos: Option<Vec<PlainServo>>,
     /// Whether a group was nearly singular since that was last forgotten.
@@ -114,6 +116,9 @@ impl Dynamics {
                 .filter(|&i| passive[i] && telescopes.iter().all(|pair| pair.joint != i))
                 .collect(),
             servos: PlainServo::all(mechanism, &telescopes),
+            unpaired: (0..bodies.len())
+                .filter(|body| telescopes.iter().all(|pair| !pair.bodies.contains(body)))
+                .collect(),
             telescopes,
             groups: others,
             singular: false,
@@ -267,9 +272,8 @@ impl Dynamics {
         states: &[BodyState],
         out: &mut Evaluation,
     ) {
-        for ((a, w), m) in out.accelerations.iter_mut().zip(&out.wrenches).zip(&self.inverse_masses)
-        {
-            *a = w.component_mul(m);
+        for &i in &self.unpaired {
+            out.accelerations[i] = out.wrenches[i].component_mul(&self.inverse_masses[i]);
         }
         for &i in &self.passive {
             self.prismatics[i] = Telescope::on(&self.ways[i], states);

@@ -70,7 +70,8 @@ impl PlainServo {
                 return None;
             };
             let rigid = actuator.reading_errors.is_empty() && actuator.transmission.is_none();
-            let Pair { bodies, way, .. } = *pairs.iter().find(|pair| rigid && pair.joint == joint)?;
+            let Pair { bodies, way, .. } =
+                *pairs.iter().find(|pair| rigid && pair.joint == joint)?;
             Some(Self { drive, joint, bodies, gains: [stiffness, damping], way })
         });
         plain.collect()

@@ -54,7 +54,7 @@ fn telescope_and_rows_agree() {
         let mut general = closed.clone();
         assert_eq!(general.telescopes.len(), 1);
         general.telescopes.clear();
-        general.passive = vec![0];
+        (general.passive, general.unpaired) = (vec![0], vec![0, 1]);
         general.groups.push(Group::new(vec![Rigid::Prismatic(0)]));
         let [a, b] = [&mut closed, &mut general].map(|dynamics| {
             let mut now = Evaluation::new(&mechanism);
