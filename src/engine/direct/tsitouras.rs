@@ -102,20 +102,18 @@ pub fn stage<const I: usize>(
     let (mut once, mut twice) = ([0.0; 4], [0.0; 4]);
     // The bound is a constant: unrolled, and nothing is left of coefficients that are zero.
     for j in 0..I {
-        for lane in 0..4 {
-            once[lane] += a[j][lane] * A[I][j];
+        for (once, a) in once.iter_mut().zip(&a[j]) {
+            *once += a * A[I][j];
         }
         if A_SQUARED[I][j] != 0.0 {
-            for lane in 0..4 {
-                twice[lane] += a[j][lane] * A_SQUARED[I][j];
+            for (twice, a) in twice.iter_mut().zip(&a[j]) {
+                *twice += a * A_SQUARED[I][j];
             }
         }
     }
     let (along, square) = (C[I] * h, h * h);
-    for lane in 0..4 {
-        way[lane] = start[lane] * along + twice[lane] * square;
-        rate[lane] = start[lane] + once[lane] * h;
-    }
+    *way = std::array::from_fn(|lane| start[lane] * along + twice[lane] * square);
+    *rate = std::array::from_fn(|lane| start[lane] + once[lane] * h);
 }
 
 /// Estimated errors of the rates of some coordinates at the end of a step of `h` s.
