@@ -30,6 +30,7 @@ pub struct Clearance {
 
 impl Clearance {
     /// Radial clearance c in m: how far the journal's centre can move before it touches.
+    #[inline]
     pub fn radial(&self) -> f64 {
         self.bearing_radius - self.journal_radius
     }
@@ -68,6 +69,7 @@ pub struct Contact {
 ///
 /// With centred circles every direction is as good as any other; +x is returned. Both the force
 /// law and the collision shape of the engine rest on this one function.
+#[inline]
 pub fn circle_in_ring(eccentricity: Vector2<f64>, clearance: f64) -> (f64, Vector2<f64>) {
     let distance = eccentricity.norm();
     let normal = if distance > 0.0 { eccentricity / distance } else { Vector2::x() };
@@ -84,6 +86,7 @@ impl Clearance {
     ///
     /// Of a law that remembers, the force of a hit that begins now; [`forces_after`](Self::forces_after) has
     /// its memory.
+    #[inline]
     pub fn forces(&self, bearing: &Frame, journal: &Frame) -> (Contact, Option<[Vector3<f64>; 2]>) {
         self.forces_by(
             None,

@@ -16,6 +16,7 @@ impl Looks {
     }
 
     /// The `k`-th look, at `t` (s).
+    #[inline]
     pub fn set(&mut self, k: usize, t: f64, contacts: &[Contact]) {
         let (at, forces) = &mut self.looks[k];
         *at = t;

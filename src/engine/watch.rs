@@ -44,6 +44,8 @@ pub(super) struct Watch {
     /// Time in s until which account is kept, contacts then, and the time of the last row.
     pub t: f64,
     before: Vec<Contact>,
+    /// Which joints were seen touching since then.
+    seen: Vec<bool>,
     row: f64,
     /// Where journals rub, if somebody wants to know.
     rubbing: Option<Rubbing>,
@@ -59,6 +61,7 @@ impl Watch {
             rotations: mechanism.bodies.iter().map(|body| body.start.rotation).collect(),
             t: 0.0,
             before: vec![Contact::default(); joints],
+            seen: vec![false; joints],
             row: f64::NEG_INFINITY,
             rubbing,
         }
@@ -86,25 +89,26 @@ impl Watch {
         }
         let contacts = &stepper.evaluation().contacts;
         self.take_work(t, contacts, stepper);
-        let row = self.row;
-        for (j, (tally, contact)) in self.tallies.iter_mut().zip(contacts).enumerate() {
-            let touching = contact.normal_force > 0.0;
-            let mut seen = end && touching;
-            tally.peak = tally.peak.max(contact.normal_force);
-            for (at, forces) in
-                stepper.looks().into_iter().flat_map(|looks| looks.within(self.t, t))
-            {
-                seen |= forces[j] > 0.0;
-                if at > row {
-                    tally.peak = tally.peak.max(forces[j]);
+        for (seen, contact) in self.seen.iter_mut().zip(contacts) {
+            *seen = end && contact.normal_force > 0.0;
+        }
+        for (at, forces) in stepper.looks().into_iter().flat_map(|looks| looks.within(self.t, t)) {
+            let new = at > self.row;
+            for ((tally, seen), force) in self.tallies.iter_mut().zip(&mut self.seen).zip(forces) {
+                *seen |= *force > 0.0;
+                if new && *force > tally.peak {
+                    tally.peak = *force;
                 }
             }
+        }
+        for ((tally, contact), seen) in self.tallies.iter_mut().zip(contacts).zip(&self.seen) {
+            tally.peak = tally.peak.max(contact.normal_force);
             if tally.touching {
                 tally.contact_time += t - self.t;
             } else {
-                tally.impacts += u64::from(seen);
+                tally.impacts += u64::from(*seen);
             }
-            tally.touching = touching;
+            tally.touching = contact.normal_force > 0.0;
         }
         self.take_drives(mechanism, stepper);
         // An arc tangent a step is dear; whole turns are counted as well every quarter of a turn.

@@ -58,6 +58,7 @@ impl BodyState {
 
     /// Position, arm and velocity of a point given in the body's own axes (m, from its centre of
     /// mass).
+    #[inline]
     pub fn frame(&self, local: Vector2<f64>) -> Frame {
         let arm = self.rotation * local;
         let spin = self.twist.z;
@@ -72,7 +73,8 @@ impl BodyState {
 
 /// The rotation by `angle` rad. Steps turn bodies by far less than 0.01 rad, where seven terms of
 /// the series are exact to the last digit and cost a fifth of a sine and a cosine.
-fn turn(angle: f64) -> UnitComplex<f64> {
+#[inline]
+pub fn turn(angle: f64) -> UnitComplex<f64> {
     if angle.abs() > 0.01 {
         return UnitComplex::new(angle);
     }
@@ -129,11 +131,13 @@ impl Attachment {
     }
 
     /// Where the point is, given the states of all bodies.
+    #[inline]
     pub fn centre(&self, states: &[BodyState]) -> Vector2<f64> {
         self.body.map_or(self.point, |i| states[i].position + states[i].rotation * self.point)
     }
 
     /// Where the point is and how it moves, given the states of all bodies.
+    #[inline]
     pub fn frame(&self, states: &[BodyState]) -> Frame {
         match self.body {
             Some(i) => states[i].frame(self.point),

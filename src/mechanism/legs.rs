@@ -29,6 +29,8 @@ pub struct TelescopicLegs {
     centre: Vector2<f64>,
     bodies: usize,
     motion: Arc<dyn Motion>,
+    /// The carried body's rotation, if the motion keeps it.
+    kept: Option<Rotation2<f64>>,
 }
 
 impl TelescopicLegs {
@@ -58,7 +60,8 @@ impl TelescopicLegs {
             && legs.len() == 3
             && mechanism.prismatics.len() == 3
             && mechanism.revolutes.len() == 6;
-        whole.then_some(Self { legs, carried, centre: -origin, bodies, motion })
+        let kept = motion.kept_angle().map(Rotation2::new);
+        whole.then_some(Self { legs, carried, centre: -origin, bodies, motion, kept })
     }
 
     /// States of all bodies at one point of the motion, joints closed. With u the leg's direction and
@@ -127,7 +130,7 @@ impl Leg {
 impl Commands for TelescopicLegs {
     fn at(&self, t: f64, commands: &mut [Command]) {
         let point = self.motion.at(t);
-        let rotation = Rotation2::new(point.pose.z);
+        let rotation = self.kept.unwrap_or_else(|| Rotation2::new(point.pose.z));
         for (command, leg) in commands.iter_mut().zip(&self.legs) {
             *command = leg.command(rotation, &point);
         }

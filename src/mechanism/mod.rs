@@ -38,7 +38,7 @@ mod transmission;
 
 pub use actuator::{Actuator, Command, Commands, Drive, Idle};
 pub use assembly::OpenJoint;
-pub use body::{Attachment, Body, BodyState};
+pub use body::{Attachment, Body, BodyState, turn};
 pub use cascade::{Cascade, Held};
 pub use closing::ClosingLength;
 pub use dynamics::Dynamics;

@@ -98,19 +98,20 @@ impl Telescope {
         Self::on(&Slideway::new(joint), states)
     }
 
-    #[inline]
     pub fn on(way: &Slideway, states: &[BodyState]) -> Self {
-        let place = |body: Option<usize>| {
-            body.map_or((Vector2::zeros(), Vector2::zeros()), |i| {
-                (states[i].position, states[i].twist.xy())
-            })
-        };
-        let [base, slider] = way.bodies;
-        let (axis, spin) =
-            base.map_or((way.axis, 0.0), |i| (states[i].rotation * way.axis, states[i].twist.z));
+        let ground = BodyState::ground();
+        let [base, slider] = way.bodies.map(|body| body.map_or(&ground, |i| &states[i]));
+        Self::between(way, base, slider)
+    }
+
+    /// The same from the states of base and slider.
+    #[inline(always)]
+    pub fn between(way: &Slideway, base: &BodyState, slider: &BodyState) -> Self {
+        let axis = base.rotation * way.axis;
+        let spin = base.twist.z;
         let (u, n) = (Vector2::new(axis.re, axis.im), Vector2::new(-axis.im, axis.re));
-        let (from, to) = (place(base), place(slider));
-        let (d, rate) = (to.0 - from.0, to.1 - from.1);
+        let d = slider.position - base.position;
+        let rate = slider.twist.xy() - base.twist.xy();
         let offset = [d.dot(&u), d.dot(&n)];
         let [base, slider] = way.points;
         Self {
@@ -125,6 +126,7 @@ impl Telescope {
     }
 
     /// Wrenches on base and slider of a drive force (N, positive when it extends).
+    #[inline(always)]
     pub fn drive(&self, force: f64) -> [Vector3<f64>; 2] {
         let f = self.u * force;
         [Vector3::new(-f.x, -f.y, self.offset[1] * force), Vector3::new(f.x, f.y, 0.0)]
@@ -141,6 +143,7 @@ impl Telescope {
     /// `α (I₁ + I₂ + μ(L² + w²)) = τ₁ + τ₂ − μ d × (b₀ − f₂/m₂ + f₁/m₁)`, b₀ = b at α = 0;
     ///
     /// free along the axis, R has no part along u, and L² stands for L² + w².
+    #[inline(always)]
     pub fn accelerations(
         &self,
         masses: &PairMasses,

@@ -4,6 +4,7 @@
 //! * `tsitouras.rs`: the pair, and the path between a step's ends.
 //! * `onset.rs`: steps end shortly after a contact begins, and before it where that is far: the force is not
 //!   smooth there.
+//! * `path.rs`: the way from a step's start to its end, coordinates in a row.
 //! * `node.rs`: an instant, and what has been going on until then.
 //!
 //! Rigid joints are met in their accelerations (Gauss' principle) and, after each step, in places and velocities
@@ -12,17 +13,18 @@
 
 mod node;
 mod onset;
+mod path;
 mod tsitouras;
 
 use self::node::Node;
 use self::onset::next_onset;
-use self::tsitouras::{Accelerations, C, STAGES, WEIGHTS, error, stage};
+use self::path::Path;
+use self::tsitouras::{C, STAGES, WEIGHTS};
 use super::adaptive::share;
 use super::energy::Exchange;
 use super::looks::Looks;
 use super::stepper::Stepper;
 use crate::mechanism::{Body, BodyState, Dynamics, Evaluation, Mechanism, Situation};
-use nalgebra::Vector3;
 
 /// First step in s, before anything is known of the error.
 const FIRST_STEP: f64 = 1e-5;
@@ -87,16 +89,6 @@ pub(super) struct Direct {
     work: Vec<f64>,
 }
 
-/// The way from a step's start to its end.
-struct Path {
-    /// How far each body has come (m, m, rad).
-    shifts: Vec<Vector3<f64>>,
-    /// Accelerations of each body at each stage.
-    accelerations: Vec<Accelerations>,
-    /// Normal forces at each stage.
-    looks: Looks,
-}
-
 /// Velocity error in m/s that a step of the pair may make for a run to be as good as one of the physics engine
 /// at this `tolerance` (m/s), on the whole.
 ///
@@ -113,17 +105,12 @@ impl Direct {
     /// are tight; `balanced` ones keep what a balance of energy needs.
     pub fn new(mechanism: &Mechanism, tolerance: f64, balanced: bool) -> Self {
         let joints = mechanism.revolutes.len();
-        let zeros = vec![Vector3::zeros(); mechanism.bodies.len()];
         let node = Node::new(mechanism, balanced);
         Self {
             tolerance: step_tolerance(tolerance) * share(mechanism),
             dynamics: Dynamics::new(mechanism),
             radii: mechanism.bodies.iter().map(|b: &Body| (b.inertia / b.mass).sqrt()).collect(),
-            path: Path {
-                shifts: zeros.clone(),
-                accelerations: vec![[Vector3::zeros(); STAGES]; zeros.len()],
-                looks: Looks::new(STAGES, joints),
-            },
+            path: Path::new(mechanism.bodies.len(), joints),
             work: vec![0.0; if balanced { 2 * joints } else { joints }],
             start: node.clone(),
             inside: node.clone(),
@@ -175,7 +162,7 @@ impl Direct {
     fn step(&mut self, mechanism: &Mechanism, until: f64) {
         self.dynamics.remember(mechanism, self.end.t, &self.end.states);
         std::mem::swap(&mut self.start, &mut self.end);
-        self.path.keep(0, &self.start);
+        self.path.begin(&self.start);
         self.forced = false;
         let [mut h, after_onset] = self.bounds(mechanism);
         loop {
@@ -191,7 +178,7 @@ impl Direct {
             self.dynamics.forget_singular();
             self.go(mechanism, h);
             self.end.t = reached;
-            self.step_error = self.error(h);
+            self.step_error = self.path.error(h, &self.radii);
             let ratio = self.step_error / self.tolerance;
             // Shorter steps do not help against the errors of a nearly singular pose.
             self.forced = self.dynamics.was_singular() && h <= SINGULAR_STEP && ratio > 1.0;
@@ -224,21 +211,15 @@ impl Direct {
     }
 
     fn stage<const I: usize>(&mut self, mechanism: &Mechanism, h: f64) {
-        let Path { shifts, accelerations, .. } = &mut self.path;
         let end = &mut self.end;
         end.t = self.start.t + C[I] * h;
-        let bodies = self.start.states.iter().zip(&mut end.states);
-        for ((from, state), (shift, a)) in bodies.zip(shifts.iter_mut().zip(accelerations)) {
-            let (by, twist) = stage::<I>(h, from.twist, a);
-            *state = BodyState { twist, ..from.displaced(by) };
-            *shift = by;
-        }
+        self.path.go::<I>(h, &self.start.states, &mut end.states);
         if I + 1 == STAGES {
             for state in &mut end.states {
                 state.rotation.renormalize_fast();
             }
             let Node { t, states, evaluation, .. } = end;
-            self.dynamics.project(mechanism, *t, states, shifts, evaluation);
+            self.dynamics.project(mechanism, *t, states, self.path.arrive(), evaluation);
             end.evaluate(&mut self.dynamics, mechanism);
         } else {
             end.evaluate_on_path(&mut self.dynamics, mechanism);
@@ -249,31 +230,6 @@ impl Direct {
                 *amount += h * WEIGHTS[I] * flow;
             }
         }
-    }
-
-    /// Estimated error of the last step of `h` s in m/s; an angular speed counts with the radius of gyration.
-    fn error(&self, h: f64) -> f64 {
-        let mut worst = 0.0;
-        for (a, radius) in self.path.accelerations.iter().zip(&self.radii) {
-            let error = error(h, a);
-            let turn = error.z * radius;
-            let square = error.x * error.x + error.y * error.y + turn * turn;
-            // What is no number stays.
-            if square.is_nan() || square > worst {
-                worst = square;
-            }
-        }
-        worst.sqrt()
-    }
-}
-
-impl Path {
-    /// Keeps what acts at a stage.
-    fn keep(&mut self, stage: usize, node: &Node) {
-        for (a, now) in self.accelerations.iter_mut().zip(&node.evaluation.accelerations) {
-            a[stage] = *now;
-        }
-        self.looks.set(stage, node.t, &node.evaluation.contacts);
     }
 }
 
@@ -293,7 +249,7 @@ impl Stepper for Direct {
     fn read(&mut self, mechanism: &Mechanism, t: f64) {
         self.is_inside = t < self.end.t;
         if self.is_inside {
-            self.inside.interpolate([&self.start, &self.end], &self.path.shifts, t);
+            self.inside.interpolate([&self.start, &self.end], self.path.shifts(), t);
             self.inside.evaluate(&mut self.dynamics, mechanism);
         }
         let Self { is_inside, inside, end, work, .. } = self;
@@ -318,7 +274,7 @@ impl Stepper for Direct {
     }
 
     fn looks(&self) -> Option<&Looks> {
-        Some(&self.path.looks)
+        Some(self.path.looks())
     }
 
     fn joint_work(&self) -> Option<&[f64]> {

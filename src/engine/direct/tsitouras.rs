@@ -6,8 +6,6 @@
 //!
 //! `v_i = v + h Σ_j A_ij a_j`, `q_i − q = h c_i v + h² Σ_j (A²)_ij a_j`.
 
-use nalgebra::Vector3;
-
 /// Stages, the first one the last of the step before.
 pub const STAGES: usize = 7;
 
@@ -84,36 +82,50 @@ const A_SQUARED: [[f64; STAGES]; STAGES] = {
     square
 };
 
-/// Accelerations of a body (m/s², m/s², rad/s²) at each stage.
-pub type Accelerations = [Vector3<f64>; STAGES];
+/// Numbers that a processor adds at once; which coordinates they belong to does not matter here.
+pub type Lanes = [f64; 4];
 
-/// How far a body has come at stage `I` of a step of `h` s, and its twist there, from its twist at the step's
-/// start and its accelerations at the stages before.
-#[inline]
+/// Accelerations of some coordinates (m/s² or rad/s²) at each stage.
+pub type Accelerations = [Lanes; STAGES];
+
+/// Puts `way` to how far some coordinates have come at stage `I` of a step of `h` s, and `rate` to their rates there,
+/// from their rates at the step's start and their accelerations at the stages before.
+// Inlined, it is taken for a loop over rows of lanes, not over the lanes of a row.
+#[inline(never)]
 pub fn stage<const I: usize>(
     h: f64,
-    start: Vector3<f64>,
+    start: &Lanes,
     a: &Accelerations,
-) -> (Vector3<f64>, Vector3<f64>) {
-    let (mut once, mut twice) = (Vector3::zeros(), Vector3::zeros());
+    way: &mut Lanes,
+    rate: &mut Lanes,
+) {
+    let (mut once, mut twice) = ([0.0; 4], [0.0; 4]);
     // The bound is a constant: unrolled, and nothing is left of coefficients that are zero.
     for j in 0..I {
-        once += a[j] * A[I][j];
+        for (once, a) in once.iter_mut().zip(&a[j]) {
+            *once += a * A[I][j];
+        }
         if A_SQUARED[I][j] != 0.0 {
-            twice += a[j] * A_SQUARED[I][j];
+            for (twice, a) in twice.iter_mut().zip(&a[j]) {
+                *twice += a * A_SQUARED[I][j];
+            }
         }
     }
-    (start * (C[I] * h) + twice * (h * h), start + once * h)
+    let (along, square) = (C[I] * h, h * h);
+    *way = std::array::from_fn(|lane| start[lane] * along + twice[lane] * square);
+    *rate = std::array::from_fn(|lane| start[lane] + once[lane] * h);
 }
 
-/// Estimated error of a body's twist at the end of a step of `h` s.
-#[inline]
-pub fn error(h: f64, a: &Accelerations) -> Vector3<f64> {
-    let mut sum = Vector3::zeros();
-    for (j, weight) in ERROR.iter().enumerate() {
-        sum += a[j] * *weight;
+/// Estimated errors of the rates of some coordinates at the end of a step of `h` s.
+#[inline(always)]
+pub fn error(h: f64, a: &Accelerations) -> Lanes {
+    let mut sum = [0.0; 4];
+    for (a, weight) in a.iter().zip(ERROR) {
+        for (sum, a) in sum.iter_mut().zip(a) {
+            *sum += a * weight;
+        }
     }
-    sum * h
+    sum.map(|sum| sum * h)
 }
 
 #[cfg(test)]
@@ -124,13 +136,14 @@ mod tests {
     /// One step of `q̈ = a(t, q)` from q = 1 and q̇ = 0.3: place and rate at its end, and the estimate of its error.
     fn step(h: f64, a: impl Fn(f64, f64) -> f64) -> [f64; 3] {
         let start = [1.0, 0.3];
-        let mut k = [Vector3::zeros(); STAGES];
-        k[0].x = a(0.0, start[0]);
+        let mut k = [[0.0; 4]; STAGES];
+        k[0][0] = a(0.0, start[0]);
         macro_rules! at {
             ($i:literal) => {{
-                let (shift, rate) = stage::<$i>(h, Vector3::x() * start[1], &k);
-                k[$i].x = a(C[$i] * h, start[0] + shift.x);
-                [start[0] + shift.x, rate.x]
+                let (mut way, mut rate) = ([0.0; 4], [0.0; 4]);
+                stage::<$i>(h, &[start[1], 0.0, 0.0, 0.0], &k, &mut way, &mut rate);
+                k[$i][0] = a(C[$i] * h, start[0] + way[0]);
+                [start[0] + way[0], rate[0]]
             }};
         }
         at!(1);
@@ -139,7 +152,7 @@ mod tests {
         at!(4);
         at!(5);
         let [place, rate] = at!(6);
-        [place, rate, error(h, &k).x]
+        [place, rate, error(h, &k)[0]]
     }
 
     /// On the oscillator `q̈ = −q`, whose solution is known: a step's error falls with h⁶, its estimate

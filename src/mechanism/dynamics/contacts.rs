@@ -2,8 +2,8 @@
 
 use super::{Dynamics, add};
 use crate::contact::{After, Contact, Touch, circle_in_ring};
-use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism, Revolute};
-use nalgebra::Vector2;
+use crate::mechanism::{Bearing, BodyState, Mechanism, Revolute};
+use nalgebra::{Vector2, Vector3};
 
 /// Rate in m/s of a contact that counts as at rest where its damping is looked at: slower than any hit that
 /// matters, far above rounding.
@@ -42,16 +42,17 @@ impl Dynamics {
     }
 }
 
-/// Describes revolute joint `i`, and adds what its contact does; `memory` is what it remembers.
-pub(super) fn touch(
-    i: usize,
-    memory: Option<After>,
-    mechanism: &Mechanism,
-    states: &[BodyState],
-    out: &mut Evaluation,
-) {
-    let joint = &mechanism.revolutes[i];
-    let contact = &mut out.contacts[i];
+/// Where the contact of a joint is described, the force on its journal, and the wrenches that it adds to.
+pub(super) struct Touched<'a> {
+    pub contact: &'a mut Contact,
+    pub reaction: &'a mut Vector2<f64>,
+    pub wrenches: &'a mut [Vector3<f64>],
+}
+
+/// Describes a revolute joint, and adds what its contact does; `memory` is what it remembers.
+#[inline]
+pub(super) fn touch(joint: &Revolute, memory: Option<After>, states: &[BodyState], out: Touched) {
+    let Touched { contact, reaction, wrenches } = out;
     let (ring, journal) = (joint.ring.frame(states), joint.journal.frame(states));
     let Bearing::Clearance(clearance) = &joint.bearing else {
         contact.eccentricity = journal.centre - ring.centre;
@@ -71,11 +72,11 @@ pub(super) fn touch(
         }
     };
     *contact = state;
-    out.reactions[i] = Vector2::zeros();
+    *reaction = Vector2::zeros();
     if let Some([on_bearing, on_journal]) = forces {
-        out.reactions[i] = on_journal.xy();
-        add(&mut out.wrenches, joint.ring.body, on_bearing);
-        add(&mut out.wrenches, joint.journal.body, on_journal);
+        *reaction = on_journal.xy();
+        add(wrenches, joint.ring.body, on_bearing);
+        add(wrenches, joint.journal.body, on_journal);
     }
 }
 

@@ -1,5 +1,6 @@
 //! What drives read, what their controllers hold, and the efforts that follow.
 
+use super::pairs::PlainServo;
 use super::{Dynamics, add};
 use crate::mechanism::telescope::Telescope;
 use crate::mechanism::{BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, angle_near};
@@ -53,6 +54,26 @@ impl Dynamics {
         states: &[BodyState],
         out: &mut Evaluation,
     ) {
+        match &self.servos {
+            None => self.drive_any(mechanism, t, states, out),
+            Some(servos) if servos.is_empty() => {}
+            Some(servos) => {
+                out.command(mechanism);
+                for servo in servos {
+                    self.prismatics[servo.joint] = serve(servo, states, out);
+                }
+            }
+        }
+    }
+
+    /// The same of drives of all kinds.
+    fn drive_any(
+        &mut self,
+        mechanism: &Mechanism,
+        t: f64,
+        states: &[BodyState],
+        out: &mut Evaluation,
+    ) {
         for (i, actuator) in mechanism.actuators.iter().enumerate() {
             if actuator.drive == Drive::Prescribed {
                 continue;
@@ -93,4 +114,20 @@ impl Dynamics {
             }
         }
     }
+}
+
+/// Adds the effort of a plain servo; the state of its joint.
+#[inline(always)]
+fn serve(servo: &PlainServo, states: &[BodyState], out: &mut Evaluation) -> Telescope {
+    let PlainServo { drive, bodies: [base, slider], gains: [stiffness, damping], .. } = *servo;
+    let state = servo.telescope(states);
+    let Command { position, rate, .. } = out.commands[drive];
+    let (error, error_rate) = (position - state.length, rate - state.length_rate);
+    let effort = stiffness * error + damping * error_rate;
+    out.coordinates[drive] = state.length;
+    out.drive_forces[drive] = effort;
+    let [on_base, on_slider] = state.drive(effort);
+    out.wrenches[base] += on_base;
+    out.wrenches[slider] += on_slider;
+    state
 }

@@ -10,9 +10,9 @@ mod groups;
 mod pairs;
 mod projection;
 
-use self::contacts::{reached, touch, touches};
+use self::contacts::{Touched, reached, touch, touches};
 use self::groups::Group;
-use self::pairs::Pair;
+use self::pairs::{Pair, PlainServo};
 use super::constraints::{Constraints, Rigid, groups};
 use super::telescope::{Slideway, Telescope};
 use super::{
@@ -32,6 +32,10 @@ pub struct Dynamics {
     telescopes: Vec<Pair>,
     /// The other rigid joints, group by group.
     groups: Vec<Group>,
+    /// Bodies that none of these holds.
+    unpaired: Vec<usize>,
+    /// All drives that push, where each is a plain servo on one of the pairs.
+    servos: Option<Vec<PlainServo>>,
     /// Whether a group was nearly singular since that was last forgotten.
     singular: bool,
     coupled: bool,
@@ -43,7 +47,7 @@ pub struct Dynamics {
     prismatics: Vec<Telescope>,
     /// The drive that prescribes each prismatic joint's length.
     prescribed: Vec<Option<usize>>,
-    /// Prismatic joints whose state no drive's force asks for.
+    /// Prismatic joints whose state no drive's force asks for, but those of pairs.
     passive: Vec<usize>,
     /// Angle of each driven revolute joint at the last step's end, in rad: whole turns are counted.
     angles: Vec<f64>,
@@ -108,6 +112,13 @@ impl Dynamics {
                 .iter()
                 .map(|b| Vector3::new(b.mass * g.x, b.mass * g.y, 0.0))
                 .collect(),
+            passive: (0..passive.len())
+                .filter(|&i| passive[i] && telescopes.iter().all(|pair| pair.joint != i))
+                .collect(),
+            servos: PlainServo::all(mechanism, &telescopes),
+            unpaired: (0..bodies.len())
+                .filter(|body| telescopes.iter().all(|pair| !pair.bodies.contains(body)))
+                .collect(),
             telescopes,
             groups: others,
             singular: false,
@@ -118,7 +129,6 @@ impl Dynamics {
                 .map(|joint| Telescope::new(joint, &starts))
                 .collect(),
             prescribed,
-            passive: (0..passive.len()).filter(|&i| passive[i]).collect(),
             angles: angles.collect(),
             held: vec![Held::default(); mechanism.actuators.len()],
             memories: mechanism
@@ -172,8 +182,10 @@ impl Dynamics {
     ) {
         out.t = t;
         out.wrenches.copy_from_slice(&self.weights);
-        for i in 0..mechanism.revolutes.len() {
-            touch(i, self.memory(i, t), mechanism, states, out);
+        let Evaluation { contacts, reactions, wrenches, .. } = out;
+        let joints = mechanism.revolutes.iter().zip(contacts.iter_mut().zip(reactions));
+        for (i, (joint, (contact, reaction))) in joints.enumerate() {
+            touch(joint, self.memory(i, t), states, Touched { contact, reaction, wrenches });
         }
         self.push(mechanism, t, states, out);
     }
@@ -189,15 +201,16 @@ impl Dynamics {
     ) {
         out.t = t;
         out.wrenches.copy_from_slice(&self.weights);
-        for (i, joint) in mechanism.revolutes.iter().enumerate() {
+        let Evaluation { contacts, reactions, wrenches, .. } = out;
+        let joints = mechanism.revolutes.iter().zip(contacts.iter_mut().zip(reactions));
+        for (i, (joint, (contact, reaction))) in joints.enumerate() {
             let Bearing::Clearance(clearance) = &joint.bearing else { continue };
             let eccentricity = joint.journal.centre(states) - joint.ring.centre(states);
             let flies = eccentricity.norm() - clearance.radial() <= 0.0;
             if flies && joint.out_of_round.is_none() {
-                out.contacts[i] = Contact::default();
-                out.reactions[i] = Vector2::zeros();
+                (*contact, *reaction) = (Contact::default(), Vector2::zeros());
             } else {
-                touch(i, self.memory(i, t), mechanism, states, out);
+                touch(joint, self.memory(i, t), states, Touched { contact, reaction, wrenches });
             }
         }
         self.push(mechanism, t, states, out);
@@ -259,9 +272,8 @@ impl Dynamics {
         states: &[BodyState],
         out: &mut Evaluation,
     ) {
-        for ((a, w), m) in out.accelerations.iter_mut().zip(&out.wrenches).zip(&self.inverse_masses)
-        {
-            *a = w.component_mul(m);
+        for &i in &self.unpaired {
+            out.accelerations[i] = out.wrenches[i].component_mul(&self.inverse_masses[i]);
         }
         for &i in &self.passive {
             self.prismatics[i] = Telescope::on(&self.ways[i], states);
@@ -269,15 +281,18 @@ impl Dynamics {
         if self.prescribes {
             out.command(mechanism);
         }
-        for Pair { joint, bodies, masses, prescribed } in &self.telescopes {
-            let extension = prescribed.map(|drive| out.commands[drive].acceleration);
-            let wrenches = bodies.map(|b| out.wrenches[b]);
-            let ([a1, a2], force) =
-                self.prismatics[*joint].accelerations(masses, wrenches, extension);
-            out.accelerations[bodies[0]] = a1;
-            out.accelerations[bodies[1]] = a2;
-            if let Some(drive) = prescribed {
-                out.drive_forces[*drive] = force;
+        for pair in &self.telescopes {
+            let state = &mut self.prismatics[pair.joint];
+            if pair.passive {
+                *state = pair.telescope(states);
+            }
+            let extension = pair.prescribed.map(|drive| out.commands[drive].acceleration);
+            let wrenches = pair.bodies.map(|body| out.wrenches[body]);
+            let ([a1, a2], force) = state.accelerations(&pair.masses, wrenches, extension);
+            let [base, slider] = pair.bodies;
+            (out.accelerations[base], out.accelerations[slider]) = (a1, a2);
+            if let Some(drive) = pair.prescribed {
+                out.drive_forces[drive] = force;
             }
         }
         for g in 0..self.groups.len() {

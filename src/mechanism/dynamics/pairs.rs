@@ -1,8 +1,8 @@
 //! Pairs of bodies on one slide, solved in closed form.
 
 use crate::mechanism::constraints::Rigid;
-use crate::mechanism::telescope::PairMasses;
-use crate::mechanism::{Actuator, Drive, JointIndex, Mechanism, Prismatic};
+use crate::mechanism::telescope::{PairMasses, Slideway, Telescope};
+use crate::mechanism::{Actuator, BodyState, Drive, JointIndex, Mechanism, Prismatic};
 
 /// Two moving bodies on one prismatic joint, which no other rigid joint holds.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +14,23 @@ pub(super) struct Pair {
     pub masses: PairMasses,
     /// The drive that prescribes the length.
     pub prescribed: Option<usize>,
+    /// Whether the joint's state follows from no drive's force.
+    pub passive: bool,
+    way: Slideway,
+}
+
+/// A servo whose drive reads right and is rigidly connected, on a pair.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlainServo {
+    /// Index of the drive.
+    pub drive: usize,
+    /// Index of the joint.
+    pub joint: usize,
+    /// Base and slider.
+    pub bodies: [usize; 2],
+    /// Stiffness in N/m, damping in N s/m.
+    pub gains: [f64; 2],
+    way: Slideway,
 }
 
 impl Pair {
@@ -27,6 +44,43 @@ impl Pair {
             actuator.joint == JointIndex::Prismatic(joint) && actuator.drive == Drive::Prescribed
         };
         let prescribed = mechanism.actuators.iter().position(prescribes);
-        Some(Self { joint, bodies, masses, prescribed })
+        let driven = |actuator: &Actuator| actuator.joint == JointIndex::Prismatic(joint);
+        let passive = prescribed.is_some() || !mechanism.actuators.iter().any(driven);
+        let way = Slideway::new(&mechanism.prismatics[joint]);
+        Some(Self { joint, bodies, masses, prescribed, passive, way })
+    }
+
+    /// The joint at these states.
+    #[inline(always)]
+    pub fn telescope(&self, states: &[BodyState]) -> Telescope {
+        let [base, slider] = self.bodies;
+        Telescope::between(&self.way, &states[base], &states[slider])
+    }
+}
+
+impl PlainServo {
+    /// All drives as plain servos, unless any of them is something else that pushes.
+    pub fn all(mechanism: &Mechanism, pairs: &[Pair]) -> Option<Vec<Self>> {
+        let pushing = mechanism.actuators.iter().enumerate();
+        let pushing = pushing.filter(|(_, actuator)| actuator.drive != Drive::Prescribed);
+        let plain = pushing.map(|(drive, actuator)| {
+            let (Drive::Servo { stiffness, damping }, JointIndex::Prismatic(joint)) =
+                (actuator.drive, actuator.joint)
+            else {
+                return None;
+            };
+            let rigid = actuator.reading_errors.is_empty() && actuator.transmission.is_none();
+            let Pair { bodies, way, .. } =
+                *pairs.iter().find(|pair| rigid && pair.joint == joint)?;
+            Some(Self { drive, joint, bodies, gains: [stiffness, damping], way })
+        });
+        plain.collect()
+    }
+
+    /// The joint at these states.
+    #[inline(always)]
+    pub fn telescope(&self, states: &[BodyState]) -> Telescope {
+        let [base, slider] = self.bodies;
+        Telescope::between(&self.way, &states[base], &states[slider])
     }
 }

@@ -49,8 +49,8 @@ impl Dynamics {
         shifts: &mut [Vector3<f64>],
         commands: &[Command],
     ) {
-        let Pair { joint: i, bodies, masses, prescribed } = self.telescopes[k];
-        let state = Telescope::on(&self.ways[i], states);
+        let Pair { joint: i, bodies, masses, prescribed, .. } = self.telescopes[k];
+        let state = self.telescopes[k].telescope(states);
         let [base, slider] = self.ways[i].points;
         let Telescope { u, n, offset: [length, side], rate, spin, .. } = state;
         let mut missed = n * (side + slider.y - base.y);

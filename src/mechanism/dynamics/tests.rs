@@ -54,6 +54,7 @@ fn telescope_and_rows_agree() {
         let mut general = closed.clone();
         assert_eq!(general.telescopes.len(), 1);
         general.telescopes.clear();
+        (general.passive, general.unpaired) = (vec![0], vec![0, 1]);
         general.groups.push(Group::new(vec![Rigid::Prismatic(0)]));
         let [a, b] = [&mut closed, &mut general].map(|dynamics| {
             let mut now = Evaluation::new(&mechanism);
@@ -68,4 +69,26 @@ fn telescope_and_rows_agree() {
         }
         assert!((a.drive_forces[0] - b.drive_forces[0]).abs() < 1e-12, "{drive:?}");
     }
+}
+
+/// What pushes plain servos alone against what pushes drives of all kinds: the same to the last bit.
+#[test]
+fn plain_servos_push_as_any_drive_does() {
+    let mechanism = bars(Drive::Servo { stiffness: 1e3, damping: 10.0 });
+    let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
+    let mut plain = Dynamics::new(&mechanism);
+    assert_eq!(plain.servos.as_ref().map(Vec::len), Some(1));
+    let mut any = Dynamics { servos: None, ..plain.clone() };
+    let [a, b] = [&mut plain, &mut any].map(|dynamics| {
+        let mut now = Evaluation::new(&mechanism);
+        dynamics.forces(&mechanism, 0.0, &states, &mut now);
+        dynamics.accelerations(&mechanism, &states, &mut now);
+        now
+    });
+    assert!(a.drive_forces[0] != 0.0);
+    assert_eq!(format!("{a:?}"), format!("{b:?}"));
+
+    let mut pushed = mechanism;
+    pushed.actuators[0].drive = Drive::Effort;
+    assert!(Dynamics::new(&pushed).servos.is_none(), "no servo");
 }

@@ -35,6 +35,10 @@ impl Motion for Circle {
         }
     }
 
+    fn kept_angle(&self) -> Option<f64> {
+        Some(self.phi)
+    }
+
     fn shown_after(&self) -> f64 {
         self.period
     }
@@ -62,6 +66,10 @@ impl Motion for Line {
             rate: planar(self.velocity, 0.0),
             acceleration: Vector3::zeros(),
         }
+    }
+
+    fn kept_angle(&self) -> Option<f64> {
+        Some(self.phi)
     }
 }
 

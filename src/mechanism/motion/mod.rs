@@ -25,6 +25,11 @@ pub trait Motion: Debug + Send + Sync {
     /// The motion at time `t` in s.
     fn at(&self, t: f64) -> PathPoint;
 
+    /// The orientation φ in rad that it keeps at all times, if it does.
+    fn kept_angle(&self) -> Option<f64> {
+        None
+    }
+
     /// Time in s after which the motion shows nothing new, because it begins again or rests; endless where it
     /// always does.
     fn shown_after(&self) -> f64 {
