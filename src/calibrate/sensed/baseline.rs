@@ -20,7 +20,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 struct Part {
     segment: Segment,
-    /// The model's machine.
+    /// The model's machine, through which data and whole simulations are seen alike.
     machine: Mechanism,
     bias: Coefficients,
     /// Residuals of the data less that.
@@ -29,6 +29,8 @@ struct Part {
     /// A simulation of the model without noise, and draws of the same one with noise.
     clean: View,
     noisy: Vec<View>,
+    /// Σ of squares of the noise of these draws, in units of what is expected.
+    power: f64,
     /// What of the noise's logarithm of the determinant is not the sensors'.
     rattle: f64,
     /// What noise alone may look like in units of what other draws have of it, draw by draw.
@@ -127,7 +129,10 @@ impl Baseline {
             let draws = by_the_others(&draws, clean.len(), &swing(share));
             let view = |recording: &Recording| View::new(recording, sensors.len());
             // Those of the first replica.
-            let noisy = (0..SHRUNK).map(|k| view(&noisy(k * clean.len()))).collect();
+            let kept = || (0..SHRUNK).map(|k| k * clean.len());
+            let power = kept().map(|draw| difference(&looked[draw], &seen[0]));
+            let power = power.map(|own| noise.whiten(&own).norm_squared()).sum();
+            let noisy = kept().map(|draw| view(&noisy(draw))).collect();
             let (segment, clean) = (segment.clone(), view(&clean[0]));
             parts.push(Part {
                 segment,
@@ -137,6 +142,7 @@ impl Baseline {
                 noise,
                 clean,
                 noisy,
+                power,
                 rattle,
                 draws,
                 lost,
@@ -179,16 +185,14 @@ impl Baseline {
         for part in self.parts.iter().filter(|part| segments.contains(&part.segment)) {
             let recording = &problem.runs[part.segment.run].recording;
             let other = machine(&problem.rig, effects, recording).ok()?;
-            let power = |machine: &Mechanism| -> Option<f64> {
-                let look = |view: &View| problem.coefficients(view, machine, &part.segment);
-                let clean = look(&part.clean)?;
-                let own = |noisy: &View| {
-                    let noise = difference(&look(noisy)?, &clean);
-                    Some(part.noise.whiten(&noise).norm_squared())
-                };
-                part.noisy.iter().map(own).sum::<Option<f64>>()
+            let look = |view: &View| problem.coefficients(view, &other, &part.segment);
+            let clean = look(&part.clean)?;
+            let own = |noisy: &View| {
+                let noise = difference(&look(noisy)?, &clean);
+                Some(part.noise.whiten(&noise).norm_squared())
             };
-            sum += (power(&part.machine)? - power(&other)?) / SHRUNK as f64;
+            let power: f64 = part.noisy.iter().map(own).sum::<Option<f64>>()?;
+            sum += (part.power - power) / SHRUNK as f64;
         }
         Some(sum)
     }
@@ -325,6 +329,36 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
+
+    /// A softer servo makes less of its encoder's steps, and a model as it is nothing else of its noise.
+    #[test]
+    fn a_softer_servo_shrinks_noise() {
+        use crate::calibrate::result::control;
+        use crate::effects::{Target, named};
+        use crate::scenario::Scenario;
+        let folder =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar/planar-2");
+        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
+        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
+        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
+        let control = control(&rig);
+        let problem = Problem::new(rig, vec![recording], control).unwrap();
+        let segments = problem.split().hold;
+        let baseline = Baseline::of(&problem, &[], &[], &segments).unwrap();
+        let shrunk = |relative: f64| {
+            let drive = problem.declared.actuators[0].name.clone();
+            let target = Target::Joints(vec![drive]);
+            let gain = Setting::on(
+                named("servo-gain").unwrap(),
+                target,
+                &[("stiffness_relative", relative), ("damping_relative", relative)],
+            );
+            baseline.shrunk(&problem, &[gain], &segments).unwrap()
+        };
+        assert!(shrunk(0.0).abs() < 1e-6, "{}", shrunk(0.0));
+        assert!(shrunk(-0.3) > 1.0, "{}", shrunk(-0.3));
+        assert!(shrunk(0.3) < -1.0, "{}", shrunk(0.3));
+    }
 
     /// One replica of four that rattles three times as much as the others stands out as far as a recording that does so
     /// would, although its own draws are among those that noise is taken from.

@@ -41,7 +41,7 @@ const STEPS: usize = 6;
 
 /// Of effects that explain recordings alike the one that is named, by its place: an instrument's error before one of the
 /// machine, the earlier before the later.
-pub(super) fn preferred(alike: &[Setting]) -> Option<usize> {
+fn preferred(alike: &[Setting]) -> Option<usize> {
     let instrument = alike.iter().position(|effect| effect.kind.is_instrument());
     instrument.or((!alike.is_empty()).then_some(0))
 }
@@ -163,5 +163,29 @@ impl Search<'_> {
         let on = &self.split.on;
         let noise = self.noisiness(&model.baseline, on) + model.baseline.lost(on);
         model.cost() + model.fit.chi2 + noise + GAIN_PER_VALUE * values as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::preferred;
+    use crate::effects::{Setting, Target, named};
+
+    /// A machine is blamed only where no instrument would explain as much.
+    #[test]
+    fn instruments_are_named_before_the_machine() {
+        let wear = Setting::on(
+            named("joint-wear").unwrap(),
+            Target::Joints(vec!["A".to_owned()]),
+            &[("clearance_m", 3e-4)],
+        );
+        let zero = Setting::on(
+            named("encoder-zero").unwrap(),
+            Target::Sensors(vec!["q_A".to_owned()]),
+            &[("offset", 1e-4)],
+        );
+        assert_eq!(preferred(&[]), None);
+        assert_eq!(preferred(&[wear.clone()]), Some(0));
+        assert_eq!(preferred(&[wear, zero.clone(), zero]), Some(1));
     }
 }
