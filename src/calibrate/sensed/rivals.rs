@@ -185,7 +185,7 @@ mod tests {
             &[("offset", 1e-4)],
         );
         assert_eq!(preferred(&[]), None);
-        assert_eq!(preferred(&[wear.clone()]), Some(0));
+        assert_eq!(preferred(std::slice::from_ref(&wear)), Some(0));
         assert_eq!(preferred(&[wear, zero.clone(), zero]), Some(1));
     }
 }
