@@ -69,7 +69,7 @@ Examples:
   freeplay paper                                the paper's figures and claims, each checked
   freeplay check my-machine.toml                what can be said without simulating
   freeplay sweep --vary joints.clearance=1e-8..1e-3:log:100     many clearances, one table
-  freeplay evaluate --figures impacts --parameters params.in    one line, for programs that drive runs
+  freeplay evaluate --figures impacts           one line of figures, for other programs
   freeplay calibrate --rig rig.toml --data run.csv   what a declared model lacks, by measured data
   freeplay record rig.toml                      what a rig's sensors would show
   freeplay plan --rig rig.toml --detect payload    the motion that shows it best
@@ -79,8 +79,9 @@ Examples:
   freeplay laws hunt-crossley                   contact laws, what they are and do
   freeplay wear mine.toml --cycles 1e6          how rings wear, and the worn machine
 
-Exit codes: 0 done, 2 wrong input, 130 and 143 ended by Ctrl-C and SIGTERM (75 where the same command goes on from
-there: sweep, calibrate --self-test), 1 anything else.";
+Exit codes: 0 done, 2 wrong input, 130 and 143 ended by Ctrl-C and SIGTERM
+(75 where the same command goes on from there: sweep, calibrate --self-test),
+1 anything else.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -1,6 +1,6 @@
 //! `freeplay predict`: hold a model against a recording.
 
-use super::failure::{Failure, say_how_written, warn_of_unused};
+use super::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::table::{paragraph, table};
@@ -75,6 +75,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     }
     let read = recording::read_one(&arguments.data);
     let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
+    say_what_is_ignored([&recording]);
     check(&model, &recording)?;
     let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
     let predicted = Spinner::during(arguments.print.quiet, |tell| {

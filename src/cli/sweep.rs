@@ -7,10 +7,12 @@ use super::parts::{PartOptions, list, named};
 use super::progress::RunsProgress;
 use super::signals;
 use crate::report::number;
-use crate::study::sweep::{Outcome, Plan, Shard, Standing, forecast, on_threads, sweep};
+use crate::study::sweep::{
+    Outcome, Plan, Shard, Standing, SweepError, forecast, on_threads, sweep,
+};
 use clap::Args;
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant as Clock};
 
@@ -70,13 +72,28 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         for warning in plan.warnings() {
             output::complain(&format!("warning: {warning}"));
         }
-        let out = arguments.folder.path("sweep", &plan.base().name);
+        let out = folder(&plan, &arguments.folder);
         match asked {
             Some(shards) => print_missing(&plan, &shards, &out),
             None if parts.dry_run => print_forecast(&plan, &named(&out, parts.shard), arguments),
             None => make(&plan, &named(&out, parts.shard), arguments),
         }
     })?
+}
+
+/// Where the rows of a sweep go. A name that nobody chose counts up past other sweeps, to one that holds this sweep or
+/// nothing: the same command goes on where it was.
+fn folder(plan: &Plan, options: &FolderOptions) -> PathBuf {
+    let first = options.path("sweep", &plan.base().name);
+    if options.out.is_some() || options.force {
+        return first;
+    }
+    let others = |path: &PathBuf| {
+        let there = named(path, plan.shard());
+        matches!(Standing::of(plan, plan.shard(), &there), Err(SweepError::Another(_)))
+    };
+    let mut names = options.numbered(&first);
+    names.find(|path| !others(path)).unwrap_or_else(|| first.clone())
 }
 
 /// Makes the runs, and prints what came out.
