@@ -169,7 +169,9 @@ const FLAWS: &str = r#"
         while (texts.nextNode()) {
             const text = texts.currentNode;
             if (text.parentElement.closest("code")) continue;
-            for (const word of text.data.matchAll(/[\p{L}]{2,20}/gu)) {
+            const whole = (word) => [...text.data.matchAll(/\S+/g)].find((all) => all.index <= word.index && all.index + all[0].length > word.index);
+            for (const word of text.data.matchAll(/\p{L}{2,}/gu)) {
+                if (whole(word)[0].length > 25) continue;
                 const range = document.createRange();
                 range.setStart(text, word.index);
                 range.setEnd(text, word.index + word[0].length);
@@ -178,8 +180,11 @@ const FLAWS: &str = r#"
             }
         }
     }
-    const letters = [...document.querySelectorAll(".card svg text")].map((text) => text.getBoundingClientRect()).filter(visible);
-    const least = Math.min(...letters.map((box) => Math.min(box.height, box.width > 0 ? Math.max(box.height, box.width) : 99)));
+    const letters = [...document.querySelectorAll(".card svg text")].filter((text) => visible(text.getBoundingClientRect())).map((text) => {
+        const place = text.getScreenCTM();
+        return parseFloat(getComputedStyle(text).fontSize) * Math.hypot(place.a, place.b);
+    });
+    const least = Math.min(...letters);
     if (least < 7) flaws.push(`letters of ${least} px`);
     const dark = matchMedia("(prefers-color-scheme: dark)").matches;
     const light = (colour) => { const [r, g, b] = colour.match(/[0-9.]+/g).map(Number); return r + g + b > 384; };

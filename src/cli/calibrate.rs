@@ -100,10 +100,12 @@ const EXAMPLES: &str = "\
 Examples:
   freeplay calibrate --rig rig.toml --data run-a.csv --validate run-b.csv
   freeplay calibrate --rig rig.toml --data run-a.csv --without payload
-  freeplay calibrate --rig rig.toml --data run-a.csv --set 'environment.gravity=[0,-9.81]'
-  freeplay calibrate --rig rig.toml --data run-a.csv --json --quiet | jq .verdict
+  freeplay calibrate --rig rig.toml --data run-a.csv \\
+      --set 'environment.gravity=[0,-9.81]'
+  freeplay calibrate --rig rig.toml --data run-a.csv --json | jq .verdict
   freeplay calibrate --self-test --count 100 --shard 1/4 --trials part-{}.jsonl
-  freeplay calibrate --self-test --count 100 --trials all.jsonl --from part-*.jsonl";
+  freeplay calibrate --self-test --count 100 --trials all.jsonl \\
+      --from part-*.jsonl";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let (Some(rig), false) = (&arguments.rig, arguments.data.is_empty()) else {

@@ -57,10 +57,10 @@ pub(super) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   freeplay predict rig.toml --data run-b.csv                  the declared model
-  freeplay predict calibrated.toml --data run-c.csv           the calibrated one, on another run
+  freeplay predict calibrated.toml --data run-c.csv   the calibrated one
   freeplay predict rig.toml --data run-b.csv --set joints.clearance=2e-4
   freeplay predict assets/pendulum-calibrated.toml --data swings.csv
-  freeplay predict rig.toml --data run-b.csv --json --quiet | jq '.errors[] | [.channel, .after]'";
+  freeplay predict rig.toml --data run-b.csv --json --quiet | jq .errors";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let model = Scenario::load(Some(&arguments.model), &arguments.sets.all())?;

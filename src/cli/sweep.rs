@@ -53,11 +53,11 @@ pub(super) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   freeplay sweep --vary joints.clearance=1e-4,2e-4,5e-4
-  freeplay sweep --vary joints.clearance=1e-8..1e-3:log:1000 --set simulation.tolerance=1e-4
-  freeplay sweep --vary joints.clearance=1e-4,5e-4 --vary motion.phase=0..5.5:12    24 runs
+  freeplay sweep --vary joints.clearance=1e-8..1e-3:log:1000
+  freeplay sweep --vary joints.clearance=1e-4,5e-4 --vary motion.phase=0..5.5:12
   freeplay sweep --vary mechanism.platform_mass=0.15..0.25:random:200 \\
-                 --vary joints.friction=0..0.2:random:200                          200 runs
-  freeplay sweep --vary motion.period=0.5..2:100 --dry-run           how many runs, and how long
+                 --vary joints.friction=0..0.2:random:200   200 runs
+  freeplay sweep --vary motion.period=0.5..2:100 --dry-run   how long?
   freeplay sweep --vary motion.period=0.5..2:100 --shard 1/4 --out part-{}
   freeplay sweep --vary motion.period=0.5..2:100 --missing 4 --out part-{}
   freeplay merge part-1 part-2 part-3 part-4 --out all";
