@@ -156,8 +156,35 @@ const FLAWS: &str = r#"
     for (const cell of document.querySelectorAll("h1, h2, p, figcaption, td, th, nav a, button, label, .lead")) {
         if (cell.clientWidth && cell.scrollWidth > cell.clientWidth + 2) flaws.push(`"${cell.textContent.trim().slice(0, 40)}" is wider than its place`);
     }
-    const letters = [...document.querySelectorAll(".card svg text")].map((text) => text.getBoundingClientRect()).filter(visible);
-    const least = Math.min(...letters.map((box) => Math.min(box.height, box.width > 0 ? Math.max(box.height, box.width) : 99)));
+    for (const table of document.querySelectorAll("table.rows")) {
+        const rows = [...table.rows].map((row) => [...row.cells].map((cell) => cell.textContent.trim()));
+        if (rows.length < 2) flaws.push("a table without rows");
+        rows[0].forEach((head, i) => {
+            if (rows.slice(1).every((row) => ["", "–"].includes(row[i]))) flaws.push(`nothing under "${head}"`);
+        });
+    }
+    // Words that are broken where nobody would hyphenate them; names of files and hashes may be.
+    for (const cell of document.querySelectorAll("h1, h2, p, figcaption, td, th, label, button")) {
+        const texts = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+        while (texts.nextNode()) {
+            const text = texts.currentNode;
+            if (text.parentElement.closest("code")) continue;
+            const whole = (word) => [...text.data.matchAll(/\S+/g)].find((all) => all.index <= word.index && all.index + all[0].length > word.index);
+            for (const word of text.data.matchAll(/\p{L}{2,}/gu)) {
+                if (whole(word)[0].length > 25) continue;
+                const range = document.createRange();
+                range.setStart(text, word.index);
+                range.setEnd(text, word.index + word[0].length);
+                const tops = new Set([...range.getClientRects()].map((box) => Math.round(box.top)));
+                if (tops.size > 1) flaws.push(`"${word[0]}" is broken`);
+            }
+        }
+    }
+    const letters = [...document.querySelectorAll(".card svg text")].filter((text) => visible(text.getBoundingClientRect())).map((text) => {
+        const place = text.getScreenCTM();
+        return parseFloat(getComputedStyle(text).fontSize) * Math.hypot(place.a, place.b);
+    });
+    const least = Math.min(...letters);
     if (least < 7) flaws.push(`letters of ${least} px`);
     const dark = matchMedia("(prefers-color-scheme: dark)").matches;
     const light = (colour) => { const [r, g, b] = colour.match(/[0-9.]+/g).map(Number); return r + g + b > 384; };

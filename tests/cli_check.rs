@@ -70,10 +70,15 @@ fn doubtful_scenarios_are_warned_about() {
             "effect.0: payload has no values, and does nothing without",
         ),
         ("--set mechanism.kind=pendulum --set mechanism.angle=30", "30 degrees are 0.5236"),
+        (
+            "--set mechanism.kind=pendulum --set motion.radius=0.1",
+            "--set motion.radius: is not used: it means nothing to this machine",
+        ),
     ] {
         let done = place.freeplay(&format!("check {arguments}"));
         assert_eq!(done.code, 0, "{}", done.err);
         assert!(done.err.starts_with("warning: ") && done.err.contains(fragment), "{}", done.err);
+        assert_eq!(done.err.lines().count(), 1, "told once: {}", done.err);
     }
     let plain = place.freeplay("check");
     assert_eq!((plain.code, plain.err.as_str()), (0, ""));

@@ -59,6 +59,12 @@ fn a_single_chaotic_run_is_told_for_one_draw() {
     );
     // Places differ by more than both runs' own errors, before chaos parts them.
     assert_eq!(row("x")["differs"], true);
+    let label = |key: &str| row(key)["label"].as_str().unwrap().to_owned();
+    assert_eq!(label("ecc_C1"), "eccentricity of C1, rms");
+    assert_eq!(
+        [label("q2"), label("F3")],
+        ["length of leg 2, rms", "actuator force of leg 3, rms"]
+    );
     // Without play there is no chance: figures differ or do not.
     for (out, period) in [("i", "1"), ("j", "1"), ("k", "0.9")] {
         place.good(&format!(

@@ -339,7 +339,37 @@ fn a_second_run_stands_beside_the_first() {
         place.good(line);
         assert!(place.read(&format!("{folder}/summary.json")).contains("simulated_s"), "{folder}");
     }
+    // Sweeps, which go on where they were, find theirs among others.
+    let sweep = "sweep --duration 0.02 --vary joints.clearance";
+    place.good(&format!("{sweep}=1e-4"));
+    place.good(&format!("{sweep}=2e-4"));
+    let before = place.read("freeplay-sweep-default/sweep.csv");
+    place.good(&format!("{sweep}=1e-4"));
+    assert_eq!(place.read("freeplay-sweep-default/sweep.csv"), before);
+    assert!(place.read("freeplay-sweep-default-2/sweep.csv").contains("\n0.0002,"));
     place.good("run --duration 0.02 --force");
-    let names = ["freeplay-run-default", "freeplay-run-default-2", "freeplay-run-default-3"];
+    let names =
+        ["run-default", "run-default-2", "run-default-3", "sweep-default", "sweep-default-2"]
+            .map(|name| format!("freeplay-{name}"));
     assert_eq!(place.entries(), names);
+}
+
+/// Of a machine that follows its ideal, rounding was shown as if it were a result: a path error of 3e-7 nm.
+#[test]
+fn a_machine_without_play_shows_no_rounding_as_a_result() {
+    let place = Place::new();
+    place.good("run --set contact.law=ideal --duration 0.1 --out ideal --quiet");
+    let page = place.read("ideal/index.html");
+    assert!(page.contains("Peak joint force") && page.contains("Peak actuator force"));
+    for meaningless in
+        ["Path error, largest", "rms deviation from ideal", "Impacts", "Peak contact"]
+    {
+        assert!(!page.contains(meaningless), "{meaningless}");
+    }
+    // With a servo it does stray.
+    place.good(
+        "run --set contact.law=ideal --set drive.mode=servo --duration 0.1 --out servo --quiet",
+    );
+    assert!(place.read("servo/index.html").contains("Path error, largest"));
+    place.refused("run --duration 1s", &["expected a number of seconds without a unit"]);
 }

@@ -67,3 +67,29 @@ fn studies_print_json_and_keep_quiet() {
     assert!(skipped["skipped"].as_str().unwrap().contains("data not present"), "{skipped}");
     assert_eq!(place.good("study pendulum --quiet"), "");
 }
+
+/// Examples are to be copied: none is broken by a terminal of 80 columns.
+#[test]
+fn examples_of_help_stay_whole() {
+    let place = Place::new();
+    // What clap takes for the width of a terminal that it cannot ask is wider than many are.
+    let help = place.good("--help");
+    let commands = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let commands = commands.take_while(|line| !line.is_empty());
+    let names: Vec<&str> = commands
+        .filter(|line| line.starts_with("  ") && !line.starts_with("   "))
+        .filter_map(|line| line.split_whitespace().next())
+        .filter(|name| *name != "help")
+        .collect();
+    assert!(names.len() > 15, "{names:?}");
+    for command in names.into_iter().chain([""]) {
+        let help = place.good(format!("{command} --help").trim());
+        let examples = help.lines().skip_while(|line| *line != "Examples:").skip(1);
+        let mut goes_on = false;
+        for line in examples.take_while(|line| line.starts_with("  ")) {
+            assert!(goes_on || line.starts_with("  freeplay"), "{command}: {line}");
+            assert!(line.chars().count() <= 80, "{command}: {line}");
+            goes_on = line.ends_with('\\');
+        }
+    }
+}

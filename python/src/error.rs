@@ -152,7 +152,7 @@ impl From<SweepError> for Failure {
     fn from(error: SweepError) -> Self {
         let message = error.to_string();
         match error {
-            SweepError::Input(message) => Failure::Input(message),
+            SweepError::Input(message) | SweepError::Another(message) => Failure::Input(message),
             SweepError::Scenario(problems) => problems.into(),
             SweepError::Write(error) => error.into(),
             SweepError::Interrupted { finished, runs, .. } => {

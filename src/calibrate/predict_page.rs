@@ -1,5 +1,7 @@
 //! The page of a prediction.
 
+use super::errors::worst;
+use super::outcome::MET;
 use super::page::errors_table;
 use super::predict::Prediction;
 use crate::report::{Part, Picture, document, number};
@@ -12,9 +14,8 @@ pub fn page(prediction: &Prediction, pictures: &[Picture]) -> String {
         format!("with {}", prediction.effects.join(", "))
     };
     let note = "Root mean square of measured less predicted, both through a zero-phase low-pass of fourth \
-                order at 25 Hz, first and last 60 ms left out. After: the model; before: the model without \
-                its effects; floor: what sensor noise and rattle leave to any model. A dash where there is \
-                no such model, or no sensors are declared.";
+                order at 25 Hz, first and last 60 ms left out. After: the model; before, if it has effects: the \
+                model without them; floor: what sensor noise and rattle leave to any model.";
     let provenance = provenance(prediction);
     let mut parts = Vec::new();
     if !prediction.errors.is_empty() {
@@ -23,7 +24,8 @@ pub fn page(prediction: &Prediction, pictures: &[Picture]) -> String {
     parts.push(Part::Pictures(pictures));
     parts.push(Part::Provenance(&provenance));
     let lead = format!(
-        "{}, {effects}, driven by the commands of {}. {}",
+        "{}The model is {}, {effects}, driven by the commands of {}. {}",
+        verdict(prediction),
         prediction.provenance.scenario_name,
         prediction.run,
         if prediction.rattle.chaotic {
@@ -36,6 +38,25 @@ pub fn page(prediction: &Prediction, pictures: &[Picture]) -> String {
         }
     );
     document(&format!("Prediction of {}", prediction.run), &lead, &parts)
+}
+
+/// How well it predicts, by the worst channel.
+fn verdict(p: &Prediction) -> String {
+    let Some(error) = worst(&p.errors).filter(|error| (error.after / error.floor).is_finite())
+    else {
+        return String::new();
+    };
+    let times = number(error.after / error.floor);
+    match error.after < MET * error.floor {
+        true => format!(
+            "The recording is predicted to within noise (worst: {}, {times} floors). ",
+            error.channel
+        ),
+        false => format!(
+            "The recording is not explained: {} is off by {times} times what noise and rattle leave. ",
+            error.channel
+        ),
+    }
 }
 
 fn provenance(p: &Prediction) -> Vec<(String, String)> {

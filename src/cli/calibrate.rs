@@ -1,6 +1,6 @@
 //! `freeplay calibrate`: close the loop with measured data.
 
-use super::failure::{Failure, say_how_written, warn_of_unused};
+use super::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::parts::PartOptions;
 use super::progress::Spinner;
@@ -99,11 +99,13 @@ pub(super) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   freeplay calibrate --rig rig.toml --data run-a.csv --validate run-b.csv
-  freeplay calibrate --rig rig.toml --data run-a.csv --without payload      is there another explanation?
-  freeplay calibrate --rig rig.toml --data run-a.csv --set 'environment.gravity=[0,-9.81]'
-  freeplay calibrate --rig rig.toml --data run-a.csv --json --quiet | jq .verdict
+  freeplay calibrate --rig rig.toml --data run-a.csv --without payload
+  freeplay calibrate --rig rig.toml --data run-a.csv \\
+      --set 'environment.gravity=[0,-9.81]'
+  freeplay calibrate --rig rig.toml --data run-a.csv --json | jq .verdict
   freeplay calibrate --self-test --count 100 --shard 1/4 --trials part-{}.jsonl
-  freeplay calibrate --self-test --count 100 --trials all.jsonl --from part-*.jsonl";
+  freeplay calibrate --self-test --count 100 --trials all.jsonl \\
+      --from part-*.jsonl";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let (Some(rig), false) = (&arguments.rig, arguments.data.is_empty()) else {
@@ -138,6 +140,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         refuse(plausibility::incomplete(&rig, &recordings))?;
         return any_mechanism(arguments, rig, &paths, &without);
     }
+    say_what_is_ignored(&recordings);
     let name = rig.name.clone();
     let prepared = prepare(rig, recordings)?;
     let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;

@@ -30,7 +30,7 @@ const EXAMPLES: &str = "\
 Examples:
   freeplay check                                     the built-in machine
   freeplay check my-machine.toml --set motion.radius=0.08
-  freeplay check my-machine.toml --engines            two ways of stepping, and how far apart they end
+  freeplay check my-machine.toml --engines    two ways of stepping, side by side
   freeplay check my-machine.toml --json | jq .legs";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {

@@ -56,11 +56,11 @@ pub(super) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  freeplay compare                                    the built-in machine, 8 starts of 1 s
+  freeplay compare   the built-in machine, 8 starts of 1 s
   freeplay compare --steps 2e-5,1e-5,5e-6,2e-6 --starts 32
   freeplay compare my-machine.toml --set joints.clearance=1e-4
   freeplay compare --set native.restitution=0.7       another native setting
-  freeplay compare --laws all                         every contact law, at equal restitution
+  freeplay compare --laws all   every contact law, at equal restitution
   freeplay compare --laws hertz-step,flores,liu --starts 16
   freeplay compare --json --quiet | jq -r '.answer[]'";
 

@@ -45,8 +45,8 @@ const EXAMPLES: &str = "\
 Examples:
   freeplay diff tight.toml worn.toml                   two models, 8 starts each
   freeplay diff rig.toml calibrated.toml --starts 32 --set simulation.duration=2
-  freeplay diff freeplay-run-default freeplay-run-default-2     two results as they lie there
-  freeplay diff a b --json --quiet | jq -r '.rows[] | select(.differs) | .label'";
+  freeplay diff freeplay-run-default freeplay-run-default-2   two results
+  freeplay diff a b --json --quiet | jq '.rows[] | select(.differs)'";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let sets = arguments.sets.all();

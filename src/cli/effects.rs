@@ -33,8 +33,8 @@ Examples:
   freeplay effects                              all of them
   freeplay effects payload                      one, with an example
   freeplay effects --json | jq '.[].name'
-  freeplay run --set 'effect=[{kind=\"payload\",mass_kg=0.5}]'    the built-in machine with one
-  freeplay sweep my.toml --vary effect.0.mass_kg=0..1:20        the first effect of a file, varied";
+  freeplay run --set 'effect=[{kind=\"payload\",mass_kg=0.5}]'   with one
+  freeplay sweep my.toml --vary effect.0.mass_kg=0..1:20   one effect, varied";
 
 const INTRODUCTION: &str = "An effect acts on a machine beside what its scenario declares. A scenario has any number of them, \
      each an [[effect]] with its kind and its parameters; they apply in their order, on top of each \

@@ -39,7 +39,8 @@ pub(super) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   freeplay evaluate --figures peak_contact_force_N --set joints.clearance=1e-4
-  freeplay evaluate my.toml --figures rms_path_error_m,impacts --parameters params.in --results results.out
+  freeplay evaluate my.toml --figures rms_path_error_m,impacts \\
+                 --parameters params.in --results results.out
 
 Exit codes: 0 figures, 1 FAIL because of the run, 2 FAIL because of the input.";
 

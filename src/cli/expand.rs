@@ -21,7 +21,7 @@ pub(super) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  freeplay expand > three-rpr.toml                   the built-in machine, body by body
+  freeplay expand > three-rpr.toml   the built-in machine, body by body
   freeplay expand my-four-bar.toml --set mechanism.rocker=0.14
   freeplay expand my-four-bar.toml > mine.toml && freeplay run mine.toml";
 

@@ -1,6 +1,7 @@
 //! How a command fails: whose fault, and what is said.
 
 use super::output;
+use crate::calibrate::recording::Recording;
 use crate::measure::dialect;
 use crate::scenario::{Problem, Problems, Scenario};
 use crate::simulate::{Finding, Severity};
@@ -94,7 +95,9 @@ impl From<RunError> for Failure {
 impl From<SweepError> for Failure {
     fn from(error: SweepError) -> Self {
         match error {
-            SweepError::Input(message) => Failure::Input(vec![message]),
+            SweepError::Input(message) | SweepError::Another(message) => {
+                Failure::Input(vec![message])
+            }
             SweepError::Scenario(problems) => problems.into(),
             SweepError::Write(error) => error.into(),
             SweepError::Interrupted { .. } => Failure::GoOn(error.to_string()),
@@ -113,6 +116,16 @@ pub(super) fn say_how_written<'a>(paths: impl IntoIterator<Item = &'a Path>) {
     for path in paths {
         if let Some(remark) = dialect::remark(path) {
             output::complain(&format!("note: {}: {remark}", path.display()));
+        }
+    }
+}
+
+/// Says which columns of recordings are left alone.
+pub(super) fn say_what_is_ignored<'a>(recordings: impl IntoIterator<Item = &'a Recording>) {
+    for Recording { path, log } in recordings {
+        if let [_, ..] = log.ignored() {
+            let columns = log.ignored().join(", ");
+            output::complain(&format!("note: {path}: columns that no sensor has: {columns}"));
         }
     }
 }

@@ -62,25 +62,26 @@ struct Cli {
 
 const EXAMPLES: &str = "\
 Examples:
-  freeplay run                                  the built-in machine, into ./freeplay-run-default
-  freeplay run --set joints.clearance=1e-4      the same with 0.1 mm of clearance
-  freeplay compare                              contact law, native contacts, no clearance
-  freeplay diff a.toml b.toml                   two models, and what differs by more than chance
-  freeplay paper                                the paper's figures and claims, each checked
-  freeplay check my-machine.toml                what can be said without simulating
-  freeplay sweep --vary joints.clearance=1e-8..1e-3:log:100     many clearances, one table
-  freeplay evaluate --figures impacts --parameters params.in    one line, for programs that drive runs
-  freeplay calibrate --rig rig.toml --data run.csv   what a declared model lacks, by measured data
-  freeplay record rig.toml                      what a rig's sensors would show
-  freeplay plan --rig rig.toml --detect payload    the motion that shows it best
-  freeplay expand                               the same machine, body by body, to be changed
-  freeplay init four-bar                        a scenario to begin with, every key explained
-  freeplay effects payload                      what a scenario can add to a machine
-  freeplay laws hunt-crossley                   contact laws, what they are and do
-  freeplay wear mine.toml --cycles 1e6          how rings wear, and the worn machine
+  freeplay run                             the built-in machine
+  freeplay run --set joints.clearance=1e-4       with 0.1 mm of clearance
+  freeplay compare                         contact law, native contacts, ideal
+  freeplay diff a.toml b.toml              what differs by more than chance
+  freeplay paper                           the paper's claims, each checked
+  freeplay check my-machine.toml           what can be said without simulating
+  freeplay sweep --vary joints.clearance=1e-8..1e-3:log:100
+  freeplay evaluate --figures impacts      one line, for other programs
+  freeplay calibrate --rig rig.toml --data run.csv
+  freeplay record rig.toml                 what a rig's sensors would show
+  freeplay plan --rig rig.toml --detect payload
+  freeplay expand                          the same machine, body by body
+  freeplay init four-bar                   a scenario, every key explained
+  freeplay effects payload                 what can be added to a machine
+  freeplay laws hunt-crossley              contact laws, what they are and do
+  freeplay wear mine.toml --cycles 1e6     how rings wear
 
-Exit codes: 0 done, 2 wrong input, 130 and 143 ended by Ctrl-C and SIGTERM (75 where the same command goes on from
-there: sweep, calibrate --self-test), 1 anything else.";
+Exit codes: 0 done, 2 wrong input, 130 and 143 ended by Ctrl-C and SIGTERM
+(75 where the same command goes on from there: sweep, calibrate --self-test),
+1 anything else.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

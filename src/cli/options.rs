@@ -5,7 +5,7 @@ use crate::scenario::{Problems, Scenario, Source};
 use crate::study::{Folder, FolderError, default_name};
 use clap::Args;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Which scenario.
 #[derive(Debug, Args)]
@@ -41,13 +41,21 @@ impl Sets {
     }
 }
 
+/// A time that somebody typed.
+///
+/// # Errors
+/// What would be right, of what is no number.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "expected a number of seconds without a unit, such as 0.5".to_owned())
+}
+
 /// What is changed in a scenario.
 #[derive(Debug, Args)]
 pub(super) struct Overrides {
     #[command(flatten)]
     sets: Sets,
     /// Simulated time in seconds; short for --set simulation.duration=S
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     duration: Option<f64>,
 }
 
@@ -95,17 +103,26 @@ impl FolderOptions {
     ) -> Result<Folder, FolderError> {
         let first = self.path(command, scenario);
         let mut prepared = Folder::prepare(&first, marker, self.force);
-        let mut count = 1;
-        while self.out.is_none()
-            && count < MOST_RESULTS
-            && matches!(prepared, Err(FolderError::Taken(_) | FolderError::Busy { .. }))
-        {
-            count += 1;
-            let mut name = first.clone().into_os_string();
-            name.push(format!("-{count}"));
-            prepared = Folder::prepare(&PathBuf::from(name), marker, self.force);
+        for name in self.numbered(&first).skip(1) {
+            let taken = matches!(prepared, Err(FolderError::Taken(_) | FolderError::Busy { .. }));
+            if self.out.is_some() || !taken {
+                break;
+            }
+            prepared = Folder::prepare(&name, marker, self.force);
         }
         prepared
+    }
+
+    /// A name, and those that count up from it: `run`, `run-2`, `run-3`.
+    pub fn numbered(&self, first: &Path) -> impl Iterator<Item = PathBuf> {
+        let first = first.to_owned();
+        (1..=MOST_RESULTS).map(move |count| {
+            let mut name = first.clone().into_os_string();
+            if count > 1 {
+                name.push(format!("-{count}"));
+            }
+            name.into()
+        })
     }
 }
 

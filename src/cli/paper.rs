@@ -36,8 +36,8 @@ const EXAMPLES: &str = "\
 Examples:
   freeplay paper                                      8 starts of 1 s
   freeplay paper --phases 32 --duration 2.2           narrower intervals
-  freeplay paper --set drive.mode=servo               the same claims of another machine
-  freeplay paper --json --quiet | jq -r '.claims[] | [.verdict, .label] | @tsv'";
+  freeplay paper --set drive.mode=servo   the same claims of another machine
+  freeplay paper --json --quiet | jq '.claims[].verdict'";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let phases = arguments.phases.into();

@@ -81,10 +81,12 @@ pub(super) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   freeplay plan --rig rig.toml --data run-a.csv --report calibrated/report.json
-  freeplay plan --rig rig.toml --data run-a.csv --between payload:piston,joint-friction:slide
+  freeplay plan --rig rig.toml --data run-a.csv \\
+                --between payload:piston,joint-friction:slide
   freeplay plan --rig rig.toml --data run-a.csv --detect joint-wear
-  freeplay plan --rig rig.toml --detect payload=0.02 --stroke O=-1..1 --speed O=10 --acceleration O=200
-  freeplay record planned/planned.toml                 what the sensors would show of the planned motion";
+  freeplay plan --rig rig.toml --detect payload=0.02 \\
+                --stroke O=-1..1 --speed O=10 --acceleration O=200
+  freeplay record planned/planned.toml    what the sensors would show of it";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let rig = Scenario::load(Some(&arguments.rig), &arguments.sets.all())?;

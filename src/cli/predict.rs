@@ -1,6 +1,6 @@
 //! `freeplay predict`: hold a model against a recording.
 
-use super::failure::{Failure, say_how_written, warn_of_unused};
+use super::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_unused};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::table::{paragraph, table};
@@ -57,10 +57,10 @@ pub(super) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   freeplay predict rig.toml --data run-b.csv                  the declared model
-  freeplay predict calibrated.toml --data run-c.csv           the calibrated one, on another run
+  freeplay predict calibrated.toml --data run-c.csv   the calibrated one
   freeplay predict rig.toml --data run-b.csv --set joints.clearance=2e-4
   freeplay predict assets/pendulum-calibrated.toml --data swings.csv
-  freeplay predict rig.toml --data run-b.csv --json --quiet | jq '.errors[] | [.channel, .after]'";
+  freeplay predict rig.toml --data run-b.csv --json --quiet | jq .errors";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let model = Scenario::load(Some(&arguments.model), &arguments.sets.all())?;
@@ -75,6 +75,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     }
     let read = recording::read_one(&arguments.data);
     let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
+    say_what_is_ignored([&recording]);
     check(&model, &recording)?;
     let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
     let predicted = Spinner::during(arguments.print.quiet, |tell| {

@@ -46,10 +46,12 @@ pub(super) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  freeplay record rig.toml --out synthetic                 nothing hidden: noise and rattle alone
-  freeplay record rig.toml --out worn --set effect.0.kind=joint-wear --set effect.0.joint=A1 \\
+  freeplay record rig.toml --out synthetic   noise and rattle, nothing hidden
+  freeplay record rig.toml --out worn --set effect.0.kind=joint-wear \\
+      --set effect.0.joint=A1 \\
     --set effect.0.clearance_m=1.2e-4                      0.02 mm of wear in A1
-  freeplay calibrate --rig worn/rig.toml --data worn/run-a.csv --validate worn/run-b.csv
+  freeplay calibrate --rig worn/rig.toml --data worn/run-a.csv \\
+      --validate worn/run-b.csv
   freeplay record rig.toml --set seed=2 --json --quiet | jq .shows_floors";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {

@@ -44,10 +44,10 @@ pub(super) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  freeplay run                                       the built-in machine for 1 s
+  freeplay run   the built-in machine for 1 s
   freeplay run --duration 5 --out long               5 s, into ./long
   freeplay run my-machine.toml --set joints.clearance=1e-4
-  freeplay run --set contact.law=ideal               the same machine without clearance
+  freeplay run --set contact.law=ideal   the same machine without clearance
   freeplay run --set drive.mode=servo --set 'environment.gravity=[0,-9.81]'
   freeplay run --set motion.kind=line --set 'motion.velocity=[0.05,0]'
   freeplay run --json --quiet | jq .peak_contact_force_N";

@@ -44,8 +44,8 @@ pub(super) struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  freeplay study emps --data measured         reads measured/emps/emps_train.csv and emps_pulses.csv
-  freeplay study pendulum --data measured     reads measured/pendulum/single_pendulum_1kHz.csv";
+  freeplay study emps --data measured       reads measured/emps
+  freeplay study pendulum --data measured   reads measured/pendulum";
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Which {

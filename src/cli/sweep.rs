@@ -7,10 +7,12 @@ use super::parts::{PartOptions, list, named};
 use super::progress::RunsProgress;
 use super::signals;
 use crate::report::number;
-use crate::study::sweep::{Outcome, Plan, Shard, Standing, forecast, on_threads, sweep};
+use crate::study::sweep::{
+    Outcome, Plan, Shard, Standing, SweepError, forecast, on_threads, sweep,
+};
 use clap::Args;
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant as Clock};
 
@@ -51,11 +53,11 @@ pub(super) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   freeplay sweep --vary joints.clearance=1e-4,2e-4,5e-4
-  freeplay sweep --vary joints.clearance=1e-8..1e-3:log:1000 --set simulation.tolerance=1e-4
-  freeplay sweep --vary joints.clearance=1e-4,5e-4 --vary motion.phase=0..5.5:12    24 runs
+  freeplay sweep --vary joints.clearance=1e-8..1e-3:log:1000
+  freeplay sweep --vary joints.clearance=1e-4,5e-4 --vary motion.phase=0..5.5:12
   freeplay sweep --vary mechanism.platform_mass=0.15..0.25:random:200 \\
-                 --vary joints.friction=0..0.2:random:200                          200 runs
-  freeplay sweep --vary motion.period=0.5..2:100 --dry-run           how many runs, and how long
+                 --vary joints.friction=0..0.2:random:200   200 runs
+  freeplay sweep --vary motion.period=0.5..2:100 --dry-run   how long?
   freeplay sweep --vary motion.period=0.5..2:100 --shard 1/4 --out part-{}
   freeplay sweep --vary motion.period=0.5..2:100 --missing 4 --out part-{}
   freeplay merge part-1 part-2 part-3 part-4 --out all";
@@ -70,13 +72,28 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         for warning in plan.warnings() {
             output::complain(&format!("warning: {warning}"));
         }
-        let out = arguments.folder.path("sweep", &plan.base().name);
+        let out = folder(&plan, &arguments.folder);
         match asked {
             Some(shards) => print_missing(&plan, &shards, &out),
             None if parts.dry_run => print_forecast(&plan, &named(&out, parts.shard), arguments),
             None => make(&plan, &named(&out, parts.shard), arguments),
         }
     })?
+}
+
+/// Where the rows of a sweep go. A name that nobody chose counts up past other sweeps, to one that holds this sweep or
+/// nothing: the same command goes on where it was.
+fn folder(plan: &Plan, options: &FolderOptions) -> PathBuf {
+    let first = options.path("sweep", &plan.base().name);
+    if options.out.is_some() || options.force {
+        return first;
+    }
+    let others = |path: &PathBuf| {
+        let there = named(path, plan.shard());
+        matches!(Standing::of(plan, plan.shard(), &there), Err(SweepError::Another(_)))
+    };
+    let mut names = options.numbered(&first);
+    names.find(|path| !others(path)).unwrap_or_else(|| first.clone())
 }
 
 /// Makes the runs, and prints what came out.

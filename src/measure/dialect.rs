@@ -155,7 +155,19 @@ impl Rows {
     /// # Errors
     /// A row that is none.
     pub fn next(&mut self, row: &mut StringRecord) -> Result<bool, csv::Error> {
-        self.reader.read_record(row)
+        self.reader.read_record(row).map_err(|error| match error.kind() {
+            csv::ErrorKind::UnequalLengths { pos, expected_len, len }
+                if self.dialect.separator == b',' && (expected_len + 1..=2 * expected_len).contains(len) =>
+            {
+                let line = pos.as_ref().map_or(0, csv::Position::line);
+                let message = format!(
+                    "line {line}: {len} values under {expected_len} heads: commas stand between columns, and in \
+                     numbers, too? write points in numbers, or semicolons between columns"
+                );
+                io::Error::new(ErrorKind::InvalidData, message).into()
+            }
+            _ => error,
+        })
     }
 
     /// The number in a cell, if it is a finite one.
@@ -246,5 +258,7 @@ mod tests {
         // Points and commas in one file: thousands or decimals?
         let (rows, _) = read(b"t;q1\n0.0;1,250\n0.001;1,5\n").unwrap();
         assert!(rows[0][1].is_nan());
+        let commas = read(b"t,q1\n0,0,0,25\n0,001,1,5\n").unwrap_err();
+        assert!(commas.contains("line 2: 4 values under 2 heads"), "{commas}");
     }
 }

@@ -46,6 +46,13 @@ impl Channel {
     }
 }
 
+impl Channel {
+    /// Whether both are of one kind.
+    fn is_like(self, other: Channel) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
+    }
+}
+
 impl fmt::Display for Channel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -91,6 +98,8 @@ pub struct Log {
     /// Number of samples.
     pub samples: usize,
     channels: Vec<(Channel, Vec<f64>)>,
+    /// Columns of the file that hold none of them.
+    ignored: Vec<String>,
 }
 
 /// What is wrong with a log: where, what, and what would be right.
@@ -112,10 +121,12 @@ impl Log {
     /// A log of the given samples.
     pub fn new(name: &str, start: f64, interval: f64, channels: Vec<(Channel, Vec<f64>)>) -> Self {
         let samples = channels.first().map_or(0, |(_, values)| values.len());
-        Self { name: name.to_owned(), start, interval, samples, channels }
+        let ignored = Vec::new();
+        Self { name: name.to_owned(), start, interval, samples, channels, ignored }
     }
 
-    /// Reads a CSV file with a column `t` and any of `known`.
+    /// Reads a CSV file with a column `t` and any of `known`. Other columns are left alone, unless one may be the misspelt
+    /// name of a known one that is missing, or one of a kind is missing of which others are there.
     ///
     /// # Errors
     /// A file that cannot be read, unknown or double columns, values that are no numbers, time that
@@ -124,16 +135,29 @@ impl Log {
         let names: Vec<String> = known.iter().map(Channel::to_string).collect();
         let expected = format!("expected a header with t and any of {}", names.join(", "));
         load(path, &expected, |header| {
-            let (mut time, mut chosen) = (None, Vec::new());
+            let (mut time, mut chosen): (_, Vec<(usize, Channel)>) = (None, Vec::new());
+            let there = |name: &str| header.iter().any(|head| head == name);
+            let missing: Vec<&str> =
+                names.iter().map(String::as_str).chain(["t"]).filter(|name| !there(name)).collect();
+            let torn = known.iter().zip(&names).any(|(channel, name)| {
+                let kin =
+                    |(other, name): (&Channel, &String)| other.is_like(*channel) && there(name);
+                !there(name) && known.iter().zip(&names).any(kin)
+            });
             for (i, name) in header.iter().enumerate() {
                 let channel = names.iter().position(|known| known == name).map(|k| known[k]);
                 let taken = chosen.iter().any(|(_, c)| Some(*c) == channel);
                 match channel {
                     None if name == "t" && time.is_none() => time = Some(i),
+                    None if name == "t" => {
+                        return Err(("column `t` twice".to_owned(), "keep one of them".to_owned()));
+                    }
                     None => {
-                        let known: Vec<&str> =
-                            names.iter().map(String::as_str).chain(["t"]).collect();
-                        let help = nearest(name, &known).map_or(expected.clone(), |near| {
+                        let near = nearest(name, &missing);
+                        if near.is_none() && !torn && there("t") {
+                            continue;
+                        }
+                        let help = near.map_or(expected.clone(), |near| {
                             format!("did you mean `{near}`? {expected}")
                         });
                         return Err((format!("unknown column `{name}`"), help));
@@ -148,6 +172,11 @@ impl Log {
             let time = time.ok_or_else(|| ("no column `t`".to_owned(), expected.clone()))?;
             Ok((time, chosen))
         })
+    }
+
+    /// Columns of its file that hold none of its channels.
+    pub fn ignored(&self) -> &[String] {
+        &self.ignored
     }
 
     /// Samples of a channel, if the log has it.
@@ -281,7 +310,10 @@ fn load(
     })?;
     let name = path.file_name().map_or(file.clone(), |name| name.to_string_lossy().into_owned());
     let name = shown(&name);
-    Ok(Log::new(&name, times[0], interval, channels))
+    let used = |place: usize| place == time || chosen.iter().any(|(other, _)| *other == place);
+    let unused = header.iter().enumerate().filter(|(place, _)| !used(*place));
+    let ignored = unused.map(|(_, head)| shown(head).into_owned()).collect();
+    Ok(Log { ignored, ..Log::new(&name, times[0], interval, channels) })
 }
 
 /// The step of a time column, or the first row that breaks it and how.

@@ -31,6 +31,9 @@ impl Axis {
     /// [`constant`].
     pub(super) fn of(label: &Label, range: Range<f64>, ticks: f64) -> Self {
         let axis = Self::new(range, ticks);
+        if label.counted {
+            return Axis { step: axis.step.max(1.0), ..axis };
+        }
         if !label.logarithmic {
             return axis;
         }
@@ -183,6 +186,14 @@ mod tests {
         };
         assert_eq!(of(-8.0..-3.0), ["10 nm", "100 nm", "1 µm", "10 µm", "100 µm", "1 mm"]);
         assert_eq!(of(-4.1..-3.2), ["100 µm", "200 µm", "500 µm"]);
+    }
+
+    #[test]
+    fn what_is_counted_has_ticks_at_whole_numbers() {
+        let axis = Axis::of(&Label::counted("law"), 0.98..3.02, 5.0);
+        let ticks: Vec<String> =
+            axis.key_points(BoldPoints(0)).iter().map(|p| axis.format_ext(p)).collect();
+        assert_eq!(ticks, ["1", "2", "3"]);
     }
 
     #[test]

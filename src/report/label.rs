@@ -9,6 +9,8 @@ pub struct Label {
     pub text: String,
     /// Whether points hold decimal logarithms of the quantity; ticks then say the quantity itself.
     pub logarithmic: bool,
+    /// Whether points count things: there is nothing between whole numbers.
+    pub counted: bool,
 }
 
 impl From<&str> for Label {
@@ -19,7 +21,7 @@ impl From<&str> for Label {
 
 impl From<String> for Label {
     fn from(text: String) -> Self {
-        Self { text, logarithmic: false }
+        Self { text, logarithmic: false, counted: false }
     }
 }
 
@@ -33,12 +35,17 @@ const PREFIXES: [(i32, &str); 7] =
 impl Label {
     /// Of points that hold decimal logarithms of a quantity.
     pub fn log(text: impl Into<String>) -> Self {
-        Self { text: text.into(), logarithmic: true }
+        Self::log_if(text, true)
     }
 
     /// The same, where points hold logarithms only sometimes.
     pub fn log_if(text: impl Into<String>, logarithmic: bool) -> Self {
-        Self { text: text.into(), logarithmic }
+        Self { text: text.into(), logarithmic, counted: false }
+    }
+
+    /// Of things that are counted from 1.
+    pub fn counted(text: impl Into<String>) -> Self {
+        Self { text: text.into(), logarithmic: false, counted: true }
     }
 
     /// The unit, if one stands there.

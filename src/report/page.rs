@@ -50,7 +50,8 @@ pub enum Part<'a> {
     Provenance(&'a [(String, String)]),
 }
 
-/// A table with a heading and a remark.
+/// A table with a heading and a remark. Without rows it is left out of its page, and so are columns in which no row has a
+/// value.
 #[derive(Clone, Debug)]
 pub struct Table {
     /// Where links find it.
@@ -105,6 +106,7 @@ fn numbered<'a>(parts: &'a [Part<'a>]) -> impl Iterator<Item = (usize, &'a Part<
 fn section(first: usize, part: &Part) -> String {
     match part {
         Part::Facts(facts) => facts_section(facts),
+        Part::Table(table) if table.rows.is_empty() => String::new(),
         Part::Table(table) => table_section(table),
         Part::Pictures(pictures) => (first..).zip(*pictures).map(|(n, p)| figure(n, p)).collect(),
         Part::Text { id, title, paragraphs } => text_section(id, title, paragraphs),
@@ -123,6 +125,7 @@ fn contents(parts: &[Part]) -> String {
     for (first, part) in numbered(parts) {
         match part {
             Part::Facts([]) | Part::Provenance([]) | Part::Link { .. } => {}
+            Part::Table(table) if table.rows.is_empty() => {}
             Part::Facts(_) => entry("facts", "Results"),
             Part::Table(table) => entry(table.id, &escaped(&table.title)),
             Part::Pictures(pictures) => {
@@ -157,17 +160,28 @@ fn facts_section(facts: &[Fact]) -> String {
 }
 
 fn table_section(table: &Table) -> String {
-    let cells = |tag: &str, row: &[String]| -> String {
-        let cell = |text: &String| format!("<{tag}>{}</{tag}>", escaped(text));
-        format!("<tr>{}</tr>\n", row.iter().map(cell).collect::<String>())
+    let has_values = |column: &usize| {
+        let cells = table.rows.iter().filter_map(|row| row.get(*column));
+        cells.into_iter().any(|cell| !matches!(cell.as_str(), "" | "–"))
     };
-    let rows: String = table.rows.iter().map(|row| cells("td", row)).collect();
+    let columns: Vec<usize> = (0..table.header.len()).filter(has_values).collect();
+    let head = |column: usize| escaped(&table.header[column]);
+    let heads: String =
+        columns.iter().map(|&column| format!("<th>{}</th>", head(column))).collect();
+    // On a phone each row is a list, and its cells say their heads themselves.
+    let row = |row: &Vec<String>| {
+        let cell = |&column: &usize| {
+            let text = row.get(column).map_or_else(String::new, |text| escaped(text));
+            format!("<td data-head=\"{}\">{text}</td>", head(column))
+        };
+        format!("<tr>{}</tr>\n", columns.iter().map(cell).collect::<String>())
+    };
+    let rows: String = table.rows.iter().map(row).collect();
     format!(
-        "<section id=\"{}\">\n<h2>{}</h2>\n<div class=\"table\"><table>\n{}{rows}</table></div>\n\
-         <p class=\"note\">{}</p>\n</section>\n",
+        "<section id=\"{}\">\n<h2>{}</h2>\n<div class=\"table\"><table class=\"rows\">\n\
+         <tr class=\"heads\">{heads}</tr>\n{rows}</table></div>\n<p class=\"note\">{}</p>\n</section>\n",
         table.id,
         escaped(&table.title),
-        cells("th", &table.header),
         escaped(&table.note)
     )
 }
@@ -271,6 +285,23 @@ mod tests {
         for fetch in ["http", "src=", "url(", "@import", "<link"] {
             assert!(!html.contains(fetch), "{fetch}");
         }
+    }
+
+    #[test]
+    fn what_a_table_does_not_know_is_left_out_of_it() {
+        let table = |rows: &[[&str; 3]]| Table {
+            id: "t",
+            title: "Errors".to_owned(),
+            header: ["channel", "before", "after"].map(str::to_owned).into(),
+            rows: rows.iter().map(|row| row.map(str::to_owned).into()).collect(),
+            note: "A note.".to_owned(),
+        };
+        let known = table(&[["x", "–", "1 mm"], ["y", "", "–"]]);
+        let html = document("T", "", &[Part::Table(known)]);
+        assert!(html.contains("<th>channel</th><th>after</th>"), "{html}");
+        assert!(html.contains("<td data-head=\"after\">1 mm</td>") && !html.contains("before<"));
+        let none = document("T", "", &[Part::Table(table(&[]))]);
+        assert!(!none.contains("Errors") && !none.contains("A note."), "{none}");
     }
 
     #[test]

@@ -187,6 +187,14 @@ impl Origins {
         }
     }
 
+    /// A path in a section that an override gave, if one did.
+    pub(super) fn set_in(&self, section: &str) -> Option<&str> {
+        let inside =
+            |path: &str| path.strip_prefix(section).is_some_and(|rest| rest.starts_with('.'));
+        let given = self.places.iter().filter(|(_, place)| matches!(place, Place::Set(_)));
+        given.map(|(path, _)| path.as_str()).find(|path| inside(path))
+    }
+
     /// Whether something was written at `path`.
     pub(super) fn has(&self, path: &str) -> bool {
         self.places.contains_key(path)

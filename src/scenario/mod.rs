@@ -266,8 +266,9 @@ impl Scenario {
     /// mistake.
     pub fn unused(&self) -> Vec<Problem> {
         let unused = |section: &&str| {
+            let path = self.origins.set_in(section).unwrap_or(section);
             self.problem(
-                section,
+                path,
                 "is not used: it means nothing to this machine",
                 "take it out, or see `freeplay expand` for the sections of this machine",
             )

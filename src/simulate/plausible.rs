@@ -65,8 +65,11 @@ fn angle(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
     (phi.abs() > TAU).then(|| turned(scenario, angle_key(scenario), phi))
 }
 
-/// Degrees for radians in where bodies start.
+/// Degrees for radians in where bodies start; a 3-RPR's start where their motion does, and [`angle`] tells of that.
 fn starts(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
+    if let scenario::Mechanism::ThreeRpr(_) = scenario.mechanism {
+        return Vec::new();
+    }
     let far = mechanism.bodies.iter().filter(|body| body.angle.abs() > TAU);
     far.map(|body| turned(scenario, &key_of(scenario, &body.name, "start"), body.angle)).collect()
 }

@@ -66,6 +66,9 @@ fn lead(s: &Summary, body: &str) -> String {
     )
 }
 
+/// Path error in m that is rounding.
+const ROUNDING_M: f64 = 1e-12;
+
 /// What the drives feel.
 fn felt(drives: &[(f64, f64, &str)]) -> String {
     let each = |(peak, ideal, unit): &(f64, f64, &str)| {
@@ -108,6 +111,8 @@ fn facts(s: &Summary, body: &str) -> Vec<Fact> {
     let unit = |value: f64, unit: &str| format!("{} {unit}", number(value));
     let ideal = |value: f64, unit: &str| format!("ideal machine: {} {unit}", number(value));
     let mut facts = Vec::new();
+    // What rounding leaves of a machine that follows its ideal is no result.
+    let strays = s.max_path_error_m > ROUNDING_M;
     if s.has_figures() {
         facts.extend([
             fact(
@@ -115,7 +120,15 @@ fn facts(s: &Summary, body: &str) -> Vec<Fact> {
                 unit(s.peak_platform_acceleration_m_s2, "m/s²"),
                 ideal(s.ideal_peak_platform_acceleration_m_s2, "m/s²"),
             ),
-            fact("Peak contact force", unit(s.peak_contact_force, "N"), hardest_joint(s)),
+            fact(
+                if s.without_play() { "Peak joint force" } else { "Peak contact force" },
+                unit(s.peak_contact_force, "N"),
+                hardest_joint(s),
+            ),
+        ]);
+    }
+    if s.has_figures() && strays {
+        facts.extend([
             fact(
                 "Path error, largest",
                 length(s.max_path_error_m),
@@ -127,19 +140,25 @@ fn facts(s: &Summary, body: &str) -> Vec<Fact> {
                 String::new(),
             ),
         ]);
+    }
+    if s.has_figures() {
         for (peak, ideal_peak, of) in s.drive_peaks() {
             let (name, deviation) = match of {
                 "N" => ("force", s.rms_actuator_force_deviation),
                 _ => ("torque", s.rms_actuator_torque_deviation.unwrap_or(f64::NAN)),
             };
-            facts.extend([
-                fact(&format!("Peak actuator {name}"), unit(peak, of), ideal(ideal_peak, of)),
-                fact(
+            facts.push(fact(
+                &format!("Peak actuator {name}"),
+                unit(peak, of),
+                ideal(ideal_peak, of),
+            ));
+            if strays {
+                facts.push(fact(
                     &format!("Actuator {name}s, rms deviation from ideal"),
                     unit(deviation, of),
                     "mean of all actuators".into(),
-                ),
-            ]);
+                ));
+            }
         }
     }
     if s.has_figures() && !s.without_play() {

@@ -55,6 +55,34 @@ fn a_prediction_takes_what_was_measured() {
     }
 }
 
+/// A column of a log that no sensor has was refused here, and left alone on machines that describe themselves.
+#[test]
+fn a_column_that_nobody_asks_for_is_told_and_left_alone() {
+    let place = Place::new();
+    let mut table = Table::of_rig("run-b.csv");
+    table.rows.truncate(1200);
+    let predict = |name: &str, table: &Table| {
+        place.write(&format!("{name}.csv"), &table.text());
+        let rig = rig("rig.toml");
+        place.freeplay(&format!("predict {} --data {name}.csv --out {name}", rig.display()))
+    };
+    assert_eq!(predict("plain", &table).code, 0);
+    table.header.push("motor_temperature".to_owned());
+    table.rows.iter_mut().for_each(|row| row.push("warm".to_owned()));
+    let done = predict("more", &table);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(done.err, "note: more.csv: columns that no sensor has: motor_temperature\n");
+    assert_eq!(place.read("more/predicted.csv"), place.read("plain/predicted.csv"));
+    let page = place.read("more/index.html");
+    assert!(page.contains("The recording is not explained: "), "the verdict leads");
+    assert!(!page.contains("<th>before</th>"), "without effects there is nothing before");
+    // Beside a gap it may be what the gap lacks.
+    table.drop(&["F1"]);
+    let done = predict("gap", &table);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("unknown column `motor_temperature`"), "{}", done.err);
+}
+
 #[test]
 fn predictions_refuse_what_cannot_be_right() {
     let place = Place::new();

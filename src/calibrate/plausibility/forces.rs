@@ -52,7 +52,7 @@ pub fn mixed_up(path: &str, log: &Log, drive: &Drive) -> Vec<LogError> {
     for i in 0..3 {
         if missed(i, i, -1.0).is_some_and(|share| share < BY_LAW) {
             let message = format!(
-                "column `{}` has the sign of the opposite of what its drive's law gives",
+                "column `{}` has the opposite sign of what its drive's law gives",
                 Channel::Force(i)
             );
             found.push(wrong(message, "a force is positive where it lengthens the leg"));

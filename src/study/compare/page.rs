@@ -12,8 +12,12 @@ use crate::study::run::SCENARIO_FILE;
 pub fn page(comparison: &Comparison, pictures: &[Picture]) -> String {
     let facts = facts(comparison);
     let provenance = provenance(comparison);
+    // The first sentence of the answer leads, the others follow.
+    let mut answer = comparison.answer.clone();
+    let lead = if answer.is_empty() { String::new() } else { answer.remove(0) };
+    answer.push(method(comparison));
     let parts = [
-        Part::Text { id: "answer", title: "Answer", paragraphs: &comparison.answer },
+        Part::Text { id: "answer", title: "Answer", paragraphs: &answer },
         Part::Table(verdicts(comparison)),
         Part::Facts(&facts),
         Part::Table(side_by_side(comparison)),
@@ -23,10 +27,11 @@ pub fn page(comparison: &Comparison, pictures: &[Picture]) -> String {
         Part::Provenance(&provenance),
     ];
     let title = format!("Contact models compared: {}", comparison.provenance.scenario_name);
-    document(&title, &lead(comparison), &parts)
+    document(&title, &lead, &parts)
 }
 
-fn lead(c: &Comparison) -> String {
+/// How it was compared.
+fn method(c: &Comparison) -> String {
     format!(
         "The same motion under the contact law (hertz-step), under the contacts that the physics \
          engine itself has (native), and without clearance (ideal). Every figure is a mean over {} \

@@ -5,7 +5,7 @@ use super::result::{Diff, Row};
 use super::series::{Series, overlaid};
 use super::{DiffError, Done, Side};
 use crate::measure::student::t95;
-use crate::report::{Curve, Panel, Picture, Style, panels_svg};
+use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
 use crate::scenario::{Problem, Scenario};
 use crate::simulate::{Provenance, measured};
 use crate::study::compare::{Mean, Measured, QUANTITIES, machine, measure, tolerance};
@@ -131,14 +131,14 @@ fn every_run(diff: &Diff, runs: &[Vec<Measured>; 2]) -> Result<Picture, RunError
     let panel = |row: &Row| {
         let i = QUANTITIES.iter().position(|quantity| quantity.key == row.key)?;
         let curves = diff.names.iter().zip(runs).enumerate().map(|(k, (name, runs))| Curve {
-            name: name.clone(),
+            name: format!("{} {name}", k + 1),
             points: runs.iter().map(|run| ((k + 1) as f64, run.values[i])).collect(),
             style: Style::Dots,
         });
         Some(Panel {
             title: row.label.clone(),
-            x_label: format!("1: {}, 2: {}", diff.names[0], diff.names[1]).into(),
-            y_label: format!("({})", if row.unit.is_empty() { "1" } else { row.unit }).into(),
+            x_label: Label::counted("model"),
+            y_label: row.unit.into(),
             curves: curves.collect(),
         })
     };

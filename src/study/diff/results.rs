@@ -153,7 +153,40 @@ fn unit(head: &str) -> (&'static str, bool) {
         () if begins(&["alpha"]) => ("rad/s²", false),
         () if begins(&["ecc"]) => ("m", false),
         () if begins(&["force"]) => ("N", false),
+        // Legs of a 3-RPR; of other machines the name of a drive does not say whether it turns or slides.
+        () if matches!(head, "q1" | "q2" | "q3") => ("m", false),
+        () if matches!(head, "F1" | "F2" | "F3") => ("N", false),
         () => ("", false),
+    }
+}
+
+/// What a column of a time series holds, in words, and of what: `ecc_A1` is the eccentricity of A1.
+fn in_words(head: &str) -> String {
+    const WORDS: [(&str, &str); 13] = [
+        ("x", "position along x"),
+        ("y", "position along y"),
+        ("phi", "angle"),
+        ("vx", "velocity along x"),
+        ("vy", "velocity along y"),
+        ("omega", "angular velocity"),
+        ("ax", "acceleration along x"),
+        ("ay", "acceleration along y"),
+        ("alpha", "angular acceleration"),
+        ("ecc", "eccentricity"),
+        ("force", "contact force"),
+        ("q", "coordinate"),
+        ("F", "effort"),
+    ];
+    let legs = head.strip_prefix(['q', 'F']).filter(|leg| leg.parse::<u8>().is_ok());
+    if let Some(leg) = legs {
+        let what = if head.starts_with('q') { "length" } else { "actuator force" };
+        return format!("{what} of leg {leg}");
+    }
+    let (what, of) = head.split_once('_').map_or((head, None), |(what, of)| (what, Some(of)));
+    match (WORDS.iter().find(|(start, _)| *start == what), of) {
+        (Some((_, words)), Some(of)) => format!("{words} of {of}"),
+        (Some((_, words)), None) => (*words).to_owned(),
+        (None, _) => format!("column {head}"),
     }
 }
 
@@ -170,7 +203,7 @@ fn columns(both: &[Read; 2], horizon: Option<f64>) -> Vec<Row> {
         let floor = floor.filter(|_| place);
         Some(Row {
             key: head.clone(),
-            label: format!("column {head}, rms"),
+            label: format!("{}, rms", in_words(head)),
             unit,
             values: [first, second],
             difference,
@@ -188,11 +221,11 @@ fn over_time(both: &[Read; 2], diff: &Diff) -> Result<Vec<Picture>, RunError> {
     let series = [&both[0].series, &both[1].series];
     let wanted = |row: &&Row| {
         let force = row.key.starts_with('F') || row.key.starts_with("force_");
-        row.label.starts_with("column") && (unit(&row.key).1 || row.key.starts_with('q') || force)
+        unit(&row.key).1 || row.key.starts_with('q') || force
     };
     let panel = |row: &Row| {
-        let label = format!("{} ({})", row.key, if row.unit.is_empty() { "SI" } else { row.unit });
-        overlaid(series, &diff.names, &row.key, (&row.key, &label, 1.0))
+        let unit = if row.unit.is_empty() { "SI" } else { row.unit };
+        overlaid(series, &diff.names, &row.key, (&in_words(&row.key), unit, 1.0))
     };
     let panels: Vec<Panel> = diff.rows.iter().filter(wanted).filter_map(panel).take(8).collect();
     if panels.is_empty() {

@@ -47,6 +47,9 @@ pub enum SweepError {
     /// Wrong input: what, where, what would be right.
     #[error("{0}")]
     Input(String),
+    /// The folder holds the rows of another sweep.
+    #[error("{0}")]
+    Another(String),
     /// The scenario that is varied is wrong.
     #[error(transparent)]
     Scenario(#[from] Problems),

@@ -209,7 +209,7 @@ pub(super) fn refuse_other(
     if differences.is_empty() {
         return Ok(());
     }
-    Err(SweepError::input(format!(
+    Err(SweepError::Another(format!(
         "`{}` holds another sweep: {}; choose another folder with --out, or replace it with --force",
         folder.display(),
         differences.join("; ")

@@ -1,7 +1,9 @@
 //! The page of a comparison of laws.
 
 use super::result::{LawRow, LawsCompared};
-use crate::report::{Curve, Panel, Part, Picture, Style, Table, document, number, panels_svg};
+use crate::report::{
+    Curve, Label, Panel, Part, Picture, Style, Table, document, number, panels_svg,
+};
 use crate::study::compare::probe::Measured;
 use crate::study::compare::quantities::{QUANTITIES, Quantity, index};
 use crate::study::compare::statistics::Mean;
@@ -21,7 +23,7 @@ const SHOWN: [&str; 5] = [
 /// The page as HTML.
 pub(super) fn page(compared: &LawsCompared, pictures: &[Picture]) -> String {
     let title = format!("Contact laws compared: {}", compared.provenance.scenario_name);
-    let lead = format!(
+    let method = format!(
         "The same motion under every law, at equal restitution where it can be matched: the parameter of each \
          is such that hits at {} m/s return {} of their speed, as under the scenario's own law, the first. \
          Every figure is a mean over {} starts of {} s, ± its standard error, the first {} s left out.",
@@ -38,11 +40,31 @@ pub(super) fn page(compared: &LawsCompared, pictures: &[Picture]) -> String {
     let provenance = compared.provenance.lines("scenario", Some(SCENARIO_FILE), more);
     let parts = [
         Part::Table(dependences(compared)),
+        Part::Text { id: "method", title: "How it was compared", paragraphs: &[method] },
         Part::Table(laws(compared)),
         Part::Pictures(pictures),
         Part::Provenance(&provenance),
     ];
-    document(&title, &lead, &parts)
+    document(&title, &answer(compared), &parts)
+}
+
+/// What depends on the law, in words.
+fn answer(compared: &LawsCompared) -> String {
+    let found = || compared.dependences.iter().zip(&QUANTITIES);
+    let depends: Vec<&str> =
+        found().filter(|(found, _)| found.depends).map(|(_, quantity)| quantity.label).collect();
+    let all = compared.dependences.len();
+    match depends.as_slice() {
+        [] => format!(
+            "Over {} starts, none of {all} quantities depends on the law by more than chance.",
+            compared.starts
+        ),
+        some => format!(
+            "{} of {all} quantities depend on the law by more than chance: {}.",
+            some.len(),
+            some.join("; ")
+        ),
+    }
 }
 
 /// The chosen quantities with their places in the list.
@@ -127,9 +149,8 @@ pub(super) fn pictures(
         });
         Panel {
             title: quantity.label.to_owned(),
-            x_label: "law".into(),
-            y_label: format!("({})", if quantity.unit.is_empty() { "1" } else { quantity.unit })
-                .into(),
+            x_label: Label::counted("law"),
+            y_label: quantity.unit.into(),
             curves: curves.collect(),
         }
     };
