@@ -119,3 +119,23 @@ fn laws_are_compared_at_equal_restitution() {
         &["has no joint with clearance"],
     );
 }
+
+/// The formulas of conformal contact have no force beyond some depth: in a joint with so little clearance that hits go
+/// deeper that is told once, with both depths.
+#[test]
+fn laws_of_conformal_contact_say_where_they_end() {
+    let place = Place::new();
+    let told = |line: &str| {
+        let done = place.freeplay(&format!("check --set contact.law={line}"));
+        (done.out + &done.err).matches("its tangent is taken").count()
+    };
+    assert_eq!(told("johnson"), 0);
+    assert_eq!(told("liu --set joints.clearance=1e-6"), 0);
+    assert_eq!(told("johnson --set joints.clearance=1e-6"), 1);
+    let done = place.freeplay("check --set contact.law=johnson --set joints.clearance=1e-6");
+    let all = done.out + &done.err;
+    let words = all.split_whitespace().collect::<Vec<_>>().join(" ");
+    let fragment =
+        "holds down to 4.0e-7 m in the joint A1, and a hit at 0.2 m/s goes 9.4e-7 m deep";
+    assert!(words.contains(fragment), "{all}");
+}

@@ -209,36 +209,82 @@ fn error(law: &Arc<dyn ForceLaw>, exact: f64, control: StepControl) -> f64 {
 /// Laws whose force jumps when surfaces touch: fixed steps are of first order there.
 const DISCONTINUOUS: [&str; 1] = ["kelvin-voigt"];
 
-#[test]
-fn fixed_steps_converge_in_every_law() {
-    for kind in ALL {
+/// Errors of the rebound under a law at its defaults: at a quarter and at a sixteenth of its longest step, and at three
+/// tolerances (m/s).
+struct Errors {
+    fixed: [f64; 2],
+    controlled: [f64; 3],
+}
+
+/// Tolerances in m/s.
+const TOLERANCES: [f64; 3] = [1e-4, 1e-5, 1e-6];
+
+impl Errors {
+    fn of(kind: &Kind) -> Self {
         let law = (kind.build)(&Given::default());
         let exact = impact(&*law, MASS, SPEED).rebound / SPEED;
         let longest = law.longest_step(MASS, SPEED);
-        let errors =
-            [4.0, 16.0].map(|finer| error(&law, exact, StepControl::Fixed(longest / finer)));
-        let order = (errors[0] / errors[1]).log2() / 2.0;
-        println!("{}: errors {:.1e} {:.1e}, order {order:.2}", kind.name, errors[0], errors[1]);
-        let least = if DISCONTINUOUS.contains(&kind.name) { 0.7 } else { 1.5 };
-        assert!(order > least, "{}: order {order:.2}", kind.name);
-        assert!(errors[1] < 0.02, "{}: {errors:?}", kind.name);
+        let of = |control| error(&law, exact, control);
+        Self {
+            fixed: [4.0, 16.0].map(|finer| of(StepControl::Fixed(longest / finer))),
+            controlled: TOLERANCES.map(|tolerance| of(StepControl::Tolerance(tolerance))),
+        }
+    }
+
+    /// Observed order of fixed steps.
+    fn order(&self) -> f64 {
+        (self.fixed[0] / self.fixed[1]).log2() / 2.0
+    }
+
+    /// A row of the table of `docs/laws.md`.
+    fn row(&self, name: &str) -> String {
+        let errors = self.fixed.iter().chain(&self.controlled);
+        let errors = errors.map(|e| format!(" {e:.0e} |")).collect::<String>();
+        format!("| {name} | {:.1} |{errors}", self.order())
     }
 }
 
 #[test]
-fn error_follows_the_tolerance_in_every_law() {
+fn steps_meet_every_law() {
     for kind in ALL {
-        let law = (kind.build)(&Given::default());
-        let exact = impact(&*law, MASS, SPEED).rebound / SPEED;
-        let errors = [1e-4, 1e-5, 1e-6]
-            .map(|tolerance| error(&law, exact, StepControl::Tolerance(tolerance)));
-        println!("{}: {}", kind.name, errors.map(|e| format!("{e:.1e}")).join(" "));
+        let errors = Errors::of(kind);
+        println!("{}", errors.row(kind.name));
+        let jumps = DISCONTINUOUS.contains(&kind.name);
+        let (order, least) = (errors.order(), if jumps { 0.7 } else { 1.5 });
+        assert!(order > least, "{}: order {order:.2}", kind.name);
+        assert!(errors.fixed[1] < 0.02, "{}: {:?}", kind.name, errors.fixed);
         // A hit takes some ten steps, each with a velocity error of the tolerance.
-        for (error, tolerance) in errors.into_iter().zip([1e-4, 1e-5, 1e-6]) {
+        for (error, tolerance) in errors.controlled.into_iter().zip(TOLERANCES) {
             // A jump of the force is met to the step's length alone, and so is that of the exact value.
-            let own = if DISCONTINUOUS.contains(&kind.name) { 1e-3 } else { 3e-5 };
+            let own = if jumps { 1e-3 } else { 3e-5 };
             let limit = 20.0 * tolerance / SPEED + own;
             assert!(error < limit, "{} at {tolerance:e}: {error:e} > {limit:e}", kind.name);
+        }
+    }
+}
+
+/// The table of orders and errors of `docs/laws.md`: each order to 0.2, each error to the digit that is written, give or
+/// take one.
+#[test]
+fn the_table_of_steps_is_what_runs_give() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/laws.md");
+    let document = std::fs::read_to_string(path).unwrap();
+    let begin = "<!-- steps: held by tests/val_laws.rs -->\n";
+    let written = document.split(begin).nth(1).and_then(|rest| rest.split("<!-- end -->").next());
+    let rows: Vec<&str> = written.expect("a table").lines().skip(2).collect();
+    assert_eq!(rows.len(), ALL.len());
+    for (kind, written) in ALL.into_iter().zip(rows) {
+        let made = Errors::of(kind).row(kind.name);
+        let cells = |row: &str| -> Vec<String> {
+            row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
+        };
+        let (own, there) = (cells(&made), cells(written));
+        assert!(own[0] == there[0] && own.len() == there.len(), "{written}: should be {made}");
+        for (place, (own, there)) in own.iter().zip(&there).enumerate().skip(1) {
+            let [own, there] = [own, there].map(|cell| cell.parse::<f64>().unwrap());
+            let digit = 10f64.powf(there.log10().floor());
+            let near = if place == 1 { 0.2 } else { 1.01 * digit };
+            assert!((own - there).abs() < near, "{written}: should be {made}");
         }
     }
 }
