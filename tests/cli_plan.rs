@@ -165,6 +165,9 @@ fn what_cannot_be_planned_is_told() {
         ("--detect payload --speed 0", &["--speed", "leaves no motion of O"]),
         ("--detect payload --drive-force X=3", &["--drive-force X=3", "no such drive", "drives O"]),
         ("--detect payload --acceleration fast", &["--acceleration fast", "a number"]),
+        ("--detect payload --stroke=-1e308..1e308", &["--stroke", "at most 1e6 rad either way"]),
+        ("--detect payload --stroke=1e9..1e10", &["--stroke", "at most 1e6 rad either way"]),
+        ("--report /dev/zero", &["/dev/zero", "at most 16 MB are read"]),
         ("--detect payload --gain 0.5", &["--gain", "from 1 up"]),
         ("--detect payload --duration 0.2", &["--duration: is 0.2 s", "from 1"]),
         (

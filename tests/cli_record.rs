@@ -72,6 +72,11 @@ fn what_cannot_be_recorded_is_refused() {
     place.refused("record", &["sensor: is missing", "--set sensors.pose_std=4e-6"]);
     place.refused(&format!("record {RIG} --rate 10"), &["10.0000 a second", "at least 200"]);
     place.refused(&format!("record {RIG} --duration 0"), &["--duration: is 0"]);
+    // More than anybody reads again, and than memory holds.
+    for rows in ["--rate 1e12", "--rate 1e300", "--duration 86400", "--duration 100 --rate 1e5"] {
+        let says = ["12 sensors", "numbers; expected at most 1e7", "--rate or --duration"];
+        place.refused(&format!("record {RIG} {rows}"), &says);
+    }
     place
         .refused(&format!("record {RIG} --set contact.law=native"), &["contact.law", "hertz-step"]);
 }

@@ -122,6 +122,10 @@ fn what_is_missing_or_impossible_is_told() {
         "wear pin.toml --cycles 1 --period 0.4",
         &["--period: is 0.4 s", "at most what a run counts"],
     );
+    place.refused(
+        "wear pin.toml --cycles 1 --period 1e-300",
+        &["--period: is 1e-300 s", "expected at least the time between two rows"],
+    );
     let short = "wear --cycles 1 --set contact.wear_coefficient=1e-14 --set motion.period=0.1 --duration 0.06";
     let done = place.freeplay(&format!("{short} --out lengthened"));
     assert!(done.err.contains("warning: runs take 0.13 s"), "{}", done.err);

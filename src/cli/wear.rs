@@ -82,10 +82,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     };
     let counted = scenario.simulation.duration - scenario.simulation.settle();
     let whole = period > 0.0 && counted >= period * (1.0 - 1e-9);
-    if !whole && arguments.period.is_some() {
+    // A shorter cycle is no motion that anybody means.
+    let shortest = scenario.simulation.output_interval;
+    if arguments.period.is_some_and(|period| !whole || period < shortest) {
         let message = format!(
-            "--period: is {period} s; expected above 0, and at most what a run counts: {} s of duration less its first \
-             {} s (simulation.settle); a longer --duration counts more",
+            "--period: is {period:?} s; expected at least the time between two rows, {shortest} s \
+             (simulation.output_interval), and at most what a run counts: {} s of duration less its first {} s \
+             (simulation.settle); a longer --duration counts more",
             scenario.simulation.duration,
             scenario.simulation.settle()
         );

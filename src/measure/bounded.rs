@@ -10,6 +10,9 @@ pub const SCENARIO: u64 = 1 << 20;
 /// Most bytes of a recording or of a table of a motion: an hour of ten columns at 500 rows a second.
 pub const TABLE: u64 = 256 << 20;
 
+/// Most bytes of a calibration's report, which is held as a tree that takes many times the room of its text.
+pub const REPORT: u64 = 16 << 20;
+
 /// A file that is read up to a bound, and refused beyond.
 #[derive(Debug)]
 pub struct Bounded {

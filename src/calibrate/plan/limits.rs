@@ -13,6 +13,9 @@ use serde::Serialize;
 /// pose doubtful, because forces and errors grow with it.
 pub const GAIN: f64 = 50.0;
 
+/// Farthest coordinate in m or rad: commands are written to nine decimals, and doubles hold these up to there.
+const FARTHEST: f64 = 1e6;
+
 /// Numbers that a user gave, drive by drive; none where nothing was given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Given {
@@ -123,6 +126,13 @@ impl Limit {
         if high <= low {
             return Some(format!(
                 "--stroke: from {low} to {high} {unit} leaves no motion of {joint} ({}); expected LOW below HIGH",
+                self.stroke_from
+            ));
+        }
+        if low.abs().max(high.abs()) > FARTHEST {
+            return Some(format!(
+                "--stroke: from {low:e} to {high:e} {unit} of {joint} ({}) leaves what commands can say; expected at most \
+                 {FARTHEST:e} {unit} either way",
                 self.stroke_from
             ));
         }

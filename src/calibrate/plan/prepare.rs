@@ -10,6 +10,7 @@ use crate::calibrate::sensed::prepare::{Way, against_rig};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::start::{commands, machine};
 use crate::engine::StepControl;
+use crate::measure::bounded;
 use crate::mechanism::{BodyState, Command, Drive, Mechanism};
 use crate::scenario::{self, Law, Scenario};
 use std::path::{Path, PathBuf};
@@ -202,8 +203,8 @@ fn questions(request: &Request, declared: &Mechanism) -> Result<Vec<Question>, C
     request.detect.iter().for_each(|text| add(detect(text, declared)));
     if let Some(path) = &request.report {
         let shown = path.display().to_string();
-        let text = crate::measure::bounded::text(path, crate::measure::bounded::TABLE)
-            .map_err(|error| format!("{shown}: {error}"));
+        let text =
+            bounded::text(path, bounded::REPORT).map_err(|error| format!("{shown}: {error}"));
         add(text.and_then(|text| left_open(&text, &shown, declared)));
     }
     refuse(wrong)?;

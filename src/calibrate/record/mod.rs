@@ -42,6 +42,10 @@ pub const RUNS: [(&str, f64); 2] = [("run-a.csv", 1.0), ("run-b.csv", 0.8)];
 const CAPTION: &str = "Measured: the synthetic recording. As declared: the rig without what is hidden. As it is: the \
                        machine that was recorded, without noise.";
 
+/// Most numbers of a recording, time not counted: the file stays far below what `calibrate` reads
+/// (`measure::bounded::TABLE`).
+const MOST: f64 = 1e7;
+
 /// How many rows recordings have.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows {
@@ -49,6 +53,20 @@ pub struct Rows {
     pub rate: f64,
     /// Length of each recording in s.
     pub duration: f64,
+}
+
+impl Rows {
+    /// What is wrong with recordings of so many columns, made before anything is.
+    fn too_many(self, columns: usize) -> Option<String> {
+        let Rows { rate, duration } = self;
+        let numbers = rate * duration * columns as f64;
+        (numbers > MOST).then(|| {
+            format!(
+                "a recording of {duration:e} s at {rate:e} rows a second, from {columns} sensors, holds {numbers:.1e} \
+                 numbers; expected at most {MOST:.0e}: give a smaller --rate or --duration"
+            )
+        })
+    }
 }
 
 /// `record.json`.
@@ -141,6 +159,7 @@ pub fn prepare(
         let help = "write law = \"hertz-step\": recordings are made with a contact law whose error is known";
         wrong.push(scenario.problem("contact.law", "is \"native\"", help).to_string());
     }
+    wrong.extend(rows.too_many(mechanism.sensors.len()));
     refuse(wrong)?;
     let mut rig = scenario.clone();
     rig.effects.clear();
