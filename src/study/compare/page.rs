@@ -164,6 +164,7 @@ fn columns_table(columns: &[&RowResult]) -> Table {
         let cells = columns.iter().map(|row| {
             let mean = row.quantities[i];
             match (mean.mean.is_finite(), mean.sem > 0.0) {
+                (false, _) if row.halted == row.starts => "broke down".to_owned(),
                 (false, _) => "–".to_owned(),
                 (true, false) => in_words(quantity, mean.mean),
                 (true, true) => {
