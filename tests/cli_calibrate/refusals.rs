@@ -74,7 +74,10 @@ const BROKEN: &[Break] = &[
     (
         "a force negated",
         |t| t.scale(&["F2"], -1.0),
-        &["column `F2` has the opposite sign of what its drive's law gives", "positive where it lengthens the leg"],
+        &[
+            "column `F2` has the opposite sign of what its drive's law gives",
+            "positive where it lengthens the leg",
+        ],
     ),
     (
         "forces exchanged",
