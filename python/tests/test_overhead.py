@@ -3,6 +3,8 @@
 A call is compared with the work that it does outside the interpreter, which is what the program does for `freeplay evaluate`: the
 scenario's machine put together, checked, simulated. That this work is no slower than the program's is held against the program itself,
 less what its process takes to start and to end (`freeplay --version`).
+
+Both measure times, which other work on the computer disturbs: they are run by `python/run -m slow`, on a quiet one.
 """
 
 from __future__ import annotations
@@ -15,6 +17,8 @@ from typing import Callable
 import pyfreeplay as fp
 import pytest
 from pyfreeplay import _native
+
+pytestmark = pytest.mark.slow
 
 
 def cpu() -> float:
