@@ -26,23 +26,53 @@ pub struct Best {
 /// Residual in units of noise at some values, or none where there is no such model.
 pub type Look<'a> = &'a (dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync);
 
-/// Derivative of the residual by each value, by forward differences, away from the nearest bound; none
-/// without values.
+/// Derivative of the residual by each value; none without values.
 pub fn jacobian(
     look: Look,
     free: &[Free],
     values: &[f64],
     residual: &DVector<f64>,
 ) -> Option<DMatrix<f64>> {
-    let column = |(i, free): (usize, &Free)| {
-        let step = if values[i] + free.step > free.bounds[1] { -free.step } else { free.step };
-        let mut beside = values.to_vec();
-        beside[i] += step;
-        Some((look(&beside)? - residual) / step)
-    };
-    let columns = free.par_iter().enumerate().map(column).collect::<Option<Vec<_>>>()?;
+    let column = |i| derivative(look, free, values, residual, i);
+    let columns = (0..free.len()).into_par_iter().map(column).collect::<Option<Vec<_>>>()?;
     (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
 }
+
+/// Derivative of the residual by value `i`, by a forward difference over its step, away from the nearest bound; over a
+/// [part](REDUCED) of it where the whole one does [more than counts](too_far): what is a hair to one machine is
+/// everything to another.
+pub fn derivative(
+    look: Look,
+    free: &[Free],
+    values: &[f64],
+    residual: &DVector<f64>,
+    i: usize,
+) -> Option<DVector<f64>> {
+    let Free { step, bounds } = free[i];
+    let mut step = if values[i] + step > bounds[1] { -step } else { step };
+    for last in (0..=REDUCTIONS).map(|k| k == REDUCTIONS) {
+        let mut beside = values.to_vec();
+        beside[i] += step;
+        let change = look(&beside).map(|there| there - residual);
+        match change {
+            Some(change) if last || !too_far(&change, residual) => return Some(change / step),
+            None if last => return None,
+            _ => step *= REDUCED,
+        }
+    }
+    None
+}
+
+/// Whether a step that is to tell a direction was too long: it changed a residual in units of noise by more than all that
+/// there is of it, and by more than a unit.
+pub fn too_far(change: &DVector<f64>, residual: &DVector<f64>) -> bool {
+    change.norm() > residual.norm().max(1.0)
+}
+
+/// What is left of a step that was [too long](too_far), and how often: down to a millionth.
+pub const REDUCED: f64 = 0.01;
+/// See [`REDUCED`].
+pub const REDUCTIONS: usize = 3;
 
 /// When a fit ends, and how it comes by derivatives.
 #[derive(Clone, Copy, Debug)]

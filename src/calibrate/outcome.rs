@@ -273,9 +273,14 @@ fn estimates(model: &Settled, on: &[Segment]) -> Vec<Vec<Estimate>> {
         .collect()
 }
 
-/// `(JᵀJ)⁻¹`, of values of very different size.
+/// `(JᵀJ)⁻¹`, of values of very different size; 0 of those that no residual depends on, none of what is no number.
 pub(super) fn inverse_normal(jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale: Vec<f64> = jacobian.column_iter().map(|c| c.norm().max(1e-300)).collect();
+    let length = |norm: f64| if norm > 0.0 { norm } else { 1.0 };
+    let scale: Vec<f64> = jacobian.column_iter().map(|c| length(c.norm())).collect();
+    // The decomposition does not end with such.
+    if !scale.iter().all(|length| length.is_finite()) {
+        return None;
+    }
     let scaled = |matrix: DMatrix<f64>| {
         DMatrix::from_fn(scale.len(), scale.len(), |r, c| matrix[(r, c)] / (scale[r] * scale[c]))
     };
@@ -296,6 +301,15 @@ pub(super) fn pull(jacobian: &DMatrix<f64>, inverse: &DMatrix<f64>, draws: &[DVe
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A value that nothing depends on has no part in the others' intervals, and does not keep them from being found.
+    #[test]
+    fn a_value_without_consequences_is_left_out() {
+        let jacobian = DMatrix::from_row_slice(3, 2, &[2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let inverse = inverse_normal(&jacobian).unwrap();
+        assert_eq!((inverse[(0, 0)], inverse[(1, 1)]), (0.25, 0.0));
+        assert!(inverse_normal(&DMatrix::from_element(2, 2, f64::NAN)).is_none());
+    }
 
     /// The mean of n numbers that are noise each by itself is known to 1/√n; of noise that hangs together
     /// (pairs of the same number) to √2/√n.

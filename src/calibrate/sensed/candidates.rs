@@ -2,6 +2,7 @@
 
 use super::fit::{Fit, Target};
 use super::periodic::frequencies;
+use crate::calibrate::least_squares::{REDUCED, REDUCTIONS, too_far};
 use crate::effects::{ALL, CONTAINS, Kind, Range, Scan, Setting};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
@@ -44,7 +45,7 @@ pub fn starts(target: &Target, model: &Fit, candidate: &Setting) -> Vec<Setting>
     }
     // The first value is an amplitude: the best multiple of each start, by least squares.
     let scored = listed.into_iter().filter_map(|mut start| {
-        let column = change(&start)?;
+        let column = within(&model.white, &mut start, 0, &change)?;
         let multiple = -column.dot(&model.white) / column.norm_squared();
         if multiple <= 0.0 || !multiple.is_finite() {
             return Some((0.0, candidate.with(&start)));
@@ -62,6 +63,22 @@ pub fn starts(target: &Target, model: &Fit, candidate: &Setting) -> Vec<Setting>
         Some((gain, candidate.with(&start)))
     });
     best(scored.collect())
+}
+
+/// What values change of a residual, an amplitude made smaller until that is not [too much](too_far).
+fn within(
+    residual: &DVector<f64>,
+    values: &mut [f64],
+    amplitude: usize,
+    change: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
+) -> Option<DVector<f64>> {
+    for _ in 0..REDUCTIONS {
+        match change(values) {
+            Some(column) if !too_far(&column, residual) => return Some(column),
+            _ => values[amplitude] *= REDUCED,
+        }
+    }
+    change(values)
 }
 
 /// The starts that promise most.
@@ -103,12 +120,14 @@ fn scanned(
     let scored = tried.into_iter().filter_map(|value| {
         let mut columns = Vec::new();
         for &amplitude in &amplitudes {
+            let unit = step(candidate.kind, names[amplitude]);
             for angle in [0.0, FRAC_PI_2] {
                 let mut values = vec![0.0; names.len()];
                 values[over] = value;
                 values[phase] = angle;
-                values[amplitude] = step(candidate.kind, names[amplitude]);
-                columns.push(change(&values)?);
+                values[amplitude] = unit;
+                let column = within(&model.white, &mut values, amplitude, change)?;
+                columns.push(column * (unit / values[amplitude]));
             }
         }
         let matrix = DMatrix::from_columns(&columns);

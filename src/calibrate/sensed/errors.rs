@@ -22,15 +22,46 @@ pub fn mean(recordings: &[Recording], sensors: usize) -> Recording {
     recordings[0].with(columns.collect())
 }
 
-/// Root mean square of the low-passed difference of two recordings in a column, ends left out.
-fn rms(a: &Recording, b: &Recording, sensor: usize) -> Option<f64> {
+/// The low-passed difference of two recordings in a column, ends left out.
+fn missed(a: &Recording, b: &Recording, sensor: usize) -> Option<Vec<f64>> {
     let difference: Vec<f64> =
         a.get(sensor)?.iter().zip(b.get(sensor)?).map(|(a, b)| a - b).collect();
     let filtered = ZeroPhase::butterworth(4, CORNER, a.interval).apply(&difference);
     let trim = (TRIM / a.interval).round() as usize;
-    let inner = filtered.get(trim..filtered.len().checked_sub(trim)?)?;
-    let squares: f64 = inner.iter().map(|v| v * v).sum();
-    (!inner.is_empty()).then(|| (squares / inner.len() as f64).sqrt())
+    Some(filtered.get(trim..filtered.len().checked_sub(trim)?)?.to_vec())
+}
+
+/// Its root mean square.
+fn rms(a: &Recording, b: &Recording, sensor: usize) -> Option<f64> {
+    let missed = missed(a, b, sensor)?;
+    (!missed.is_empty()).then(|| root_mean_square(&missed))
+}
+
+/// By how much the mean of noiseless `replicas` misses a recording, column by column, each in units of its floor, where it
+/// has one, at four times the rate of what is looked at.
+pub fn in_floors(
+    machine: &Mechanism,
+    recording: &Recording,
+    replicas: &[Recording],
+    floors: &[Option<f64>],
+) -> Vec<f64> {
+    let predicted = mean(replicas, machine.sensors.len());
+    let stride = (0.25 / (CORNER * recording.interval)).floor().max(1.0) as usize;
+    let of = |(i, floor): (usize, &Option<f64>)| {
+        let missed = missed(recording, &predicted, i)?;
+        let floor = floor.filter(|floor| *floor > 0.0)?;
+        Some(missed.into_iter().step_by(stride).map(move |value| value / floor))
+    };
+    floors.iter().enumerate().filter_map(of).flatten().collect()
+}
+
+/// What sensor noise and rattle leave to a perfect model in each measured column; `clean` are its replicas.
+pub fn floors_of(machine: &Mechanism, clean: &[Recording]) -> Vec<Option<f64>> {
+    let of = |i: usize| {
+        let measured = !machine.sensors[i].tells();
+        measured.then(|| floors(machine, clean, i)).flatten().map(|draws| root_mean_square(&draws))
+    };
+    (0..machine.sensors.len()).map(of).collect()
 }
 
 /// What sensor noise and rattle leave in a column to a perfect model, draw by draw: a replica with noise against the

@@ -23,6 +23,14 @@ pub struct Tried {
     pub simulated: bool,
 }
 
+impl Tried {
+    /// One that whole simulations were fitted with, beside a model that it gains so much over.
+    pub(super) fn simulated(effect: Setting, gain: f64, beside: &Model) -> Self {
+        let share = (gain / beside.held).clamp(0.0, 1.0);
+        Self { effect, gain, share, fitted: true, chance: 0.0, simulated: true }
+    }
+}
+
 /// One round of a search.
 #[derive(Clone, Debug, Default)]
 pub struct Round {

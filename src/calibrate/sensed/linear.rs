@@ -52,31 +52,37 @@ impl Normal {
     }
 }
 
-impl Columns {
-    /// The step that leaves the least of a residual, from these `own` values of the candidate on: values that a bound
-    /// holds stay there, and the others are solved for again.
-    pub fn step(&self, residual: &DVector<f64>, own: &[f64], free: &[Free]) -> Option<Step> {
-        let (count, known) = (self.on.ncols(), self.known);
-        let mut moving: Vec<usize> = (0..count).collect();
-        let mut change = DVector::zeros(count);
-        for _ in 0..=own.len() {
-            let solved = Normal::of(&self.on, &moving)?.solve(residual);
-            change.fill(0.0);
-            for (&c, solved) in moving.iter().zip(solved.iter()) {
-                change[c] = *solved;
-            }
-            let leaving = moving.iter().position(|&c| {
-                c >= known && {
-                    let [low, high] = free[c - known].bounds;
-                    !(low..=high).contains(&(own[c - known] + change[c]))
-                }
-            });
-            let Some(leaving) = leaving else { break };
-            moving.remove(leaving);
+/// The step that leaves the least of a residual, by its derivatives, the first `known` of which are by values of a model,
+/// from these `own` values of the candidate on: values that a bound holds stay there, and the others are solved for again.
+pub(super) fn step(
+    derivatives: &DMatrix<f64>,
+    known: usize,
+    residual: &DVector<f64>,
+    own: &[f64],
+    free: &[Free],
+) -> Option<Step> {
+    let count = derivatives.ncols();
+    let mut moving: Vec<usize> = (0..count).collect();
+    let mut change = DVector::zeros(count);
+    for _ in 0..=own.len() {
+        let solved = Normal::of(derivatives, &moving)?.solve(residual);
+        change.fill(0.0);
+        for (&c, solved) in moving.iter().zip(solved.iter()) {
+            change[c] = *solved;
         }
-        Some(Step { moving, change })
+        let leaving = moving.iter().position(|&c| {
+            c >= known && {
+                let [low, high] = free[c - known].bounds;
+                !(low..=high).contains(&(own[c - known] + change[c]))
+            }
+        });
+        let Some(leaving) = leaving else { break };
+        moving.remove(leaving);
     }
+    Some(Step { moving, change })
+}
 
+impl Columns {
     /// The largest drop of the sum of squares, on data to judge on, that such a step of the candidate's values brings in
     /// draws of noise (on both kinds of data): where joints rattle noise has more of some shapes than a covariance frequency
     /// by frequency knows, and a candidate of that shape fits it.
@@ -134,7 +140,7 @@ mod tests {
             })
             .collect();
         let free = [Free { step: 1.0, bounds: [-1e3, 1e3] }];
-        let step = columns.step(&white(), &[0.0], &free).unwrap();
+        let step = step(&shape, 0, &white(), &[0.0], &free).unwrap();
         let [plain, shaped] = [plain, shaped].map(|draws| columns.chance(&step, &draws).unwrap());
         assert!((0.0..15.0).contains(&plain), "{plain}");
         assert!((350.0..800.0).contains(&shaped), "{shaped}");
@@ -144,11 +150,10 @@ mod tests {
     #[test]
     fn a_step_keeps_within_bounds() {
         let on = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
-        let columns = Columns { hold: on.clone(), on, known: 0 };
         let free =
             [Free { step: 1.0, bounds: [0.0, 9.0] }, Free { step: 1.0, bounds: [-9.0, 9.0] }];
-        let step = columns.step(&DVector::from_vec(vec![2.0, 1.0, 0.0]), &[0.0, 0.0], &free);
-        let change = step.unwrap().change;
+        let left = DVector::from_vec(vec![2.0, 1.0, 0.0]);
+        let change = step(&on, 0, &left, &[0.0, 0.0], &free).unwrap().change;
         assert!(change[0] == 0.0 && (change[1] + 0.5).abs() < 1e-6, "{change}");
     }
 }

@@ -102,9 +102,17 @@ pub fn calibrate(
             }
         }
     }
-    let Found { best, declared, rounds, rest } = found;
+    let Found { mut best, declared, mut rounds, rest } = found;
     let search = asked.search(problem);
-    let (before, after) = (search.left(&declared), search.left(&best));
+    let before = search.left(&declared);
+    if search.is_noise(&best)
+        && rest.is_none()
+        && let Some((predicting, round)) = search.predicting(&best)?
+    {
+        best = predicting;
+        rounds.extend(round);
+    }
+    let after = search.left(&best);
     // What no simulation bears out is nothing that the declared model lacks.
     let rest = rest.filter(|_| is_noise(&after) && !best.fit.effects.is_empty());
     let noise = is_noise(&after) && rest.is_none();
@@ -260,7 +268,8 @@ impl Predicting {
 }
 
 /// Values with standard deviations: `(JᵀJ)⁻¹`, J in units of noise; wider where the fit's own residual is larger
-/// than noise, and where rattle pulls values further than noise of one frequency by itself.
+/// than noise, and where rattle pulls values further than noise of one frequency by itself. Values that nothing depends on
+/// are left out.
 fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
     let Fit { effects, jacobian, chi2, white } = &model.fit;
     let deviations = jacobian.as_ref().and_then(|jacobian| {
@@ -271,16 +280,19 @@ fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
             false => 1.0,
         };
         let factor = (chi2 / spare as f64).max(pulled).max(1.0).sqrt();
-        Some(inverse.diagonal().map(|square| square.max(0.0).sqrt() * factor))
+        // What nothing depends on is not known at all.
+        let deviation = |square: f64| if square > 0.0 { square.sqrt() * factor } else { f64::NAN };
+        Some(inverse.diagonal().map(deviation))
     });
     let mut next = 0;
     effects
         .iter()
         .map(|effect| {
-            let fitted = effect.values().map(|(name, value)| {
-                let std = deviations.as_ref().map_or(f64::NAN, |all| all[next]);
+            let fitted = effect.values().filter_map(|(name, value)| {
+                let std = deviations.as_ref().map(|all| all[next]);
                 next += 1;
-                (name, Fitted::new(value, std))
+                let told = std.is_none_or(f64::is_finite);
+                told.then(|| (name, Fitted::new(value, std.unwrap_or(f64::NAN))))
             });
             (effect.clone(), fitted.collect())
         })

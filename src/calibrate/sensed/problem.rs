@@ -46,6 +46,13 @@ pub struct Start {
     still: Option<Mechanism>,
 }
 
+impl Start {
+    /// Whether it was fitted to the recording's first rows: nothing held the machine there.
+    pub fn is_fitted(&self) -> bool {
+        self.released.is_fitted()
+    }
+}
+
 /// A stretch of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Segment {
@@ -263,7 +270,8 @@ impl Problem {
         Ok(recorded.chunks(replicas.len()).map(<[Recording]>::to_vec).collect())
     }
 
-    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it.
+    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it: the first
+    /// replica, or another one.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -272,13 +280,14 @@ impl Problem {
         effects: &[Setting],
         index: usize,
         until: usize,
+        replica: u64,
     ) -> Result<Recording, Stopped> {
         let recording = &self.runs[index].recording;
         let machine = self.released(effects, index)?.machine;
         // Filters see a little beyond the last row.
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        Ok(simulate::record(&machine, self.control, &recording.first(seconds), 0)?)
+        Ok(simulate::record(&machine, self.control, &recording.first(seconds), replica)?)
     }
 
     /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held

@@ -3,10 +3,12 @@
 use super::candidates::starts;
 use super::fit::Target;
 use super::hypotheses::Tried;
-use super::linear::{Columns, Step};
+use super::linear::{Columns, Step, step as linear_step};
 use super::search::Search;
 use super::settle::Model;
-use super::thresholds::{AS_MUCH, CLOSER, GAIN, GAIN_PER_VALUE};
+use super::thresholds::{AS_MUCH, CLOSER, GAIN, GAIN_PER_VALUE, JUDGED};
+use crate::calibrate::fit::free;
+use crate::calibrate::least_squares::derivative;
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -26,21 +28,26 @@ impl Search<'_> {
         });
         let draws = self.draws(model);
         let linear = |candidate: &&Setting| {
-            let best = starts(&on, &model.fit, candidate)
-                .into_iter()
-                .filter_map(|start| self.linear(&on, &hold, model, &jacobians, start))
-                .min_by(|a, b| a.left.total_cmp(&b.left))?;
-            let gain = held.chi2 - best.left;
+            let found = starts(&on, &model.fit, candidate).into_iter();
+            let found = found.filter_map(|start| linear(&on, model, jacobians[0].as_ref(), start));
+            found.min_by(|a, b| a.left.total_cmp(&b.left))
+        };
+        let mut promising: Vec<Linear> = fresh.par_iter().filter_map(linear).collect();
+        promising.sort_by(|a, b| a.left.total_cmp(&b.left));
+        promising.truncate(JUDGED);
+        let judged = |found: &Linear| {
+            let (left, hold) = found.judged(&hold, model, jacobians[1].as_ref())?;
+            let gain = held.chi2 - left;
             let share = (gain / held.chi2).clamp(0.0, 1.0);
+            let columns = Columns { on: found.on.clone(), hold, known: found.known };
             let chance = match gain > 0.5 * GAIN[0] {
-                true => best.columns.chance(&best.step, &draws)?,
+                true => columns.chance(&found.step, &draws)?,
                 false => 0.0,
             };
-            let (effect, fitted, simulated) = (best.effect, false, false);
-            Some(Tried { effect, gain, share, fitted, chance, simulated })
+            let (effect, fitted, simulated) = (found.effect(), false, false);
+            gain.is_finite().then_some(Tried { effect, gain, share, fitted, chance, simulated })
         };
-        let mut tried: Vec<Tried> =
-            fresh.par_iter().filter_map(linear).filter(|tried| tried.gain.is_finite()).collect();
+        let mut tried: Vec<Tried> = promising.par_iter().filter_map(judged).collect();
         tried.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         let closer: Vec<Tried> = tried
             .iter()
@@ -84,57 +91,78 @@ impl Search<'_> {
         let [on, hold] = [&self.split.on, &self.split.hold].map(|part| model.baseline.draws(part));
         on.into_iter().zip(hold).map(|(on, hold)| [on, hold]).collect()
     }
-
-    /// A candidate's values by one linear step from where it starts, and what they leave on the data that
-    /// candidates are judged on; none where there is no such machine.
-    fn linear(
-        &self,
-        on: &Target,
-        hold: &Target,
-        model: &Model,
-        jacobians: &[Option<DMatrix<f64>>; 2],
-        start: Setting,
-    ) -> Option<Linear> {
-        let own: Vec<f64> = start.values().map(|(_, value)| value).collect();
-        let free = crate::calibrate::fit::free(std::slice::from_ref(&start));
-        let look = |target: &Target, values: &[f64]| {
-            let effects = [model.fit.effects.as_slice(), &[start.with(values)]].concat();
-            target.look(&effects).map(|fit| fit.white)
-        };
-        let columns = |target: &Target, base: &DVector<f64>, known: &Option<DMatrix<f64>>| {
-            let mut columns: Vec<DVector<f64>> =
-                known.iter().flat_map(|j| j.column_iter().map(|c| c.into_owned())).collect();
-            for (i, free) in free.iter().enumerate() {
-                let mut beside = own.clone();
-                let back = own[i] + free.step > free.bounds[1];
-                let step = if back { -free.step } else { free.step };
-                beside[i] += step;
-                columns.push((look(target, &beside)? - base) / step);
-            }
-            Some(DMatrix::from_columns(&columns))
-        };
-        let base = look(on, &own)?;
-        let base_held = look(hold, &own)?;
-        let columns = Columns {
-            on: columns(on, &base, &jacobians[0])?,
-            hold: columns(hold, &base_held, &jacobians[1])?,
-            known: jacobians[0].as_ref().map_or(0, DMatrix::ncols),
-        };
-        let step = columns.step(&base, &own, &free)?;
-        let left = (base_held + &columns.hold * &step.change).norm_squared();
-        let change = step.change.iter().skip(columns.known);
-        let values: Vec<f64> = own.iter().zip(change).map(|(own, change)| own + change).collect();
-        left.is_finite().then(|| Linear { effect: start.with(&values), left, columns, step })
-    }
 }
 
-/// A candidate's values by one linear step.
+/// A candidate's values by one linear step from where it starts.
 struct Linear {
-    effect: Setting,
-    /// Σ of squares that they leave on data to judge on.
-    left: f64,
-    columns: Columns,
+    start: Setting,
+    /// Its values there.
+    own: Vec<f64>,
+    /// Derivatives by the model's values and its own on the data that they are fitted on.
+    on: DMatrix<f64>,
+    /// How many values the model has.
+    known: usize,
     step: Step,
+    /// Σ of squares that the step leaves there.
+    left: f64,
+}
+
+/// A candidate beside a model by one linear step from where it starts; none where there is no such machine.
+fn linear(
+    on: &Target,
+    model: &Model,
+    jacobian: Option<&DMatrix<f64>>,
+    start: Setting,
+) -> Option<Linear> {
+    let own: Vec<f64> = start.values().map(|(_, value)| value).collect();
+    let (base, columns) = columns(on, model, jacobian, &start)?;
+    let known = jacobian.map_or(0, DMatrix::ncols);
+    let free = free(std::slice::from_ref(&start));
+    let step = linear_step(&columns, known, &base, &own, &free)?;
+    let left = (base + &columns * &step.change).norm_squared();
+    left.is_finite().then_some(Linear { start, own, on: columns, known, step, left })
+}
+
+/// What a candidate as it starts leaves beside a model, and the derivatives of that by the model's values and its own.
+fn columns(
+    target: &Target,
+    model: &Model,
+    jacobian: Option<&DMatrix<f64>>,
+    start: &Setting,
+) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    let own: Vec<f64> = start.values().map(|(_, value)| value).collect();
+    let look = |values: &[f64]| {
+        let effects = [model.fit.effects.as_slice(), &[start.with(values)]].concat();
+        target.look(&effects).map(|fit| fit.white)
+    };
+    let base = look(&own)?;
+    let free = free(std::slice::from_ref(start));
+    let mut columns: Vec<DVector<f64>> =
+        jacobian.iter().flat_map(|j| j.column_iter().map(|c| c.into_owned())).collect();
+    for i in 0..free.len() {
+        columns.push(derivative(&look, &free, &own, &base, i)?);
+    }
+    Some((base, DMatrix::from_columns(&columns)))
+}
+
+impl Linear {
+    /// Σ of squares that it leaves on data to judge on, and the derivatives there.
+    fn judged(
+        &self,
+        hold: &Target,
+        model: &Model,
+        jacobian: Option<&DMatrix<f64>>,
+    ) -> Option<(f64, DMatrix<f64>)> {
+        let (base, columns) = columns(hold, model, jacobian, &self.start)?;
+        Some(((base + &columns * &self.step.change).norm_squared(), columns))
+    }
+
+    /// The candidate after the step.
+    fn effect(&self) -> Setting {
+        let change = self.step.change.iter().skip(self.known);
+        let values: Vec<f64> = self.own.iter().zip(change).map(|(own, by)| own + by).collect();
+        self.start.with(&values)
+    }
 }
 
 /// Puts the variant with the fewest values that leaves no more than [`AS_MUCH`] times what the best one of its

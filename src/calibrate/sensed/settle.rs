@@ -1,12 +1,13 @@
 //! Models whose values agree with simulations of themselves.
 
 use super::baseline::Baseline;
+use super::errors::{are_met, of_run};
 use super::fit::Fit;
-use super::hypotheses::price;
+use super::hypotheses::{Round, price};
 use super::problem::{Segment, Stopped};
 use super::search::{Search, name, names};
 use super::thresholds::GAIN_PER_VALUE;
-use super::trajectory::fitted;
+use super::trajectory::{fitted, predicted};
 use crate::effects::Setting;
 
 /// A model that simulations of itself have been held against.
@@ -88,17 +89,80 @@ impl Search<'_> {
             return Ok(model);
         }
         (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
-        let effects = fitted(self.problem, &model.fit.effects, &self.split.on)?;
+        let refined = self.fitted(&model.fit.effects)?;
+        Ok(refined.filter(|refined| refined.misfit < model.misfit).unwrap_or(model))
+    }
+
+    /// A model with values from whole simulations, from these on; none where it cannot be.
+    pub(super) fn fitted(&self, effects: &[Setting]) -> Result<Option<Model>, Stopped> {
+        self.at(&fitted(self.problem, effects, &self.split.on)?, &[])
+    }
+
+    /// A model whose predictions of the runs that values are fitted to are met, and the round that led to it, in place of
+    /// one that leaves no more than noise, and whose predictions miss: what residuals do not see may still lead whole
+    /// simulations astray. None where these are met already, and where no such model is found.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub(super) fn predicting(
+        &self,
+        model: &Model,
+    ) -> Result<Option<(Model, Option<Round>)>, Stopped> {
+        if !self.misses(model)? {
+            return Ok(None);
+        }
+        let effects = &model.fit.effects;
+        let closer = if effects.is_empty() {
+            None
+        } else if model.baseline.rattles {
+            (self.tell)(&format!("fitting predictions with {}", names(effects)));
+            let effects = predicted(self.problem, effects, &self.split.on)?;
+            self.at(&effects, &model.fit.deviations()).ok().flatten()
+        } else {
+            (self.tell)(&format!("fitting whole simulations with {}", names(effects)));
+            self.fitted(effects).ok().flatten()
+        };
+        let closer = closer.filter(|closer| self.is_noise(closer));
+        if let Some(closer) = &closer
+            && !self.misses(closer)?
+        {
+            return Ok(Some((closer.clone(), None)));
+        }
+        let mut round = Round::default();
+        let found = self.unseen(closer.as_ref().unwrap_or(model), &mut round.tried)?;
+        for found in found.into_iter().filter(|found| self.is_noise(found)) {
+            if !self.misses(&found)? {
+                round.added = found.fit.effects.last().cloned();
+                return Ok(Some((found, Some(round))));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether a model's predictions miss a run that its values were fitted to.
+    fn misses(&self, model: &Model) -> Result<bool, Stopped> {
+        let (problem, effects) = (self.problem, &model.fit.effects);
+        let starts = problem.starts(effects)?;
+        let replicas = 0..problem.replicas;
+        let clean = problem.simulated_about(effects, &model.fit.deviations(), &starts, replicas)?;
+        Ok(self.split.on.iter().any(|segment| {
+            let (clean, run) = (&clean[segment.run], &problem.runs[segment.run]);
+            let errors = of_run(&problem.declared, &run.recording, "calibration", clean, clean);
+            !are_met(&problem.declared, &errors, clean)
+        }))
+    }
+
+    /// The model with exactly these values, but for `deviations` of its replicas; none where it cannot be.
+    fn at(&self, effects: &[Setting], deviations: &[f64]) -> Result<Option<Model>, Stopped> {
         let segments = [self.split.on.as_slice(), &self.split.hold].concat();
-        let baseline = Baseline::of(self.problem, &effects, &[], &segments)?;
+        let baseline = Baseline::of(self.problem, effects, deviations, &segments)?;
         let on = self.target(&baseline, false);
-        let Some(mut fit) = on.look(&effects) else { return Ok(model) };
+        let Some(mut fit) = on.look(effects) else { return Ok(None) };
         fit.jacobian = on.jacobian(&fit);
-        let Some(held) = self.target(&baseline, true).look(&effects) else { return Ok(model) };
+        let Some(held) = self.target(&baseline, true).look(effects) else { return Ok(None) };
         let own = self.noisiness(&baseline, &self.split.hold);
         let misfit = held.chi2 + own + baseline.lost(&self.split.hold);
-        let refined = Model { fit, held: held.chi2, misfit, baseline };
-        Ok(if refined.misfit < model.misfit { refined } else { model })
+        Ok(Some(Model { fit, held: held.chi2, misfit, baseline }))
     }
 
     /// The model without effects that it does not need.

@@ -1,11 +1,15 @@
 //! Values from whole simulations: what residuals are wrong by depends on all values, and how bodies swing in
-//! their play on some of them more sharply than any force shows.
+//! their play on some of them more sharply than any force shows. Where they rattle nobody can follow that swing, and what
+//! the mean of several simulations predicts is held against the recording in its place.
 
 use super::baseline::Baseline;
+use super::errors::{floors_of, in_floors};
 use super::problem::{Problem, Segment, Stopped};
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::least_squares::{Effort, least_squares};
 use crate::effects::Setting;
+use nalgebra::DVector;
+use rayon::prelude::*;
 
 /// Lengths in s over which values are fitted, one after another: a swing whose frequency is off by a hundredth
 /// keeps its phase for so long at first. The whole follows.
@@ -41,8 +45,42 @@ pub fn fitted(
     Ok(effects)
 }
 
+/// The effects at values whose predictions of these runs, means of replicas that rattle, miss them least, from values
+/// near them on.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn predicted(
+    problem: &Problem,
+    effects: &[Setting],
+    on: &[Segment],
+) -> Result<Vec<Setting>, Stopped> {
+    let replicas = |effects: &[Setting], segment: &Segment| {
+        let one = |replica| problem.one(effects, segment.run, segment.rows.end, replica);
+        (0..problem.replicas as u64).into_par_iter().map(one).collect::<Result<Vec<_>, _>>()
+    };
+    let machine = &problem.declared;
+    let floors: Vec<Vec<Option<f64>>> = on
+        .iter()
+        .map(|segment| Ok(floors_of(machine, &replicas(effects, segment)?)))
+        .collect::<Result<_, Stopped>>()?;
+    let look = |values: &[f64]| {
+        let there = with_values(effects, values);
+        let mut all = Vec::new();
+        for (segment, floors) in on.iter().zip(&floors) {
+            let simulated = replicas(&there, segment).ok()?;
+            let seconds = simulated[0].interval * simulated[0].samples.saturating_sub(1) as f64;
+            let recording = problem.runs[segment.run].recording.first(seconds);
+            all.extend(in_floors(machine, &recording, &simulated, floors));
+        }
+        Some(DVector::from_vec(all))
+    };
+    let best = least_squares(&look, &free(effects), values(effects), EFFORT, None);
+    Ok(best.map_or_else(|| effects.to_vec(), |best| with_values(effects, &best.values)))
+}
+
 /// The first so many seconds of a segment.
-fn shorter(problem: &Problem, segment: &Segment, length: Option<f64>) -> Segment {
+pub fn shorter(problem: &Problem, segment: &Segment, length: Option<f64>) -> Segment {
     let view = &problem.runs[segment.run].view;
     let Some(length) = length else { return segment.clone() };
     let rows = (length / (view.interval * view.stride as f64)) as usize;
