@@ -330,6 +330,12 @@ fn a_full_disk_leaves_nothing_half_done() {
             assert_eq!(place.read("disk/old/timeseries.csv"), old, "{free} kB, {command}");
             assert!(whole(&place.path("disk/old"), "summary.json").is_some());
         }
+        if free == 0 {
+            let line = "evaluate --duration 0.02 --figures peak_contact_force_N --results disk/out";
+            let done = place.freeplay(line);
+            assert!(done.code != 0 && done.err.contains("No space left"), "{}", done.err);
+            assert_eq!(names(&disk.0), ["fill", "old"]);
+        }
         let done = place.freeplay(&format!("{sweep} --out disk/rows"));
         assert!(done.code == 0 || done.err.contains("No space left"), "{}", done.err);
         assert!(!place.path("disk/rows/unfinished.tmp").exists());

@@ -6,7 +6,6 @@ use super::output;
 use crate::simulate::{assemble, findings};
 use crate::study::evaluate::{self, EvaluateError, Parameters};
 use clap::Args;
-use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -52,7 +51,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let line = figures.as_deref().unwrap_or(FAIL);
     match &arguments.results {
         None => output::print(&format!("{line}\n"))?,
-        Some(file) => fs::write(file, format!("{line}\n")).map_err(|error| {
+        Some(file) => output::whole(file, &format!("{line}\n")).map_err(|error| {
             Failure::Other(format!("cannot write the results `{}`: {error}", file.display()))
         })?,
     }

@@ -3,7 +3,9 @@
 use super::table::{self, paragraph};
 use crate::measure::shown::shown;
 use std::fmt::Write as _;
+use std::fs;
 use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
 /// Prints `text` on standard output, what would act on a terminal as numbers. A reader who closed the pipe (`| head`) has seen
 /// enough: that is no error.
@@ -13,6 +15,21 @@ pub(super) fn print(text: &str) -> io::Result<()> {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error),
         _ => Ok(()),
     }
+}
+
+/// Writes a file aside and gives it its name: at no time is there half of it, and none at all where the disk is full. What
+/// is no file, such as a pipe, is written to as it is.
+pub(super) fn whole(file: &Path, text: &str) -> io::Result<()> {
+    if file.exists() && !file.is_file() {
+        return fs::write(file, text);
+    }
+    let mut aside = file.as_os_str().to_owned();
+    aside.push(".partial");
+    let aside = PathBuf::from(aside);
+    fs::write(&aside, text)
+        .and_then(|()| fs::rename(&aside, file))
+        // The error is that of the writing.
+        .inspect_err(|_| drop(fs::remove_file(&aside)))
 }
 
 /// Characters after which a complaint is cut: it quotes a file that is no text for people.

@@ -324,12 +324,7 @@ fn read(table: &Path) -> Result<Vec<Tried>, Failure> {
 fn write(table: &Path, all: &[Tried]) -> Result<(), Failure> {
     let rows: Result<Vec<String>, _> = all.iter().map(serde_json::to_string).collect();
     let rows = rows.map_err(|error| Failure::Other(error.to_string()))?;
-    let mut aside = table.as_os_str().to_owned();
-    aside.push(".partial");
-    let aside = PathBuf::from(aside);
-    fs::write(&aside, rows.join("\n") + "\n")
-        .and_then(|()| fs::rename(&aside, table))
-        .map_err(|error| refused(table, &error))
+    output::whole(table, &(rows.join("\n") + "\n")).map_err(|error| refused(table, &error))
 }
 
 fn refused(table: &Path, error: &std::io::Error) -> Failure {

@@ -4,13 +4,13 @@ use super::failure::{Failure, refuse_errors};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::output;
 use super::progress::Progress;
-use super::signals;
 use super::table::table;
 use crate::report::{length, number};
 use crate::simulate::{assemble, findings};
 use crate::study::wear::{Predicted, Request, WEAR_PREDICTED_FILE, WearError, period_of, wear};
 use clap::Args;
 use std::fmt::Write as _;
+use std::sync::atomic::AtomicBool;
 
 /// Predict how bearing rings wear over many cycles
 ///
@@ -57,10 +57,7 @@ impl From<WearError> for Failure {
         match error {
             WearError::Problem(problem) => problem.into(),
             WearError::Files(error) => error.into(),
-            WearError::Interrupted => signals::interrupted(),
-            error @ (WearError::Halted { .. } | WearError::TooShort { .. }) => {
-                Failure::Other(error.to_string())
-            }
+            error => Failure::Other(error.to_string()),
         }
     }
 }
@@ -108,12 +105,10 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.folder.prepare("wear", &scenario.name, WEAR_PREDICTED_FILE)?;
     let request = Request { cycles, period, tolerance };
     let mut progress = Progress::counted(cycles, "cycles", arguments.print.quiet);
-    let predicted =
-        wear(&scenario, request, folder, signals::looked_at(), &mut |n| progress.reached(n));
+    // A signal ends the process: half a prediction is none.
+    let never = AtomicBool::new(false);
+    let predicted = wear(&scenario, request, folder, &never, &mut |n| progress.reached(n));
     progress.clear();
-    if let Err(WearError::Interrupted) = predicted {
-        output::complain("the prediction was interrupted; nothing is written");
-    }
     let predicted = predicted?;
     arguments.print.result(&predicted.json, || text(&predicted))?;
     Ok(())

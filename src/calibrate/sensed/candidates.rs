@@ -45,7 +45,7 @@ pub fn starts(target: &Target, model: &Fit, candidate: &Setting) -> Vec<Setting>
     }
     // The first value is an amplitude: the best multiple of each start, by least squares.
     let scored = listed.into_iter().filter_map(|mut start| {
-        let column = within(&model.white, &mut start, 0, &change)?;
+        let column = within(&model.white, &mut start, (0, 0.0), &change)?;
         let multiple = -column.dot(&model.white) / column.norm_squared();
         if multiple <= 0.0 || !multiple.is_finite() {
             return Some((0.0, candidate.with(&start)));
@@ -65,17 +65,18 @@ pub fn starts(target: &Target, model: &Fit, candidate: &Setting) -> Vec<Setting>
     best(scored.collect())
 }
 
-/// What values change of a residual, an amplitude made smaller until that is not [too much](too_far).
-fn within(
+/// What values change of a residual, one of them brought nearer to its `neutral` value until that is not
+/// [too much](too_far).
+pub(super) fn within(
     residual: &DVector<f64>,
     values: &mut [f64],
-    amplitude: usize,
+    (place, neutral): (usize, f64),
     change: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
 ) -> Option<DVector<f64>> {
     for _ in 0..REDUCTIONS {
         match change(values) {
             Some(column) if !too_far(&column, residual) => return Some(column),
-            _ => values[amplitude] *= REDUCED,
+            _ => values[place] = neutral + REDUCED * (values[place] - neutral),
         }
     }
     change(values)
@@ -126,7 +127,7 @@ fn scanned(
                 values[over] = value;
                 values[phase] = angle;
                 values[amplitude] = unit;
-                let column = within(&model.white, &mut values, amplitude, change)?;
+                let column = within(&model.white, &mut values, (amplitude, 0.0), change)?;
                 columns.push(column * (unit / values[amplitude]));
             }
         }

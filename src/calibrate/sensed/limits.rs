@@ -5,6 +5,7 @@
 //! make good, `a c⊥`, brings more than a chance candidate does. Currie, *Anal. Chem.* 40 (1968) 586–593, has the
 //! two kinds of error that a limit is a balance of.
 
+use super::candidates::within;
 use super::fit::Target as Fitted;
 use super::search::Search;
 use super::settle::Model;
@@ -61,10 +62,14 @@ pub fn limits(search: &Search, model: &Model) -> Vec<Limit> {
             let (parameter, neutral) = candidate.values().next()?;
             let step = candidate.kind.parameter(parameter)?;
             let ways = ways(candidate, neutral, step.step);
-            // Seen whatever its phase: the way that shows least counts.
-            let smallest = ways.iter().try_fold(0.0f64, |worst, values| {
+            let change = |values: &[f64]| {
                 let with = [model.fit.effects.as_slice(), &[candidate.with(values)]].concat();
-                let column = (hold.look(&with)?.white - &base.white) / (values[0] - neutral).abs();
+                Some(hold.look(&with)?.white - &base.white)
+            };
+            // Seen whatever its phase: the way that shows least counts.
+            let smallest = ways.into_iter().try_fold(0.0f64, |worst, mut values| {
+                let column = within(&base.white, &mut values, (0, neutral), &change)?;
+                let column = column / (values[0] - neutral).abs();
                 Some(worst.max(size(&column, own.as_ref(), &parts, model.baseline.rattles)))
             });
             let room = (step.bounds[1] - neutral).abs().max((step.bounds[0] - neutral).abs());

@@ -18,7 +18,6 @@ impl Search<'_> {
     pub(super) fn screened(&self, model: &Model) -> Vec<Tried> {
         let (on, hold) = (self.target(&model.baseline, false), self.target(&model.baseline, true));
         let Some(held) = hold.look(&model.fit.effects) else { return Vec::new() };
-        let own = model.fit.effects.len();
         let fresh = |candidate: &&Setting| !model.fit.effects.iter().any(|e| e.is(candidate));
         let fresh: Vec<&Setting> = self.candidates.iter().filter(fresh).collect();
         // What the values of the model could make good is no candidate's merit.
@@ -50,27 +49,9 @@ impl Search<'_> {
         let mut tried: Vec<Tried> = promising.par_iter().filter_map(judged).collect();
         tried.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         let closer: Vec<Tried> = tried
-            .iter()
-            .take(CLOSER)
-            .collect::<Vec<_>>()
             .par_iter()
-            .filter_map(|near| {
-                let start =
-                    [model.fit.effects.as_slice(), std::slice::from_ref(&near.effect)].concat();
-                let fit = on.fit(&start, 8)?;
-                let there = hold.look(&fit.effects)?;
-                let gain = held.chi2 - there.chi2;
-                let shrunk = || model.baseline.shrunk(self.problem, &fit.effects, &self.split.hold);
-                let gain = if gain > 0.0 { gain - shrunk()? } else { gain };
-                let share = (gain / held.chi2).clamp(0.0, 1.0);
-                Some(Tried {
-                    effect: fit.effects[own].clone(),
-                    gain,
-                    share,
-                    fitted: true,
-                    ..(*near).clone()
-                })
-            })
+            .take(CLOSER)
+            .filter_map(|near| self.closer(model, near, held.chi2))
             .collect();
         for better in closer {
             if let Some(known) = tried.iter_mut().find(|t| {
@@ -84,6 +65,19 @@ impl Search<'_> {
         tried.sort_by(|a, b| (b.gain - price(b)).total_cmp(&(a.gain - price(a))));
         simpler_next(&mut tried);
         tried
+    }
+
+    /// A candidate with its values fitted by more than one step beside those of a model that leaves `held` on the data to
+    /// judge on, and without what it gains by shrinking noise.
+    fn closer(&self, model: &Model, near: &Tried, held: f64) -> Option<Tried> {
+        let start = [model.fit.effects.as_slice(), std::slice::from_ref(&near.effect)].concat();
+        let fit = self.target(&model.baseline, false).fit(&start, 8)?;
+        let gain = held - self.target(&model.baseline, true).look(&fit.effects)?.chi2;
+        let shrunk = || model.baseline.shrunk(self.problem, &fit.effects, &self.split.hold);
+        let gain = if gain > 0.0 { gain - shrunk()? } else { gain };
+        let share = (gain / held).clamp(0.0, 1.0);
+        let effect = fit.effects.last()?.clone();
+        Some(Tried { effect, gain, share, fitted: true, ..near.clone() })
     }
 
     /// Draws of a model's noise, on the data that values are fitted on and on those that candidates are judged on.
