@@ -275,12 +275,12 @@ fn estimates(model: &Settled, on: &[Segment]) -> Vec<Vec<Estimate>> {
 
 /// `(JᵀJ)⁻¹`, of values of very different size; 0 of those that no residual depends on, none of what is no number.
 pub(super) fn inverse_normal(jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let length = |norm: f64| if norm > 0.0 { norm } else { 1.0 };
-    let scale: Vec<f64> = jacobian.column_iter().map(|c| length(c.norm())).collect();
     // The decomposition does not end with such.
-    if !scale.iter().all(|length| length.is_finite()) {
+    if !jacobian.iter().all(|value| value.is_finite()) {
         return None;
     }
+    let length = |norm: f64| if norm > 0.0 { norm } else { 1.0 };
+    let scale: Vec<f64> = jacobian.column_iter().map(|c| length(c.norm())).collect();
     let scaled = |matrix: DMatrix<f64>| {
         DMatrix::from_fn(scale.len(), scale.len(), |r, c| matrix[(r, c)] / (scale[r] * scale[c]))
     };
