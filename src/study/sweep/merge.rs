@@ -48,12 +48,17 @@ pub fn merge(
         refuse_missing(&rows, identity.runs, parts, &records)?;
     }
 
+    let file = first_part.join(SCENARIO_FILE);
+    let scenario = fs::read_to_string(&file).map_err(|error| {
+        let file = file.display();
+        SweepError::input(format!(
+            "cannot read `{file}`: {error}; each part has the sweep's scenario"
+        ))
+    })?;
     let folder = Folder::prepare(target, RECORD_FILE, force).map_err(RunError::from)?;
     let place = folder.path();
     put(place, JOURNAL_FILE, journal::text(identity, &rows))?;
-    if let Ok(scenario) = fs::read_to_string(first_part.join(SCENARIO_FILE)) {
-        put(place, SCENARIO_FILE, &scenario)?;
-    }
+    put(place, SCENARIO_FILE, &scenario)?;
     let outcome = write(place, target, identity, Shard::WHOLE, &rows)?;
     folder.finish().map_err(RunError::from)?;
     Ok(outcome)
