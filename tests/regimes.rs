@@ -218,7 +218,7 @@ fn extreme_machines_run_halt_or_are_refused() {
     campaign(0..48);
 }
 
-/// Half an hour of two cores; with `REGIME=1460` that one alone, whose scenario is printed.
+/// Three to thirty minutes of two cores; with `REGIME=1460` that one alone, whose scenario is printed.
 #[test]
 #[ignore = "a campaign"]
 fn many_extreme_machines_run_halt_or_are_refused() {

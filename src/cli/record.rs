@@ -38,6 +38,10 @@ pub(super) struct Arguments {
     /// Rows a second
     #[arg(long, value_name = "HZ", default_value_t = 1000.0)]
     rate: f64,
+    /// Go on although it may take more than 10 min or write more than 1 GB, as judged by the first half second;
+    /// without this nothing is recorded then
+    #[arg(long)]
+    yes: bool,
     #[command(flatten)]
     folder: FolderOptions,
     #[command(flatten)]
@@ -71,6 +75,16 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     refuse_errors(findings(&scenario, &mut machine))?;
     let prepared = prepare(&scenario, &machine, rows)?;
     let folder = arguments.folder.prepare("record", &scenario.name, RECORD_FILE)?;
+    if !arguments.yes {
+        let forecast = prepared.forecast()?;
+        if forecast.is_too_much() {
+            let message = format!(
+                "recording may {forecast}, judged by its first half second; say --yes if that is meant, or give a \
+                 smaller --duration or --rate, or a larger simulation.tolerance"
+            );
+            return Err(Failure::Input(vec![message]));
+        }
+    }
     let done = Spinner::during(arguments.print.quiet, |tell| into_folder(&prepared, folder, tell))?;
     Ok(arguments.print.result(&done.json, || text(&done))?)
 }

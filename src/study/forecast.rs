@@ -25,7 +25,8 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    fn is_too_much(self) -> bool {
+    /// Whether that is more than anybody wants unasked.
+    pub fn is_too_much(self) -> bool {
         self.seconds.is_some_and(|seconds| seconds > MOST_SECONDS) || self.bytes > MOST_BYTES
     }
 }

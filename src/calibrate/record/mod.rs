@@ -16,11 +16,12 @@ use super::sensed::predict::Along;
 use super::sensed::recording::Recording;
 use super::sensed::simulate::noisy;
 use super::sensed::start::machine;
+use super::sensed::thresholds::PREDICTING;
 use crate::mechanism::Mechanism;
 use crate::report::{Picture, Style};
 use crate::scenario::{Law, Scenario};
 use crate::simulate::{Machine, Provenance};
-use crate::study::{Folder, PAGE_FILE, RunError};
+use crate::study::{Folder, Forecast, PAGE_FILE, RunError};
 pub(super) use run::{Made, like};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -176,6 +177,40 @@ pub fn prepare(
     Ok(Prepared { truth: scenario.clone(), rig, rows, likes: likes.to_vec() })
 }
 
+/// First seconds of a recording that tell what all of it will take: a machine has come to full speed by then.
+const JUDGED: f64 = 0.5;
+
+/// Bytes that a number takes in a recording, with the comma behind it.
+const BYTES: f64 = 12.0;
+
+impl Prepared {
+    /// What recording will cost at most, judged by its beginning: as many simulations as where joints rattle.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub fn forecast(&self) -> Result<Forecast, CalibrateError> {
+        let Prepared { truth, rows, likes, .. } = self;
+        let judged = rows.duration.min(JUDGED);
+        let started = Clock::now();
+        let first = first(truth, &likes[0])?;
+        clean((truth, &[]), &first, &likes[0].first(judged), control(truth), 1)
+            .map_err(CalibrateError::from)?;
+        let models = if truth.effects.is_empty() { 1 } else { 2 };
+        let simulations = RUNS.len() * (1 + models * PREDICTING);
+        let at_once = rayon::current_num_threads().min(PREDICTING);
+        let each = started.elapsed().as_secs_f64() * rows.duration / judged;
+        let columns = crate::model::parts_of(truth)?.sensors.len() + 1;
+        let numbers = rows.rate * rows.duration * (columns * RUNS.len()) as f64;
+        let seconds = Some(each * simulations as f64 / at_once as f64);
+        Ok(Forecast { seconds, bytes: BYTES * numbers })
+    }
+}
+
+/// The rows that say where a machine is let go: the first one alone of a machine that nothing drives.
+fn first(truth: &Scenario, like: &Recording) -> Result<Recording, CalibrateError> {
+    Ok(if without_drives(truth)? { like.first(like.interval) } else { like.clone() })
+}
+
 /// One recording, and what is said of it.
 struct One {
     noisy: Recording,
@@ -240,7 +275,7 @@ pub fn into_folder(
 
 fn recorded(prepared: &Prepared, index: usize, like: &Recording) -> Result<One, CalibrateError> {
     let Prepared { truth, rig, .. } = prepared;
-    let first = if without_drives(truth)? { like.first(like.interval) } else { like.clone() };
+    let first = first(truth, like)?;
     let clean =
         clean((truth, &[]), &first, like, control(truth), 1).map_err(CalibrateError::from)?;
     let at = |model: &Scenario, like: &Recording| machine(model, &[], like);
