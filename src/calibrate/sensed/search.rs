@@ -158,7 +158,10 @@ impl<'a> Search<'a> {
             best = self.simplified(best)?;
             best = self.needed(best)?;
             if !self.is_noise(&best) {
-                best = self.refined(best)?;
+                best = match best.baseline.rattles {
+                    true => self.foretold(&best)?.unwrap_or(best),
+                    false => self.refined(best)?,
+                };
             }
         }
         credited(rounds, &best.fit.effects);

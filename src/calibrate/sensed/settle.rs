@@ -115,14 +115,11 @@ impl Search<'_> {
         let closer = if effects.is_empty() {
             None
         } else if model.baseline.rattles {
-            (self.tell)(&format!("fitting predictions with {}", names(effects)));
-            let effects = predicted(self.problem, effects, &self.split.on)?;
-            self.at(&effects, &model.fit.deviations()).ok().flatten()
+            self.foretold(model)?
         } else {
             (self.tell)(&format!("fitting whole simulations with {}", names(effects)));
-            self.fitted(effects).ok().flatten()
+            self.fitted(effects).ok().flatten().filter(|closer| self.is_noise(closer))
         };
-        let closer = closer.filter(|closer| self.is_noise(closer));
         if let Some(closer) = &closer
             && !self.misses(closer)?
         {
@@ -137,6 +134,14 @@ impl Search<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// A model whose joints rattle with values from predictions; none where these leave more than noise.
+    pub(super) fn foretold(&self, model: &Model) -> Result<Option<Model>, Stopped> {
+        (self.tell)(&format!("fitting predictions with {}", names(&model.fit.effects)));
+        let effects = predicted(self.problem, &model.fit.effects, &self.split.on)?;
+        let foretold = self.at(&effects, &model.fit.deviations()).ok().flatten();
+        Ok(foretold.filter(|foretold| self.is_noise(foretold)))
     }
 
     /// Whether a model's predictions miss a run that its values were fitted to.
