@@ -41,6 +41,15 @@ fn parameters_come_in_any_form_and_results_go_into_a_file() {
         assert_eq!(place.good(&format!("{line} --parameters {file}")), expected, "{file}");
     }
     assert_eq!(place.good(&format!("{line} --parameters json --results out")), "");
+    // A link stays one, and what it points at is written.
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("elsewhere", place.path("link")).unwrap();
+        place.write("elsewhere", "before");
+        place.good(&format!("{line} --parameters json --results link"));
+        assert!(place.path("link").symlink_metadata().unwrap().is_symlink());
+        assert_eq!(place.read("elsewhere"), place.read("out"));
+    }
     assert_eq!(place.read("out"), expected);
 }
 

@@ -18,16 +18,17 @@ pub(super) fn print(text: &str) -> io::Result<()> {
 }
 
 /// Writes a file aside and gives it its name: at no time is there half of it, and none at all where the disk is full. What
-/// is no file, such as a pipe, is written to as it is.
+/// is no file, such as a pipe, is written to as it is, and a link stays one: what it points at is replaced.
 pub(super) fn whole(file: &Path, text: &str) -> io::Result<()> {
     if file.exists() && !file.is_file() {
         return fs::write(file, text);
     }
+    let file = file.canonicalize().unwrap_or_else(|_| file.to_owned());
     let mut aside = file.as_os_str().to_owned();
     aside.push(".partial");
     let aside = PathBuf::from(aside);
     fs::write(&aside, text)
-        .and_then(|()| fs::rename(&aside, file))
+        .and_then(|()| fs::rename(&aside, &file))
         // The error is that of the writing.
         .inspect_err(|_| drop(fs::remove_file(&aside)))
 }
