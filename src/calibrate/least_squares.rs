@@ -210,6 +210,21 @@ mod tests {
     const WIDE: [f64; 2] = [-1e3, 1e3];
     const NEW: Effort = Effort { steps: 100, enough: 1e-12, secant: false };
 
+    /// A step that leads to where there is no machine, and one that changes more than all there is: both are shortened.
+    #[test]
+    fn a_step_is_no_longer_than_a_machine_can_take() {
+        let free = [Free { step: 1.0, bounds: WIDE }];
+        let left = DVector::from_vec(vec![1.0]);
+        let bounded = |v: &[f64]| (v[0] < 0.5).then(|| DVector::from_vec(vec![1.0 + 3.0 * v[0]]));
+        let bent = |v: &[f64]| Some(DVector::from_vec(vec![1.0 + 3.0 * v[0] + 3e3 * v[0].powi(2)]));
+        let slope = |look: Look| derivative(look, &free, &[0.0], &left, 0).unwrap()[0];
+        assert!((slope(&bounded) - 3.0).abs() < 1e-9);
+        // Over 1 it would be 3003; over a hundredth of that the residual changes by a third of itself.
+        assert!((slope(&bent) - 33.0).abs() < 1e-9, "{}", slope(&bent));
+        let nowhere = |_: &[f64]| None;
+        assert!(derivative(&nowhere, &free, &[0.0], &left, 0).is_none());
+    }
+
     #[test]
     fn a_curved_valley_is_followed_to_its_end() {
         // Rosenbrock's function: its smallest value is 0 at (1, 1).
