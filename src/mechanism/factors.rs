@@ -27,4 +27,17 @@ impl Factors {
             Self::Other(factors) => factors.solve(right, ROUNDING).ok(),
         }
     }
+
+    /// What a right-hand side of `height` numbers, one in one of these rows by itself and zero elsewhere, leads to, side by side;
+    /// none of a singular matrix.
+    pub fn responses(&self, height: usize, rows: &[usize]) -> Option<DMatrix<f64>> {
+        let mut right = DMatrix::zeros(height, rows.len());
+        for (column, &row) in rows.iter().enumerate() {
+            right[(row, column)] = 1.0;
+        }
+        match self {
+            Self::Square(factors) => factors.solve(&right),
+            Self::Other(factors) => factors.solve(&right, ROUNDING).ok(),
+        }
+    }
 }

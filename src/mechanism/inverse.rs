@@ -1,11 +1,11 @@
 //! Inverse dynamics: the efforts and joint forces that a motion of the machine without clearance takes, and
 //! where its bodies are when journals lean on their rings under those forces.
 
-use super::assembly::{Closure, matrix};
+use super::assembly::matrix;
 use super::factors::Factors;
 use super::{Bearing, BodyState, Command, JointIndex, Mechanism, Revolute, Situation, Tracker};
 use crate::contact::Friction;
-use nalgebra::{DMatrix, DVector, Dyn, UnitComplex, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, UnitComplex, Vector2, Vector3};
 
 /// What a motion takes at one instant.
 #[derive(Clone, Debug)]
@@ -29,17 +29,17 @@ pub struct Posed {
     /// Each body's reference point, from the centre of mass that the motion is given for.
     references: Vec<Vector2<f64>>,
     drives: usize,
-    closure: Closure,
-    rows: DMatrix<f64>,
-    /// Places of the rows of joints among them.
-    joints: Vec<usize>,
-    /// `Jᵀ` of all rows.
-    transposed: Factors,
-    held: Held,
-    /// Rows that determine the pose, and how many they are.
-    determining: Factors,
-    conditions: usize,
-    by_drives: bool,
+    /// Driven joints' rows, a column for each, and which drive that is.
+    driven: DMatrix<f64>,
+    driving: Vec<usize>,
+    /// From what bodies need to the efforts of these, a column for each.
+    efforts: DMatrix<f64>,
+    /// Revolute joints with rows of their own.
+    revolutes: Vec<usize>,
+    /// From what bodies need beside the efforts to these joints' forces, x and y of one after another.
+    forces: DMatrix<f64>,
+    /// From these joints' gaps, likewise, to the shifts of bodies.
+    shifts: DMatrix<f64>,
 }
 
 impl Tracker {
@@ -50,13 +50,26 @@ impl Tracker {
         self.mechanism().true_commands(self.time(), &mut commands);
         let closure = self.mechanism().closure(self.states(), &commands);
         let rows = matrix(&closure.rows, bodies);
-        let joints: Vec<usize> =
-            (0..closure.rows.len()).filter(|&row| closure.driven[row].is_none()).collect();
-        let held = Held::new(&rows.select_rows(&joints), self.mechanism().size())?;
-        // What is imposed stays where it is.
-        let determining = match self.by_drives() {
-            true => rows.clone(),
-            false => matrix(&self.determining(), bodies),
+        let all = 0..closure.rows.len();
+        let (driven, joints): (Vec<usize>, Vec<usize>) =
+            all.partition(|&row| closure.driven[row].is_some());
+        let is_revolute = |row: &usize| matches!(closure.joints[*row], JointIndex::Revolute(_));
+        let places: Vec<usize> = (0..joints.len()).filter(|&k| is_revolute(&joints[k])).collect();
+        let own: Vec<usize> = places.iter().map(|&k| joints[k]).collect();
+        let all_forces = forces(&rows.select_rows(&joints), self.mechanism().size())?;
+        // What is imposed stays where it is. By a target the rows of joints stand first, without those of drives among them.
+        let factors = Factors::of(rows.clone());
+        let shifts = match self.by_drives() {
+            true => factors.responses(rows.nrows(), &own)?,
+            false => {
+                let determining = matrix(&self.determining(), bodies);
+                let height = determining.nrows();
+                Factors::of(determining).responses(height, &places)?
+            }
+        };
+        let revolute = |row: &usize| match closure.joints[*row] {
+            JointIndex::Revolute(i) => Some(i),
+            JointIndex::Prismatic(_) => None,
         };
         Some(Posed {
             t: self.time(),
@@ -64,14 +77,13 @@ impl Tracker {
             accelerations: (0..bodies).map(|i| self.acceleration(i)).collect(),
             references: self.mechanism().bodies.iter().map(|body| body.reference).collect(),
             drives: self.mechanism().actuators.len(),
-            transposed: Factors::of(rows.transpose()),
-            closure,
-            rows,
-            joints,
-            held,
-            conditions: determining.nrows(),
-            determining: Factors::of(determining),
-            by_drives: self.by_drives(),
+            // `Jᵀ x = w` asks for rows of (Jᵀ)⁻¹, which are columns of J⁻¹.
+            efforts: factors.responses(rows.nrows(), &driven)?,
+            driving: driven.iter().filter_map(|&row| closure.driven[row]).collect(),
+            driven: rows.select_rows(&driven).transpose(),
+            revolutes: own.iter().step_by(2).filter_map(revolute).collect(),
+            forces: all_forces.select_rows(&places),
+            shifts,
         })
     }
 }
@@ -84,7 +96,7 @@ impl Posed {
 
     /// Memory that it takes, in numbers of eight bytes, all but a few.
     pub fn size(&self) -> usize {
-        4 * self.rows.len() + self.joints.len() * (self.rows.ncols() + self.joints.len())
+        self.driven.len() + self.efforts.len() + self.forces.len() + self.shifts.len()
     }
 
     /// Centre of mass of a body of `mechanism` (m, in its own axes) from the one that the motion is given for.
@@ -94,13 +106,8 @@ impl Posed {
 
     /// States of all bodies of `mechanism`.
     pub fn states(&self, mechanism: &Mechanism) -> Vec<BodyState> {
-        self.centred(mechanism, &self.states)
-    }
-
-    /// The same bodies elsewhere, by their centres of mass in `mechanism`.
-    fn centred(&self, mechanism: &Mechanism, states: &[BodyState]) -> Vec<BodyState> {
         let centred = |(i, state): (usize, &BodyState)| state.at(self.centre(mechanism, i));
-        states.iter().enumerate().map(centred).collect()
+        self.states.iter().enumerate().map(centred).collect()
     }
 
     /// Acceleration of body `index` of `mechanism` (m/s², m/s², rad/s²).
@@ -134,50 +141,45 @@ impl Posed {
             reactions: vec![Vector2::zeros(); mechanism.revolutes.len()],
             leaning: Vec::new(),
         };
+        let mut left = needed.clone();
         for pass in 0..=usize::from(rubbing) {
             if pass > 0 {
                 rub(mechanism, &states, &taken.reactions, &mut needed);
             }
-            let exact = self.transposed.solve(&needed)?;
-            let mut left = needed.clone();
-            for (row, drive) in self.closure.driven.iter().enumerate() {
-                let Some(drive) = *drive else { continue };
-                taken.efforts[drive] = exact[row];
-                let given = measured.get(drive).copied().flatten().unwrap_or(exact[row]);
-                left -= self.rows.row(row).transpose() * given;
+            let exact = self.efforts.tr_mul(&needed);
+            left.copy_from(&needed);
+            for (k, &drive) in self.driving.iter().enumerate() {
+                taken.efforts[drive] = exact[k];
+                let given = measured.get(drive).copied().flatten().unwrap_or(exact[k]);
+                left.axpy(-given, &self.driven.column(k), 1.0);
             }
-            let multipliers = self.held.forces(&left)?;
-            let mut next = 0;
-            for (k, &row) in self.joints.iter().enumerate() {
-                if let JointIndex::Revolute(i) = self.closure.joints[row] {
-                    taken.reactions[i][next % 2] = multipliers[k];
-                    next += 1;
-                }
+            let forces = &self.forces * &left;
+            if !forces.iter().all(|x| x.is_finite()) {
+                return None;
+            }
+            for (k, &joint) in self.revolutes.iter().enumerate() {
+                taken.reactions[joint] = forces.fixed_rows::<2>(2 * k).into_owned();
             }
         }
-        taken.leaning = self.leaning(mechanism, &taken.reactions)?;
+        taken.leaning = self.leaning(mechanism, &taken.reactions);
         Some(taken)
     }
 
     /// States with journals that lean on their rings under these joint forces (N).
-    fn leaning(&self, mechanism: &Mechanism, reactions: &[Vector2<f64>]) -> Option<Vec<BodyState>> {
-        let mut gaps = DVector::zeros(self.conditions);
-        let mut next = 0;
-        for (place, &row) in self.joints.iter().enumerate() {
-            if let JointIndex::Revolute(i) = self.closure.joints[row] {
-                // By a target the rows of joints stand first, without those of drives among them.
-                let place = if self.by_drives { row } else { place };
-                gaps[place] = self.lean(&mechanism.revolutes[i], reactions[i])[next % 2];
-                next += 1;
-            }
+    fn leaning(&self, mechanism: &Mechanism, reactions: &[Vector2<f64>]) -> Vec<BodyState> {
+        let mut gaps = DVector::zeros(self.shifts.ncols());
+        for (k, &joint) in self.revolutes.iter().enumerate() {
+            let lean = self.lean(&mechanism.revolutes[joint], reactions[joint]);
+            gaps.fixed_rows_mut::<2>(2 * k).copy_from(&lean);
         }
-        let shift = self.determining.solve(&gaps)?;
-        let mut leaning = self.states.clone();
-        for (i, state) in leaning.iter_mut().enumerate() {
+        let shift = &self.shifts * gaps;
+        let moved = |(i, state): (usize, &BodyState)| {
+            let mut state = *state;
             state.position += shift.fixed_rows::<2>(3 * i);
             state.rotation *= UnitComplex::new(shift[3 * i + 2]);
-        }
-        Some(self.centred(mechanism, &leaning))
+            state.at(self.centre(mechanism, i))
+        };
+        self.states.iter().enumerate().map(moved).collect()
     }
 
     /// From the ring's centre to the journal's in m, where the ring pushes the journal with this force (N).
@@ -265,43 +267,29 @@ impl Mechanism {
     }
 }
 
-/// Rows of joints, ready to say which forces in them come nearest to what bodies need.
-#[derive(Clone, Debug)]
-struct Held {
-    rows: DMatrix<f64>,
-    gram: nalgebra::Cholesky<f64, Dyn>,
-    size: f64,
-}
-
 /// Share of the largest row's square that keeps joints which say the same twice from being singular: their
 /// forces are then the smallest.
 const RIDGE: f64 = 1e-12;
 
-impl Held {
-    fn new(rows: &DMatrix<f64>, size: f64) -> Option<Self> {
+/// What turns that which bodies need into the λ that leaves least of `needed − Jᵀ λ`, moments as forces at the `size` of the
+/// mechanism in m: `(J S S Jᵀ)⁻¹ J S S`.
+fn forces(rows: &DMatrix<f64>, size: f64) -> Option<DMatrix<f64>> {
+    let scaled = |rows: &DMatrix<f64>| {
         let mut rows = rows.clone();
         for (k, mut column) in rows.column_iter_mut().enumerate() {
             if k % 3 == 2 {
                 column /= size;
             }
         }
-        let mut gram = &rows * rows.transpose();
-        let ridge = RIDGE * gram.diagonal().amax();
-        for i in 0..gram.nrows() {
-            gram[(i, i)] += ridge;
-        }
-        Some(Self { gram: gram.cholesky()?, rows, size })
+        rows
+    };
+    let once = scaled(rows);
+    let mut gram = &once * once.transpose();
+    let ridge = RIDGE * gram.diagonal().amax();
+    for i in 0..gram.nrows() {
+        gram[(i, i)] += ridge;
     }
-
-    /// The λ that leaves least of `needed − Jᵀ λ`, moments as forces at the size of the mechanism.
-    fn forces(&self, needed: &DVector<f64>) -> Option<DVector<f64>> {
-        let mut scaled = needed.clone();
-        for k in (2..scaled.len()).step_by(3) {
-            scaled[k] /= self.size;
-        }
-        let forces = self.gram.solve(&(&self.rows * scaled));
-        forces.iter().all(|x| x.is_finite()).then_some(forces)
-    }
+    Some(gram.cholesky()?.solve(&scaled(&once)))
 }
 
 /// Takes the friction of joints with clearance, under these joint forces (N), from what bodies need.

@@ -43,9 +43,14 @@ pub fn starts(target: &Target, model: &Fit, candidate: &Setting) -> Vec<Setting>
     if listed.is_empty() {
         return vec![candidate.clone()];
     }
-    // The first value is an amplitude: the best multiple of each start, by least squares.
+    // The first value is an amplitude: the best multiple of each start, by least squares. What was too much of it once is
+    // not tried again.
+    let mut share = 1.0;
     let scored = listed.into_iter().filter_map(|mut start| {
+        let listed = start[0];
+        start[0] *= share;
         let column = within(&model.white, &mut start, (0, 0.0), &change)?;
+        share = start[0] / listed;
         let multiple = -column.dot(&model.white) / column.norm_squared();
         if multiple <= 0.0 || !multiple.is_finite() {
             return Some((0.0, candidate.with(&start)));
@@ -118,17 +123,21 @@ fn scanned(
             (0..=count).step_by(stride).map(|i| 1.0 / (from + i as f64 * step)).collect()
         }
     };
+    // What was too much of an amplitude once is not tried again.
+    let mut sizes: Vec<f64> =
+        amplitudes.iter().map(|&amplitude| step(candidate.kind, names[amplitude])).collect();
     let scored = tried.into_iter().filter_map(|value| {
         let mut columns = Vec::new();
-        for &amplitude in &amplitudes {
+        for (&amplitude, size) in amplitudes.iter().zip(&mut sizes) {
             let unit = step(candidate.kind, names[amplitude]);
             for angle in [0.0, FRAC_PI_2] {
                 let mut values = vec![0.0; names.len()];
                 values[over] = value;
                 values[phase] = angle;
-                values[amplitude] = unit;
+                values[amplitude] = *size;
                 let column = within(&model.white, &mut values, (amplitude, 0.0), change)?;
-                columns.push(column * (unit / values[amplitude]));
+                *size = values[amplitude];
+                columns.push(column * (unit / *size));
             }
         }
         let matrix = DMatrix::from_columns(&columns);

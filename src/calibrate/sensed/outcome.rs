@@ -268,17 +268,14 @@ impl Predicting {
 }
 
 /// Values with standard deviations: `(JᵀJ)⁻¹`, J in units of noise; wider where the fit's own residual is larger
-/// than noise, and where rattle pulls values further than noise of one frequency by itself. Values that nothing depends on
-/// are left out.
+/// than noise, and where noise pulls values further than that of each frequency by itself does: rattle, and journals that
+/// lean under forces no larger than a sensor's noise. Values that nothing depends on are left out.
 fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
     let Fit { effects, jacobian, chi2, white } = &model.fit;
     let deviations = jacobian.as_ref().and_then(|jacobian| {
         let inverse = inverse_normal(jacobian)?;
         let spare = white.len().saturating_sub(jacobian.ncols()).max(1);
-        let pulled = match model.baseline.rattles {
-            true => pull(jacobian, &inverse, &model.baseline.draws(on)),
-            false => 1.0,
-        };
+        let pulled = pull(jacobian, &inverse, &model.baseline.draws(on));
         let factor = (chi2 / spare as f64).max(pulled).max(1.0).sqrt();
         // What nothing depends on is not known at all.
         let deviation = |square: f64| if square > 0.0 { square.sqrt() * factor } else { f64::NAN };

@@ -328,7 +328,7 @@ fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
         residual: format!("{} of {}", before.residual.word(), before.of),
         mean_square_before: before.mean_square,
         mean_square_after: after.mean_square,
-        noise_up_to: super::thresholds::NOISE[0],
+        noise_up_to: after.limit,
         largest_before: before.largest,
         largest_after: after.largest,
     };

@@ -205,10 +205,7 @@ impl<'a> Look<'a> {
     }
 
     /// Effort of a drive by its own law in N or N·m, from its command and what its encoder shows.
-    fn law(&self, drive: usize, t: f64, row: usize) -> f64 {
-        let mut commands = vec![Command::default(); self.mechanism.actuators.len()];
-        self.mechanism.commands.at(t, &mut commands);
-        let command = commands[drive];
+    fn law(&self, drive: usize, command: Command, row: usize) -> f64 {
         let actuator = &self.mechanism.actuators[drive];
         let read = || {
             let sensor = position_sensor(self.mechanism, actuator.joint)?;
@@ -250,6 +247,8 @@ impl<'a> Look<'a> {
         signals: &mut [Signal],
     ) -> Option<()> {
         let t = pose.time();
+        let mut commands = vec![Command::default(); self.mechanism.actuators.len()];
+        self.mechanism.commands.at(t, &mut commands);
         let mut next = signals.iter_mut();
         let mut push = |value: f64| {
             if let Some(signal) = next.next() {
@@ -258,7 +257,7 @@ impl<'a> Look<'a> {
         };
         for (drive, sensor) in self.laws() {
             let measured = self.looked_at(sensor, self.view.plain(sensor)?, row);
-            push(measured - self.law(drive, t, row));
+            push(measured - self.law(drive, commands[drive], row));
         }
         let efforts: Vec<Option<[f64; 2]>> = self
             .basis
@@ -270,14 +269,14 @@ impl<'a> Look<'a> {
                         [smooth, slow].map(|series| self.looked_at(sensor, series, row))
                     }
                     Effort::Asked(drive) => [self.given(drive, row); 2],
-                    Effort::Law(drive) => [self.law(drive, t, row); 2],
+                    Effort::Law(drive) => [self.law(drive, commands[drive], row); 2],
                     Effort::None => [0.0; 2],
                 })
             })
             .collect();
         let slow: Vec<Option<f64>> = efforts.iter().map(|e| e.map(|[_, slow]| slow)).collect();
         let Taken { efforts: taken, leaning, .. } =
-            pose.taken(self.mechanism, t, &slow, &self.applied(t, row))?;
+            pose.taken(self.mechanism, t, &slow, &self.applied(&commands, row))?;
         for (effort, taken) in efforts.iter().zip(taken) {
             if let Some([effort, _]) = effort {
                 push(effort - taken);
@@ -303,7 +302,7 @@ impl<'a> Look<'a> {
     }
 
     /// Efforts of drives that the basis does not read.
-    fn applied(&self, t: f64, row: usize) -> Vec<(JointIndex, f64)> {
+    fn applied(&self, commands: &[Command], row: usize) -> Vec<(JointIndex, f64)> {
         let outside = |drive: &usize| {
             let joint = self.mechanism.actuators[*drive].joint;
             !self.basis.joints.contains(&joint)
@@ -317,7 +316,7 @@ impl<'a> Look<'a> {
                         self.looked_at(sensor, smooth, row)
                     }
                     Some(Effort::Asked(drive)) => self.given(drive, row),
-                    Some(Effort::Law(drive)) => self.law(drive, t, row),
+                    Some(Effort::Law(drive)) => self.law(drive, commands[drive], row),
                     Some(Effort::None) | None => 0.0,
                 };
                 (joint, effort)

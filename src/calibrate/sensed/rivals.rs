@@ -62,10 +62,11 @@ impl Search<'_> {
             let mut others = best.fit.effects.clone();
             let own = others.remove(i);
             let mut all = vec![(own.clone(), best.clone())];
-            for rival in self.rivals(&best, i, rounds) {
+            for rival in self.rivals(&best, i) {
                 let effects = [others.as_slice(), std::slice::from_ref(&rival)].concat();
                 (self.tell)(&format!("simulating with {} in place of {own}", names(&effects)));
-                let times = if best.baseline.rattles { 1 } else { 2 };
+                // What is told apart by ten units of thousands has to stand at its own best values.
+                let times = if best.baseline.rattles { 1 } else { 4 };
                 let Some(settled) = self.settle(&effects, times)? else { continue };
                 // What does not come down to noise explains nothing, whatever it costs.
                 if self.is_noise(&settled) {
@@ -101,25 +102,18 @@ impl Search<'_> {
         Ok(best)
     }
 
-    /// The candidates that take up most of what an effect of a model does, in its place, and that were not simulated
-    /// there.
-    fn rivals(&self, model: &Model, place: usize, rounds: &[Round]) -> Vec<Setting> {
+    /// The candidates that take up most of what an effect of a model does, in its place.
+    fn rivals(&self, model: &Model, place: usize) -> Vec<Setting> {
         let mut others = model.fit.effects.clone();
         let own = others.remove(place);
         let looks = [false, true].map(|held| self.target(&model.baseline, held).look(&others));
         let [Some(fit), Some(held)] = looks else { return Vec::new() };
         let gain = held.chi2 - model.held;
         let without = Model { fit, held: held.chi2, misfit: held.chi2, ..model.clone() };
-        // With nothing else found the first round simulated them where they are.
-        let simulated = |effect: &Setting| {
-            let first = rounds.first().filter(|_| others.is_empty());
-            let mut tried = first.into_iter().flat_map(|round| &round.tried);
-            tried.any(|tried| tried.simulated && tried.effect.is(effect))
-        };
         let mut found: Vec<Setting> = Vec::new();
         for tried in self.screened(&without) {
             let known = found.iter().any(|known| known.is(&tried.effect)) || tried.effect.is(&own);
-            if !known && !simulated(&tried.effect) && tried.gain > RIVAL * gain {
+            if !known && tried.gain > RIVAL * gain {
                 found.push(tried.effect);
             }
         }

@@ -28,14 +28,18 @@ impl Search<'_> {
         let draws = self.draws(model);
         let linear = |candidate: &&Setting| {
             let found = starts(&on, &model.fit, candidate).into_iter();
-            let found = found.filter_map(|start| linear(&on, model, jacobians[0].as_ref(), start));
+            let found = found.filter_map(|start| {
+                // At neutral values it is the model as it is.
+                let base = start.values().eq(candidate.values()).then_some(&model.fit.white);
+                linear(&on, model, base, jacobians[0].as_ref(), start)
+            });
             found.min_by(|a, b| a.left.total_cmp(&b.left))
         };
         let mut promising: Vec<Linear> = fresh.par_iter().filter_map(linear).collect();
         promising.sort_by(|a, b| a.left.total_cmp(&b.left));
         promising.truncate(JUDGED);
         let judged = |found: &Linear| {
-            let (left, hold) = found.judged(&hold, model, jacobians[1].as_ref())?;
+            let (left, hold) = found.judged(&hold, model, &held.white, jacobians[1].as_ref())?;
             let gain = held.chi2 - left;
             let share = (gain / held.chi2).clamp(0.0, 1.0);
             let columns = Columns { on: found.on.clone(), hold, known: found.known };
@@ -90,6 +94,8 @@ impl Search<'_> {
 /// A candidate's values by one linear step from where it starts.
 struct Linear {
     start: Setting,
+    /// Whether these values are neutral.
+    neutral: bool,
     /// Its values there.
     own: Vec<f64>,
     /// Derivatives by the model's values and its own on the data that they are fitted on.
@@ -101,26 +107,31 @@ struct Linear {
     left: f64,
 }
 
-/// A candidate beside a model by one linear step from where it starts; none where there is no such machine.
+/// A candidate beside a model by one linear step from where it starts, of which `base` is left if that is known; none where
+/// there is no such machine.
 fn linear(
     on: &Target,
     model: &Model,
+    base: Option<&DVector<f64>>,
     jacobian: Option<&DMatrix<f64>>,
     start: Setting,
 ) -> Option<Linear> {
     let own: Vec<f64> = start.values().map(|(_, value)| value).collect();
-    let (base, columns) = columns(on, model, jacobian, &start)?;
+    let neutral = base.is_some();
+    let (base, columns) = columns(on, model, base, jacobian, &start)?;
     let known = jacobian.map_or(0, DMatrix::ncols);
     let free = free(std::slice::from_ref(&start));
     let step = linear_step(&columns, known, &base, &own, &free)?;
     let left = (base + &columns * &step.change).norm_squared();
-    left.is_finite().then_some(Linear { start, own, on: columns, known, step, left })
+    left.is_finite().then_some(Linear { start, neutral, own, on: columns, known, step, left })
 }
 
-/// What a candidate as it starts leaves beside a model, and the derivatives of that by the model's values and its own.
+/// What a candidate as it starts leaves beside a model, unless that is `base`, and the derivatives of that by the model's
+/// values and its own.
 fn columns(
     target: &Target,
     model: &Model,
+    base: Option<&DVector<f64>>,
     jacobian: Option<&DMatrix<f64>>,
     start: &Setting,
 ) -> Option<(DVector<f64>, DMatrix<f64>)> {
@@ -129,7 +140,7 @@ fn columns(
         let effects = [model.fit.effects.as_slice(), &[start.with(values)]].concat();
         target.look(&effects).map(|fit| fit.white)
     };
-    let base = look(&own)?;
+    let base = base.cloned().or_else(|| look(&own))?;
     let free = free(std::slice::from_ref(start));
     let mut columns: Vec<DVector<f64>> =
         jacobian.iter().flat_map(|j| j.column_iter().map(|c| c.into_owned())).collect();
@@ -140,14 +151,16 @@ fn columns(
 }
 
 impl Linear {
-    /// Σ of squares that it leaves on data to judge on, and the derivatives there.
+    /// Σ of squares that it leaves on data to judge on, of which the model leaves `held`, and the derivatives there.
     fn judged(
         &self,
         hold: &Target,
         model: &Model,
+        held: &DVector<f64>,
         jacobian: Option<&DMatrix<f64>>,
     ) -> Option<(f64, DMatrix<f64>)> {
-        let (base, columns) = columns(hold, model, jacobian, &self.start)?;
+        let held = self.neutral.then_some(held);
+        let (base, columns) = columns(hold, model, held, jacobian, &self.start)?;
         Some(((base + &columns * &self.step.change).norm_squared(), columns))
     }
 
@@ -175,5 +188,37 @@ fn simpler_next(tried: &mut [Tried]) {
             tried[i + 1..=j].rotate_right(1);
         }
         i += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::baseline::Baseline;
+    use super::super::candidates::candidates;
+    use super::super::problem::Problem;
+    use super::super::recording::Recording;
+    use crate::calibrate::result::control;
+    use crate::scenario::Scenario;
+
+    /// A candidate at neutral values leaves what the model leaves: it is not looked at again.
+    #[test]
+    fn neutral_candidates_leave_what_the_model_leaves() {
+        let folder =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar/planar-3");
+        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
+        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
+        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
+        let control = control(&rig);
+        let problem = Problem::new(rig, vec![recording], control).unwrap();
+        let on = problem.split().on;
+        let baseline = Baseline::of(&problem, &[], &[], &on).unwrap();
+        let look = |effects: &[_]| baseline.white(&problem, effects, &on).unwrap().unwrap();
+        let model = look(&[]);
+        let all = candidates(&problem.declared, &[]);
+        assert!(all.len() > 60, "{}", all.len());
+        for candidate in all {
+            let off = (look(std::slice::from_ref(&candidate)) - &model).norm() / model.norm();
+            assert!(off < 1e-6, "{candidate}: {off:e}");
+        }
     }
 }

@@ -153,7 +153,13 @@ impl<'a> Search<'a> {
             if !self.is_noise(&best) {
                 (self.tell)(&format!("settling {}", names(&best.fit.effects)));
                 let settled = self.settle(&best.fit.effects, 4)?;
-                best = settled.filter(|model| model.misfit < best.misfit).unwrap_or(best);
+                let better = settled.filter(|model| model.misfit < best.misfit);
+                // What never settles is held against simulations of other values than its own.
+                let own = match better {
+                    Some(model) if !model.baseline.rattles => self.at(&model.fit.effects, &[])?,
+                    other => other,
+                };
+                best = own.filter(|model| model.misfit < best.misfit).unwrap_or(best);
             }
             best = self.simplified(best)?;
             best = self.needed(best)?;

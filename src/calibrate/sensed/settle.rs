@@ -158,7 +158,11 @@ impl Search<'_> {
     }
 
     /// The model with exactly these values, but for `deviations` of its replicas; none where it cannot be.
-    fn at(&self, effects: &[Setting], deviations: &[f64]) -> Result<Option<Model>, Stopped> {
+    pub(super) fn at(
+        &self,
+        effects: &[Setting],
+        deviations: &[f64],
+    ) -> Result<Option<Model>, Stopped> {
         let segments = [self.split.on.as_slice(), &self.split.hold].concat();
         let baseline = Baseline::of(self.problem, effects, deviations, &segments)?;
         let on = self.target(&baseline, false);
