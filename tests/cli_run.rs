@@ -354,6 +354,17 @@ fn a_second_run_stands_beside_the_first() {
     assert_eq!(place.entries(), names);
 }
 
+/// A name that ends in a slash, as a shell completes it, was refused where the folder was new.
+#[test]
+fn a_folder_may_be_named_with_a_slash_at_its_end() {
+    let place = Place::new();
+    for out in ["new/", "another/one/"] {
+        place.good(&format!("run --duration 0.02 --quiet --out {out}"));
+        assert!(place.read(&format!("{out}summary.json")).contains("simulated_s"), "{out}");
+    }
+    assert_eq!(place.entries(), ["another", "new"]);
+}
+
 /// Of a machine that follows its ideal, rounding was shown as if it were a result: a path error of 3e-7 nm.
 #[test]
 fn a_machine_without_play_shows_no_rounding_as_a_result() {

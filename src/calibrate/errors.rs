@@ -40,10 +40,16 @@ pub fn judged(errors: &[ChannelError]) -> Vec<&ChannelError> {
     if held.is_empty() { errors.iter().collect() } else { held }
 }
 
+/// Share of its floor by which a column may be missed by more than before: what half the noise again makes of it.
+const BY_CHANCE: f64 = 0.5;
+
 /// Whether a calibrated model misses what it is judged by by more than the declared one: root mean square over all
-/// columns, each in units of its floor. Then it is not delivered.
+/// columns, each in units of its floor, or any one of them by more than chance. Then it is not delivered.
 pub fn is_worse(errors: &[ChannelError]) -> bool {
     let judged = judged(errors);
+    if judged.iter().any(|error| error.after - error.before > BY_CHANCE * error.floor) {
+        return true;
+    }
     let sum = |of: fn(&ChannelError) -> f64| -> f64 {
         judged.iter().map(|error| (of(error) / error.floor).powi(2)).sum()
     };
@@ -146,5 +152,8 @@ mod tests {
         let fitted_only = [error("calibration", 9.0, 1.0, 1.0), error("validation", 1.0, 1.1, 1.0)];
         assert!(is_worse(&fitted_only));
         assert!(is_worse(&[error("calibration", 1.0, 1.1, 1.0)]));
+        // What one column gains is no excuse for what another one loses.
+        let one = [error("validation", 90.0, 9.0, 1.0), error("validation", 1.0, 8.0, 1.0)];
+        assert!(is_worse(&one));
     }
 }

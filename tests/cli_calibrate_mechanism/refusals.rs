@@ -103,3 +103,51 @@ fn rigs_that_cannot_be_calibrated_are_refused() {
         place.refused("calibrate --rig rig.toml --data a.csv --quiet", fragments);
     }
 }
+
+/// The first rows of a recorded five-bar, two columns of each row exchanged or one of them multiplied.
+fn five_bar(change: &dyn Fn(&mut Vec<f64>)) -> String {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs-planar/planar-5");
+    let text = std::fs::read_to_string(format!("{folder}/run-a.csv")).unwrap();
+    let mut lines = text.lines().take(1500);
+    let mut changed = format!("{}\n", lines.next().unwrap());
+    for line in lines {
+        let mut row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        change(&mut row);
+        let cells: Vec<String> = row.iter().map(f64::to_string).collect();
+        changed += &format!("{}\n", cells.join(","));
+    }
+    changed
+}
+
+/// Columns t, q_O1_cmd, q_O1, T_O1, q_O2_cmd, q_O2, T_O2: what a command and a servo's law say shows which are mistaken.
+#[test]
+fn columns_that_are_mistaken_are_told_by_commands_and_laws() {
+    let place = Place::new();
+    let rig = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs-planar/planar-5/rig.toml");
+    let times = |column: usize, factor: f64| move |row: &mut Vec<f64>| row[column] *= factor;
+    for (change, fragment) in [
+        (
+            &times(3, -1.0) as &dyn Fn(&mut Vec<f64>),
+            "`T_O1` has the opposite sign of what the servo's law says",
+        ),
+        (&times(3, 1e3), "it would fit with sensor.2.scale = 0.001"),
+        (
+            &times(2, 180.0 / std::f64::consts::PI),
+            "`q_O1` is what the command says in another unit",
+        ),
+        (&times(5, 0.0), "`q_O2` stands still while its drive is told to move"),
+        (
+            &|row| row.swap(3, 6),
+            "`T_O1` and `T_O2` are each what the servo's law says of the other's",
+        ),
+        (&|row| row.swap(2, 5), "`q_O1` and `q_O2` are each what the command says of the other's"),
+        (&times(0, 1e3), "if column `t` is in ms, write it in s"),
+    ] {
+        place.write("bad.csv", &five_bar(change));
+        place.refused(&format!("predict {rig} --data bad.csv --quiet"), &["bad.csv: ", fragment]);
+        place.refused(
+            &format!("calibrate --rig {rig} --data bad.csv --quiet"),
+            &["bad.csv: ", fragment],
+        );
+    }
+}

@@ -1,6 +1,7 @@
 //! Forces of a log held against those of the declared model and of the servos' own law: another order of magnitude
 //! is another unit, another sign or another leg's force a mix-up.
 
+use crate::calibrate::mistaken::{Mistake, mistakes, rms};
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log, LogError};
 use crate::scenario::{Drive, DriveMode};
@@ -16,19 +17,6 @@ const BEYOND_LAW: f64 = 30.0;
 /// Corner of that low-pass in Hz: most of a rattle and of a sensor's noise lies above.
 const CORNER: f64 = 25.0;
 
-/// A measured force is what a servo's law gives where they differ by less than this share of it: gains of sensors
-/// and servos are wrong by a tenth, lags and noise come to a few hundredths.
-const BY_LAW: f64 = 0.3;
-
-/// Two forces are exchanged where each misses its own law by so many times what it misses the other's by.
-const EXCHANGED: f64 = 3.0;
-
-/// Root mean square.
-fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len().max(1) as f64;
-    (values.map(|v| v * v).sum::<f64>() / count).sqrt()
-}
-
 /// Forces with the wrong sign, or of another leg: of servos, whose law says what they should be.
 pub fn mixed_up(path: &str, log: &Log, drive: &Drive) -> Vec<LogError> {
     let filter = ZeroPhase::butterworth(4, CORNER, log.interval);
@@ -37,40 +25,27 @@ pub fn mixed_up(path: &str, log: &Log, drive: &Drive) -> Vec<LogError> {
         Some([filter.apply(force), filter.apply(&law)])
     };
     let legs: Vec<Option<[Vec<f64>; 2]>> = (0..3).map(leg).collect();
-    // What force `i` misses the law of leg `j` by, as a share of that law.
-    let missed = |i: usize, j: usize, sign: f64| {
-        let ([force, _], [_, law]) = (legs[i].as_ref()?, legs[j].as_ref()?);
-        let apart = force.iter().zip(law).map(|(force, law)| force - sign * law);
-        Some(rms(apart) / rms(law.iter().copied()))
-    };
-    let wrong = |message: String, help: &str| LogError {
-        place: path.to_owned(),
-        message,
-        help: help.to_owned(),
-    };
-    let mut found = Vec::new();
-    for i in 0..3 {
-        if missed(i, i, -1.0).is_some_and(|share| share < BY_LAW) {
-            let message = format!(
-                "column `{}` has the opposite sign of what its drive's law gives",
-                Channel::Force(i)
-            );
-            found.push(wrong(message, "a force is positive where it lengthens the leg"));
-        }
-        for j in i + 1..3 {
-            let exchanged = |a, b| {
-                let (other, own) = (missed(a, b, 1.0)?, missed(a, a, 1.0)?);
-                Some(other < BY_LAW && own > EXCHANGED * other)
-            };
-            if exchanged(i, j) == Some(true) && exchanged(j, i) == Some(true) {
-                let (a, b) = (Channel::Force(i), Channel::Force(j));
-                let message =
-                    format!("columns `{a}` and `{b}` each hold what the other's drive gives");
-                found.push(wrong(message, "exchange the two columns"));
-            }
-        }
-    }
-    found
+    let name = |leg: usize| Channel::Force(leg);
+    // Another unit is another order of magnitude than the model's.
+    let found = mistakes(&legs, &[]).into_iter().filter_map(|mistake| {
+        let (message, help) = match mistake {
+            Mistake::Sign(i) => (
+                format!("column `{}` has the opposite sign of what its drive's law gives", name(i)),
+                "a force is positive where it lengthens the leg",
+            ),
+            Mistake::Exchanged(i, j) => (
+                format!(
+                    "columns `{}` and `{}` each hold what the other's drive gives",
+                    name(i),
+                    name(j)
+                ),
+                "exchange the two columns",
+            ),
+            Mistake::Unit(..) => return None,
+        };
+        Some(LogError { place: path.to_owned(), message, help: help.to_owned() })
+    });
+    found.collect()
 }
 
 /// Forces of another order of magnitude than the declared model's, whose noiseless log is given.

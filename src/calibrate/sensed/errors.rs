@@ -9,7 +9,10 @@ use crate::measure::filter::ZeroPhase;
 use crate::mechanism::Mechanism;
 
 /// Corner in Hz of the low-pass that errors are looked at through: as agreed on with whoever reads them.
-const CORNER: f64 = 25.0;
+pub const CORNER: f64 = 25.0;
+
+/// Lowest rate in Hz of a recording that they are looked at in: four samples a period.
+pub const LOWEST_RATE: f64 = 4.0 * CORNER;
 
 /// The mean of noiseless recordings: the best prediction of one whose rattle nobody knows.
 pub fn mean(recordings: &[Recording], sensors: usize) -> Recording {

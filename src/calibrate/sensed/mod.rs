@@ -19,6 +19,7 @@ pub mod errors;
 pub mod estimate;
 pub mod events;
 pub mod fit;
+mod followed;
 pub mod held;
 pub mod hypotheses;
 pub mod left;

@@ -7,7 +7,7 @@
 use super::problem::Problem;
 use super::recording::Recording;
 use super::simulate::{deviation, with_noise};
-use super::thresholds::{MEDIAN, NOISE_BAND, NOISE_DRAWS, OTHER_NOISE, SURE_NOISE};
+use super::thresholds::{MEDIAN, NOISE_BAND, NOISE_DRAWS, OTHER_NOISE, SURE, SURE_NOISE};
 use crate::calibrate::quantity;
 use crate::calibrate::spectrum::{Signal, fast_length, transform};
 use crate::mechanism::{Mechanism, Reads, Sensor};
@@ -81,7 +81,7 @@ fn beside(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<OtherNoise
                 }
             }
         }
-        let Some(ratio) = ratio(&quiet) else { continue };
+        let Some(ratio) = ratio(&quiet, lines) else { continue };
         // The lowest tenth of powers of noise in n lines of a spectrum scatters by 1.71 √(2/n) of itself, and the median by
         // less.
         let chance = SURE_NOISE * 1.71 * (2.0 / lines as f64).sqrt();
@@ -188,13 +188,13 @@ const QUIETEST: f64 = 0.1;
 /// as [other noise](OTHER_NOISE) by itself. What has more is mostly bursts, and nobody knows the noise under them.
 const EVEN: f64 = OTHER_NOISE * OTHER_NOISE;
 
-/// Power of a recording's noise, its blocks the first list, in units of that of draws; none where bursts hide it.
-fn ratio(lists: &[Vec<f64>]) -> Option<f64> {
+/// Power of a recording's noise, its blocks the first list, in units of that of draws; none where bursts hide it. In so many
+/// `lines` of spectra the lowest tenth scatters by 1.71 √(2/n) of itself and the median by 1.25 √(2/n): their ratio by
+/// 2.1 √(2/n).
+fn ratio(lists: &[Vec<f64>], lines: usize) -> Option<f64> {
     let (median, quietest) = (usual(lists, 0.5)?, usual(lists, QUIETEST)?);
-    if median <= 1.0 {
-        return Some(median);
-    }
-    (median < EVEN * quietest).then(|| median.min(quietest.max(1.0)))
+    let even = EVEN * (1.0 + SURE * 2.1 * (2.0 / lines.max(1) as f64).sqrt());
+    (median <= 1.0 || median < even * quietest).then_some(median)
 }
 
 /// The ratio that so large a share of a recording's blocks, the first list, stays below, beside the mean of those of
@@ -211,9 +211,12 @@ fn usual(lists: &[Vec<f64>], share: f64) -> Option<f64> {
     (recorded.len() >= BLOCKS).then(|| quantile(recorded)).flatten().map(|own| own / mean)
 }
 
-/// Powers of a signal in [`NOISE_BAND`] and the number of lines of its spectrum there, block by block of so many rows.
+/// Powers of a signal's second differences in [`NOISE_BAND`] and the number of lines of their spectrum there, block by block
+/// of so many rows: what a machine does in a short block leaks into that band, and next to nothing of its differences does
+/// (prewhitening; Blackman, Tukey, *The Measurement of Power Spectra*, 1958, §11).
 fn powers(values: &[f64], block: usize) -> Vec<(f64, usize)> {
-    values.chunks_exact(block.max(1)).map(power).collect()
+    let differences: Vec<f64> = values.windows(3).map(|w| w[0] - 2.0 * w[1] + w[2]).collect();
+    differences.chunks_exact(block.max(1)).map(power).collect()
 }
 
 /// Power of a signal in [`NOISE_BAND`], and the number of lines of its spectrum there.
@@ -247,12 +250,12 @@ mod tests {
                 })
                 .collect();
             let all = super::powers(&noise, 100);
-            all.iter().map(|(power, lines)| power / (0.375 * *lines as f64)).collect()
+            all.iter().map(|(power, _)| *power).collect()
         };
         let drawn: Vec<Vec<f64>> = (0..8).map(|_| blocks(1.0, 0)).collect();
         let mut ratio = |size, bursts| {
             let lists = [vec![blocks(size, bursts)], drawn.clone()].concat();
-            super::ratio(&lists)
+            super::ratio(&lists, 1600)
         };
         for size in [1.0f64, 2.0] {
             // A tenth of all blocks is an eighth of the quiet ones.

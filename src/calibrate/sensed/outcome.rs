@@ -8,17 +8,18 @@ use super::hypotheses::Round;
 use super::left::{Left, is_noise};
 use super::limits::{Limit, limits};
 use super::noise::{self, OtherNoise};
-use super::problem::{Problem, Segment, Split, Stopped};
+use super::problem::{Problem, Segment, Split, Start, Stopped};
 use super::recording::Recording;
 use super::rivals::Rest;
 use super::search::{Found, Search};
 use super::settle::Model;
-use super::thresholds::{CLEARED, PREDICTING};
+use super::thresholds::{CLEARED, PREDICTING, SURE};
 use super::unnamed::{Described, describe};
 use crate::calibrate::errors::{ChannelError, is_worse};
 use crate::calibrate::outcome::{Verdict, inverse_normal, pull};
 use crate::calibrate::report::Fitted;
 use crate::effects::{Setting, UNNAMED};
+use nalgebra::{DMatrix, DVector};
 
 /// An effect with its estimates by name.
 pub type Estimated = (Setting, Vec<(&'static str, Fitted)>);
@@ -115,6 +116,7 @@ pub fn calibrate(
     let after = search.left(&best);
     // What no simulation bears out is nothing that the declared model lacks.
     let rest = rest.filter(|_| is_noise(&after) && !best.fit.effects.is_empty());
+    let rest = rest.or_else(|| uncertain(problem, &best, &split.on).map(Rest::Uncertain));
     let noise = is_noise(&after) && rest.is_none();
     let limits = if noise { limits(&search, &best) } else { Vec::new() };
     let mut described = match noise || !unnamed {
@@ -255,8 +257,10 @@ struct Predicting {
 impl Predicting {
     /// Leaves the rig as it was declared: what the declared machine would have done knows of nothing that does not last.
     fn of(problem: &mut Problem, effects: &[Setting], deviations: &[f64]) -> Result<Self, Stopped> {
-        let replicas = if problem.replicas > 1 { PREDICTING } else { 1 };
         let starts = problem.starts(effects)?;
+        // What nobody knows of values and of how a free machine was let go grows as it swings.
+        let open = !deviations.is_empty() && starts.iter().any(Start::is_fitted);
+        let replicas = if problem.replicas > 1 || open { PREDICTING } else { 1 };
         let calibrated = problem.simulated_about(effects, deviations, &starts, 0..replicas)?;
         let acting = std::mem::take(&mut problem.rig.effects);
         let declared = match effects.is_empty() && acting.is_empty() {
@@ -267,23 +271,48 @@ impl Predicting {
     }
 }
 
-/// Values with standard deviations: `(JᵀJ)⁻¹`, J in units of noise; wider where the fit's own residual is larger
+/// Covariance of the values: `(JᵀJ)⁻¹`, J in units of noise; larger where the fit's own residual is larger
 /// than noise, and where noise pulls values further than that of each frequency by itself does: rattle, and journals that
-/// lean under forces no larger than a sensor's noise. Values that nothing depends on are left out.
+/// lean under forces no larger than a sensor's noise. None where no derivatives are known.
+fn covariance(model: &Model, on: &[Segment]) -> Option<DMatrix<f64>> {
+    let Fit { jacobian, chi2, white, .. } = &model.fit;
+    let jacobian = jacobian.as_ref()?;
+    let inverse = inverse_normal(jacobian)?;
+    let spare = white.len().saturating_sub(jacobian.ncols()).max(1);
+    let pulled = pull(jacobian, &inverse, &model.baseline.draws(on));
+    let factor = (chi2 / spare as f64).max(pulled).max(1.0);
+    Some(inverse * factor)
+}
+
+/// An effect of a model whose values are, all together, no further from those at which there is nothing of it than
+/// [`SURE`] standard deviations (Wald's test): nobody knows that there is any.
+fn uncertain(problem: &Problem, model: &Model, on: &[Segment]) -> Option<Setting> {
+    let covariance = covariance(model, on)?;
+    let mut first = 0;
+    model.fit.effects.iter().find_map(|effect| {
+        let own: Vec<f64> = effect.values().map(|(_, value)| value).collect();
+        let neutral = (effect.kind.neutral)(&problem.declared, effect);
+        // What nothing depends on has no variance, and no part in this.
+        let told: Vec<usize> =
+            (0..own.len()).filter(|i| covariance[(first + i, first + i)] > 0.0).collect();
+        let away = DVector::from_fn(told.len(), |k, _| own[told[k]] - neutral[told[k]]);
+        let part = DMatrix::from_fn(told.len(), told.len(), |r, c| {
+            covariance[(first + told[r], first + told[c])]
+        });
+        first += own.len();
+        let square = away.dot(&part.cholesky()?.solve(&away));
+        (square < SURE * SURE).then(|| effect.clone())
+    })
+}
+
+/// Values with [standard deviations](covariance). Values that nothing depends on are left out.
 fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
-    let Fit { effects, jacobian, chi2, white } = &model.fit;
-    let deviations = jacobian.as_ref().and_then(|jacobian| {
-        let inverse = inverse_normal(jacobian)?;
-        let spare = white.len().saturating_sub(jacobian.ncols()).max(1);
-        let pulled = pull(jacobian, &inverse, &model.baseline.draws(on));
-        let factor = (chi2 / spare as f64).max(pulled).max(1.0).sqrt();
-        // What nothing depends on is not known at all.
-        let deviation = |square: f64| if square > 0.0 { square.sqrt() * factor } else { f64::NAN };
-        Some(inverse.diagonal().map(deviation))
-    });
+    // What nothing depends on is not known at all.
+    let deviation = |square: f64| if square > 0.0 { square.sqrt() } else { f64::NAN };
+    let deviations = covariance(model, on).map(|known| known.diagonal().map(deviation));
     let mut next = 0;
+    let effects = model.fit.effects.iter();
     effects
-        .iter()
         .map(|effect| {
             let fitted = effect.values().filter_map(|(name, value)| {
                 let std = deviations.as_ref().map(|all| all[next]);

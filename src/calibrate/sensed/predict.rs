@@ -3,6 +3,7 @@
 
 use super::charts::{Drawn, of_run};
 use super::errors::{self, mean};
+use super::followed;
 use super::held;
 use super::noise;
 use super::recording::Recording;
@@ -64,6 +65,10 @@ pub fn prepare(model: &Scenario, path: &Path) -> Result<Prepared, CalibrateError
     let lacking = columns.and_then(|named| recording.lacks(&machine.sensors, named));
     refuse(lacking.into_iter().collect())?;
     refuse(held::plausible::wrong(model, &machine, &recording))?;
+    refuse(
+        recording.too_slow("predict", errors::LOWEST_RATE, errors::CORNER).into_iter().collect(),
+    )?;
+    refuse(followed::wrong(model, &machine, &recording))?;
     let mut machine = machine;
     if held::bench::suits(&machine) {
         noise::measured(&mut machine.sensors, &recording);

@@ -1,5 +1,6 @@
 //! A rig and its recordings, and everything that speaks against them, before anything is simulated or written.
 
+use super::followed;
 use super::held;
 use super::noise;
 use super::recording::Recording;
@@ -124,6 +125,7 @@ fn read(
         refuse(recordings.iter().flat_map(implausible).collect())?;
     }
     errors.extend(recordings.iter().filter_map(Recording::wrong));
+    errors.extend(recordings.iter().flat_map(|recording| followed::wrong(rig, built, recording)));
     for (i, one) in recordings.iter().enumerate() {
         for other in recordings[..i].iter().filter(|other| one.is_twin_of(other)) {
             errors.push(LogError {

@@ -189,24 +189,32 @@ impl Recording {
         }
     }
 
-    /// What speaks against calibrating with this recording.
-    pub fn wrong(&self) -> Option<LogError> {
-        let wrong = |message: String, help: String| {
-            Some(LogError { place: self.path.clone(), message, help })
-        };
+    /// What speaks against a recording whose rows are too far apart for a command that looks at it up to `band` Hz and needs
+    /// `lowest` rows a second for that.
+    pub fn too_slow(&self, command: &str, lowest: f64, band: f64) -> Option<LogError> {
         let rate = 1.0 / self.interval;
         // A rate that is the limit's reads a hair below it.
-        if rate < LOWEST_RATE * 0.999 {
-            let message = format!("rows are {:.4} s apart, {rate:.4} a second", self.interval);
-            let help = format!(
-                "calibrate needs at least {LOWEST_RATE} a second, because it looks at residuals up to \
-                 {PLAIN_BAND} Hz; if column `t` is in ms, write it in s"
-            );
-            return wrong(message, help);
+        (rate < lowest * 0.999).then(|| LogError {
+            place: self.path.clone(),
+            message: format!("rows are {:.4} s apart, {rate:.4} a second", self.interval),
+            help: format!(
+                "{command} needs at least {lowest} a second, because it looks at what is left up to {band} Hz; if \
+                 column `{}` is in ms, write it in s",
+                self.time.column
+            ),
+        })
+    }
+
+    /// What speaks against calibrating with this recording.
+    pub fn wrong(&self) -> Option<LogError> {
+        let slow = self.too_slow("calibrate", LOWEST_RATE, PLAIN_BAND);
+        if slow.is_some() {
+            return slow;
         }
         if self.duration() < SHORTEST * 0.999 {
             let message = format!("lasts {:.4} s", self.duration());
-            return wrong(message, format!("expected at least {SHORTEST} s of motion"));
+            let help = format!("expected at least {SHORTEST} s of motion");
+            return Some(LogError { place: self.path.clone(), message, help });
         }
         None
     }

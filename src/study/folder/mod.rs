@@ -185,7 +185,9 @@ impl Folder {
 
 /// A path from the root, links resolved where it exists: what a link points at is what is replaced.
 fn from_root(target: &Path) -> Result<PathBuf, FolderError> {
-    target.canonicalize().or_else(|_| std::path::absolute(target)).map_err(FolderError::io(target))
+    // A name may end in a slash, and what stands beside it does not stand in it.
+    let absolute = |_| std::path::absolute(target).map(|path| path.components().collect());
+    target.canonicalize().or_else(absolute).map_err(FolderError::io(target))
 }
 
 /// Whether `target` is free, empty, or a result that may be replaced.
