@@ -79,12 +79,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let steps = steps(&arguments.steps).map_err(|problem| Failure::Input(vec![problem]))?;
     let options = Options { steps, starts: arguments.starts.into() };
     let mut scenario = arguments.scenario.load()?;
-    warn_of_seed(&scenario);
-    warn_of_law(&scenario);
-    warn_of_step(&scenario, "--steps says which fixed steps are compared");
-    scenario.contact.law = Law::HertzStep;
+    let declared = std::mem::replace(&mut scenario.contact.law, Law::HertzStep);
     refuse_errors(findings(&scenario, &mut assemble(&scenario)?))?;
     let simulated = simulated_time(&scenario, &options)?;
+    // What cannot be compared is refused without a word of what it would not have used.
+    warn_of_seed(&scenario);
+    warn_of_law(&scenario, declared);
+    warn_of_step(&scenario, "--steps says which fixed steps are compared");
     let folder = arguments.folder.prepare("compare", &scenario.name, COMPARE_FILE)?;
 
     let mut progress = Progress::new(simulated, arguments.print.quiet);
@@ -95,9 +96,8 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     refuse_faults(&compared.comparison.faults())
 }
 
-/// Says that the scenario's law is none of those compared, or but one of them.
-fn warn_of_law(scenario: &Scenario) {
-    let law = scenario.contact.law;
+/// Says that the scenario's own law is not the one that is compared with the others.
+fn warn_of_law(scenario: &Scenario, law: Law) {
     if law != Law::HertzStep {
         let message = format!(
             "is \"{}\" and is not used, nor are keys that this law alone has: hertz-step, native and ideal are compared",
