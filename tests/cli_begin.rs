@@ -195,3 +195,18 @@ fn every_command_has_a_page_of_the_manual() {
         assert!(place.read(&format!("man1/{page}")).contains(".SH OPTIONS"));
     }
 }
+
+/// What is printed to begin with runs shorter, too, and machines without drives move.
+#[test]
+fn what_init_prints_runs_shorter_and_moves() {
+    let place = Place::new();
+    for kind in ["3rpr", "pendulum", "double-pendulum"] {
+        place.write("k.toml", &place.good(&format!("init {kind}")));
+        place.good(&format!("run k.toml --duration 0.1 --quiet --out {kind}"));
+    }
+    for kind in ["pendulum", "double-pendulum"] {
+        let text = place.read(&format!("{kind}/summary.json"));
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert!(json["ideal_peak_platform_acceleration_m_s2"].as_f64().unwrap() > 0.1, "{text}");
+    }
+}

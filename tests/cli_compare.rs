@@ -224,3 +224,39 @@ fn the_docs_table_is_that_of_the_default_comparison() {
     place.good("compare --quiet");
     assert_eq!(place.read("freeplay-compare-default/table.md"), table_of_docs());
 }
+
+/// What a comparison replaces is told; one law alone is no comparison.
+#[test]
+fn laws_and_steps_that_are_not_used_are_told() {
+    let place = Place::new();
+    let short = "compare --duration 0.03 --steps 1e-5 --starts 2 --quiet";
+    for (set, says) in [
+        (
+            "contact.law=flores --set contact.restitution=0.5",
+            "contact.law: is \"flores\" and is not used",
+        ),
+        ("contact.law=ideal", "contact.law: is \"ideal\" and is not used"),
+        ("simulation.step=1e-5", "simulation.step: is not used; --steps says"),
+    ] {
+        let done = place.freeplay(&format!("{short} --set {set} --force --out c"));
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert!(done.err.starts_with("warning: --set ") && done.err.contains(says), "{}", done.err);
+    }
+    for laws in ["hertz-step", "flores,flores"] {
+        place.refused(
+            &format!("compare --laws {laws}"),
+            &["--laws: ", "nothing to compare", "two laws"],
+        );
+    }
+}
+
+/// One step shows no limit: all verdicts are unclear, and that is not "for nothing".
+#[test]
+fn what_cannot_be_told_is_not_called_useless() {
+    let place = Place::new();
+    let out = place.good("compare --duration 0.03 --steps 1e-5 --starts 2 --out c --json");
+    let json: Value = serde_json::from_str(&out).unwrap();
+    assert!(json["verdicts"].as_array().unwrap().iter().all(|v| v["use"] == "unclear"), "{out}");
+    let answer = json["answer"][0].as_str().unwrap();
+    assert!(answer.starts_with("This comparison cannot tell"), "{answer}");
+}

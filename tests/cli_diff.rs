@@ -95,3 +95,19 @@ fn what_is_neither_run_nor_scenario_is_refused() {
     place.write("a/timeseries.csv", &series.replacen(second, first, 1));
     place.refused("diff a a", &["timeseries.csv: ", "line 3: expected a time after that"]);
 }
+
+/// The sentence names the number of floors that the table goes by, options are told by their names, unlike machines
+/// are told.
+#[test]
+fn thresholds_and_unlike_machines_are_told() {
+    let place = Place::new();
+    let short = "--duration 0.05 --set simulation.tolerance=1e-4 --quiet";
+    place.good(&format!("run {short} --out a"));
+    place.good(&format!("run {short} --set mechanism.kind=pendulum --set environment.gravity=[0,-9.81] --set effect=[] --out b"));
+    place.refused("diff a b --engine direct", &["--engine: two results"]);
+    let done = place.freeplay("diff a b --out d");
+    assert!(done.code == 0 && done.out.contains("by more than 3 × their floors"), "{}", done.out);
+    assert!(done.err.contains("warning: The machines are unlike"), "{}", done.err);
+    let text = place.good("diff a/scenario.toml a/scenario.toml --starts 2 --out e");
+    assert!(text.replace('\n', " ").contains("by more than 1.5 × their floors"), "{text}");
+}

@@ -90,3 +90,31 @@ fn without_figures_the_line_is_fail_and_the_reason_on_standard_error() {
         assert_eq!(place.read("out"), "FAIL\n", "{line}");
     }
 }
+
+/// Nothing is simulated for a line that has nowhere to go.
+#[test]
+fn results_that_cannot_be_written_are_refused_beforehand() {
+    let place = Place::new();
+    for file in ["absent/out", "."] {
+        let done =
+            place.freeplay(&format!("evaluate --duration 1000 --figures impacts --results {file}"));
+        assert_eq!((done.code, done.out.as_str()), (2, "FAIL\n"), "{}", done.err);
+        assert!(done.err.contains(&format!("--results {file}: cannot be written")), "{}", done.err);
+    }
+    assert_eq!(place.entries(), [""; 0]);
+}
+
+#[test]
+fn parameters_that_are_missing_or_given_twice_are_refused() {
+    let place = Place::new();
+    place.write("empty", "# nothing\n");
+    place.write("one", "joints.clearance = 1e-4\n");
+    for (line, reason) in [
+        ("--parameters empty", "empty: holds no parameter; expected lines"),
+        ("--parameters one --set joints.clearance=2e-4", "joints.clearance: is given twice"),
+    ] {
+        let done = place.freeplay(&format!("evaluate --figures impacts {SHORT} {line}"));
+        assert_eq!((done.code, done.out.as_str()), (2, "FAIL\n"), "{line}\n{}", done.err);
+        assert!(done.err.contains(reason), "{line}\n{}", done.err);
+    }
+}

@@ -13,7 +13,8 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// Signals by name, and the exit code that follows, where there is one.
-const SIGNALS: [(&str, Option<i32>); 3] = [("KILL", None), ("TERM", Some(143)), ("INT", Some(130))];
+const SIGNALS: [(&str, Option<i32>); 4] =
+    [("KILL", None), ("TERM", Some(143)), ("INT", Some(130)), ("HUP", Some(129))];
 
 /// Moments at which each command is ended.
 const MOMENTS: usize = 18;
@@ -247,7 +248,7 @@ fn other_commands_leave_nothing() {
 #[test]
 fn a_folder_that_cannot_be_written_is_refused() {
     let place = Place::new();
-    for command in ["run --duration 0.02", "compare", "sweep --vary seed=1,2"] {
+    for command in ["run --duration 0.02", "compare", "sweep --vary motion.phase=1,2"] {
         place.refused(&format!("{command} --out /proc/r"), &["cannot write to", "--out"]);
     }
 }

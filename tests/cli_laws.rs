@@ -139,3 +139,11 @@ fn laws_of_conformal_contact_say_where_they_end() {
         "holds down to 4.0e-7 m in the joint A1, and a hit at 0.2 m/s goes 9.4e-7 m deep";
     assert!(words.contains(fragment), "{all}");
 }
+
+/// Options that do nothing are told by their own names.
+#[test]
+fn options_of_pictures_are_told_by_their_names() {
+    let place = Place::new();
+    place.refused("laws --engine direct", &["--engine: ", "--out DIR"]);
+    place.refused("laws --set contact.law=liu --force", &["--set, --force: ", "--out DIR"]);
+}

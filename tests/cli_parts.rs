@@ -7,7 +7,7 @@ use cli_common::Place;
 use serde_json::Value;
 
 const SWEEP: &str =
-    "sweep --duration 0.02 --set simulation.tolerance=1e-4 --vary seed=1..9:9 --quiet";
+    "sweep --duration 0.02 --set simulation.tolerance=1e-4 --vary motion.phase=1..9:9 --quiet";
 
 #[test]
 fn missing_parts_are_listed_as_an_array_takes_them() {
@@ -75,7 +75,7 @@ fn a_dry_run_says_how_many_and_how_long_and_makes_nothing() {
     }
     // One run of ten minutes is judged by its first seconds.
     let clock = std::time::Instant::now();
-    let said = place.good("sweep --vary seed=1 --duration 1000 --dry-run --json");
+    let said = place.good("sweep --vary motion.phase=1 --duration 1000 --dry-run --json");
     let said: Value = serde_json::from_str(&said).unwrap();
     assert!(clock.elapsed().as_secs() < 60 && said["run_s"].as_f64().unwrap() > 60.0, "{said}");
 }

@@ -157,6 +157,7 @@ fn what_cannot_be_planned_is_told() {
         ),
         ("--detect joint-wear:Z", &["joint-wear cannot act on \"Z\"", "A", "B"]),
         ("--detect payload=much", &["--detect payload=much", "a number other than 0"]),
+        ("--detect payload=-1", &["mass_kg would be -1 kg", "from 0 to 20 kg"]),
         ("--detect impulse", &["\"impulse\" is not an effect"]),
         (
             "--detect payload --stroke 2..1",

@@ -70,7 +70,9 @@ fn recordings_follow_from_the_seed() {
 fn what_cannot_be_recorded_is_refused() {
     let place = Place::new();
     place.refused("record", &["sensor: is missing", "--set sensors.pose_std=4e-6"]);
-    place.refused(&format!("record {RIG} --rate 10"), &["10.0000 a second", "at least 200"]);
+    // Limits of recordings are told by the options that break them.
+    let says = ["--rate: is 100 Hz", "at least 200", "--duration: is 0.5 s", "at least 1 s"];
+    place.refused(&format!("record {RIG} --rate 100 --duration 0.5"), &says);
     place.refused(&format!("record {RIG} --duration 0"), &["--duration: is 0"]);
     // More than anybody reads again, and than memory holds.
     for rows in ["--rate 1e12", "--rate 1e300", "--duration 86400", "--duration 100 --rate 1e5"] {
@@ -82,4 +84,16 @@ fn what_cannot_be_recorded_is_refused() {
     // Hours of computing, told after a second.
     let says = ["hours of computing", "--yes", "--duration"];
     place.refused(&format!("record {PLANAR} --duration 9000 --rate 200"), &says);
+}
+
+#[test]
+fn a_section_without_meaning_is_told_once() {
+    let place = Place::new();
+    place.write(
+        "four-bar.toml",
+        "name = \"x\"\n[mechanism]\nkind = \"four-bar\"\n[legs]\ndensity = 7850.0\n",
+    );
+    let done = place.freeplay("record four-bar.toml");
+    assert_eq!(done.code, 2, "{}", done.err);
+    assert_eq!(done.err.matches("is not used").count(), 1, "{}", done.err);
 }

@@ -384,3 +384,37 @@ fn a_machine_without_play_shows_no_rounding_as_a_result() {
     assert!(place.read("servo/index.html").contains("Path error, largest"));
     place.refused("run --duration 1s", &["expected a number of seconds without a unit"]);
 }
+
+/// A run draws no random numbers: a seed that is set changes nothing, and who sets it is told.
+#[test]
+fn a_seed_that_changes_nothing_is_told() {
+    let place = Place::new();
+    let done = place.freeplay("run --duration 0.02 --set seed=5 --out a --quiet");
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(done.err.starts_with("warning: --set seed: is not used"), "{}", done.err);
+    place.good("run a/scenario.toml --out b --quiet");
+}
+
+#[test]
+fn a_key_that_is_set_twice_is_refused() {
+    let place = Place::new();
+    for line in [
+        "run --set joints.clearance=1e-4 --set joints.clearance=2e-4",
+        "run --duration 0.1 --set simulation.duration=0.2",
+        "sweep --vary motion.phase=0,1 --set joints.clearance=1e-4 --set joints.clearance=1e-4",
+    ] {
+        place.refused(line, &["is given twice, as ", "give it once"]);
+    }
+}
+
+/// Machines without a phase are not advised to sweep over it.
+#[test]
+fn a_chaotic_run_advises_what_its_machine_has() {
+    let place = Place::new();
+    let chaotic = "--duration 0.3 --set environment.gravity=[0,-9.81]";
+    let circle = place.good(&format!("run {chaotic} --out a"));
+    assert!(circle.contains("chaotic") && circle.contains("motion.phase"), "{circle}");
+    let pendulum =
+        place.good(&format!("run {chaotic} --set mechanism.kind=pendulum --set effect=[] --out b"));
+    assert!(pendulum.contains("chaotic") && !pendulum.contains("motion.phase"), "{pendulum}");
+}

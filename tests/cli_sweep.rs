@@ -58,7 +58,7 @@ fn a_sweep_writes_a_row_a_run_with_the_figures_of_run() {
 #[test]
 fn json_is_the_record_and_nothing_else() {
     let place = Place::new();
-    let line = format!("sweep {SHORT} --vary seed=1..3:3 --out s");
+    let line = format!("sweep {SHORT} --vary motion.phase=1..3:3 --out s");
     let done = place.freeplay(&format!("{line} --json"));
     assert_eq!((done.code, done.err.as_str()), (0, ""));
     assert_eq!(done.out, place.read("s/sweep.json"));
@@ -281,7 +281,7 @@ fn folders_of_others_and_edited_files_are_refused_and_kept() {
 
     place.good(&format!("run {SHORT} --out r"));
     for force in ["", "--force"] {
-        let line = format!("sweep {SHORT} --out r --vary seed=1,2 {force}");
+        let line = format!("sweep {SHORT} --out r --vary motion.phase=1,2 {force}");
         place.refused(&line, &["`r` holds", "choose another folder"]);
     }
     place.write("s/notes.txt", "mine");
@@ -308,7 +308,7 @@ fn runs_that_break_down_or_cannot_be_done_get_a_row() {
 #[test]
 fn two_processes_do_not_share_a_folder() {
     let place = Place::new();
-    let line = format!("sweep {SHORT} --out s --vary seed=1,2");
+    let line = format!("sweep {SHORT} --out s --vary motion.phase=1,2");
     place.good(&line);
     let journal = std::fs::File::open(place.path("s/rows.jsonl")).unwrap();
     journal.lock().unwrap();
@@ -358,4 +358,23 @@ fn starts_give_means_with_intervals_group_by_group() {
     place.good("sweep --vary joints.clearance=1e-4,5e-4 --duration 0.1 --quiet --out t");
     assert!(!place.path("t/statistics.csv").exists());
     assert!(place.read("t/index.html").contains("are one draw"));
+}
+
+/// Runs draw no random numbers: rows that differ in their seed alone are equal and no starts of their own.
+#[test]
+fn a_varied_seed_is_told_and_counts_as_no_start() {
+    let place = Place::new();
+    let done = place.freeplay(&format!("sweep {SHORT} --vary seed=1,2,3 --out s --quiet"));
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(done.err.starts_with("warning: --vary seed changes nothing"), "{}", done.err);
+    assert!(!place.path("s/statistics.csv").exists());
+}
+
+#[test]
+fn values_and_parts_that_are_given_twice_are_refused() {
+    let place = Place::new();
+    let says = ["--vary joints.clearance=1e-4,0.0001", "stands there twice"];
+    place.refused(&format!("sweep {SHORT} --vary joints.clearance=1e-4,0.0001"), &says);
+    place.good(&format!("sweep {SHORT} --vary motion.phase=0,1 --out s --quiet"));
+    place.refused("merge s ./s --out all", &["`./s` is given twice", "each part once"]);
 }

@@ -69,14 +69,13 @@ pub struct Predicted {
 /// # Errors
 /// Everything that is wrong with them.
 pub fn check(model: &Scenario, recording: &Recording) -> Result<(), CalibrateError> {
+    if !matches!(model.mechanism, scenario::Mechanism::ThreeRpr(_)) {
+        return refuse(vec![plausibility::without_sensors(model).to_string()]);
+    }
     let mut found: Vec<String> = plausibility::recording(model, recording, plausibility::PREDICT)
         .iter()
         .map(ToString::to_string)
         .collect();
-    if !matches!(model.mechanism, scenario::Mechanism::ThreeRpr(_)) {
-        let help = "predict takes a model of the kind \"3rpr\", \"drive-stage\" or \"pendulum\"";
-        found.push(model.problem("mechanism.kind", "is another machine", help).to_string());
-    }
     if model.contact.law == Law::Native {
         let help = "write law = \"hertz-step\": predict needs a contact law whose error is known";
         found.push(model.problem("contact.law", "is \"native\"", help).to_string());

@@ -1,13 +1,14 @@
 //! `freeplay compare`: one motion under several contact models.
 
 use super::compare_laws::{self, figure};
-use super::failure::{Failure, refuse_errors, refuse_faults};
+use super::failure::{Failure, refuse_errors, refuse_faults, warn_of_seed};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
+use super::output;
 use super::progress::Progress;
 use super::table::{paragraph, table};
 use crate::report::number;
-use crate::scenario::Law;
-use crate::simulate::{assemble, findings};
+use crate::scenario::{Law, Scenario};
+use crate::simulate::{Finding, assemble, findings};
 use crate::study::compare::{
     COMPARE_FILE, CompareError, Compared, Options, QUANTITIES, SAMPLE_INTERVAL, Use, compare,
     simulated_time,
@@ -78,9 +79,13 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let steps = steps(&arguments.steps).map_err(|problem| Failure::Input(vec![problem]))?;
     let options = Options { steps, starts: arguments.starts.into() };
     let mut scenario = arguments.scenario.load()?;
-    scenario.contact.law = Law::HertzStep;
+    let declared = std::mem::replace(&mut scenario.contact.law, Law::HertzStep);
     refuse_errors(findings(&scenario, &mut assemble(&scenario)?))?;
     let simulated = simulated_time(&scenario, &options)?;
+    // What cannot be compared is refused without a word of what it would not have used.
+    warn_of_seed(&scenario);
+    warn_of_law(&scenario, declared);
+    warn_of_step(&scenario, "--steps says which fixed steps are compared");
     let folder = arguments.folder.prepare("compare", &scenario.name, COMPARE_FILE)?;
 
     let mut progress = Progress::new(simulated, arguments.print.quiet);
@@ -89,6 +94,27 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let compared = compared?;
     arguments.print.result(&compared.json, || text(&compared))?;
     refuse_faults(&compared.comparison.faults())
+}
+
+/// Says that the scenario's own law is not the one that is compared with the others.
+fn warn_of_law(scenario: &Scenario, law: Law) {
+    if law != Law::HertzStep {
+        let message = format!(
+            "is \"{}\" and is not used, nor are keys that this law alone has: hertz-step, native and ideal are compared",
+            law.name()
+        );
+        let help = "leave it out, or name the laws to compare: --laws hertz-step,flores";
+        let problem = scenario.problem("contact.law", message, help);
+        output::complain(&Finding::warning(problem).to_string());
+    }
+}
+
+/// Says that a comparison does not take the scenario's own step, and what it takes.
+pub(super) fn warn_of_step(scenario: &Scenario, taken: &str) {
+    if scenario.simulation.step.is_some() {
+        let problem = scenario.problem("simulation.step", "is not used", taken);
+        output::complain(&Finding::warning(problem).to_string());
+    }
 }
 
 impl From<CompareError> for Failure {

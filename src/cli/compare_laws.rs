@@ -1,6 +1,7 @@
 //! `freeplay compare --laws`: one motion under several contact laws.
 
-use super::failure::{Failure, refuse_errors};
+use super::compare::warn_of_step;
+use super::failure::{Failure, refuse_errors, warn_of_seed};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::progress::Progress;
 use super::table::{paragraph, table};
@@ -21,6 +22,8 @@ pub(super) fn main(
 ) -> Result<(), Failure> {
     let kinds = kinds(list).map_err(|problem| Failure::Input(vec![problem]))?;
     let scenario = scenario.load()?;
+    warn_of_seed(&scenario);
+    warn_of_step(&scenario, "laws are compared at simulation.tolerance");
     refuse_errors(findings(&scenario, &mut assemble(&scenario)?))?;
     let simulated = simulated_time(&scenario, &kinds, starts)?;
     let folder = folder.prepare("compare-laws", &scenario.name, LAWS_COMPARED_FILE)?;
@@ -35,7 +38,7 @@ pub(super) fn main(
 /// The laws of a list, each once.
 ///
 /// # Errors
-/// A name that is none, and what would be one.
+/// A name that is none, and what would be one; a single law.
 pub fn kinds(list: &str) -> Result<Vec<&'static Kind>, String> {
     if list.trim() == "all" {
         return Ok(ALL.to_vec());
@@ -54,7 +57,13 @@ pub fn kinds(list: &str) -> Result<Vec<&'static Kind>, String> {
             kinds.push(kind);
         }
     }
-    Ok(kinds)
+    match kinds.as_slice() {
+        [one] => Err(format!(
+            "--laws: `{list}` names one law, {}, which leaves nothing to compare; expected `all`, or two laws or more",
+            one.name
+        )),
+        _ => Ok(kinds),
+    }
 }
 
 /// The comparison of laws for people.

@@ -60,8 +60,11 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let done = match &sides {
         [Side::Result(a, _), Side::Result(b, _)] => {
             if !sets.is_empty() {
-                let message = "--set: two results lie there as they are; give the scenario.toml in one of them instead";
-                return Err(Failure::Input(vec![message.to_owned()]));
+                let message = format!(
+                    "{}: two results lie there as they are; give the scenario.toml in one of them instead",
+                    arguments.sets.given().join(", ")
+                );
+                return Err(Failure::Input(vec![message]));
             }
             diff_results(&sides, [a, b], names.clone(), prepare()?)?
         }

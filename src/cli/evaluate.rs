@@ -1,6 +1,6 @@
 //! `freeplay evaluate`: one run for a program that drives many: parameters in, one line of figures out.
 
-use super::failure::{Failure, refuse_errors};
+use super::failure::{Failure, refuse_errors, warn_of_seed};
 use super::options::ScenarioOptions;
 use super::output;
 use crate::simulate::{assemble, findings};
@@ -17,7 +17,8 @@ use std::sync::atomic::AtomicBool;
 /// summary.json, and the line has them in the order of --figures, separated by blanks.
 ///
 /// Where there are no figures (the machine cannot do what is asked, the run breaks down, the input is wrong) the line is
-/// `FAIL`; the reason goes to standard error. No file is written but that of --results. The figures are those of
+/// `FAIL`; the reason goes to standard error. No file is written but that of --results;
+/// where that cannot be written, nothing is simulated and `FAIL` goes to standard output. The figures are those of
 /// `freeplay sweep` and `freeplay run`, to the last digit.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -47,6 +48,13 @@ Exit codes: 0 figures, 1 FAIL because of the run, 2 FAIL because of the input.";
 const FAIL: &str = "FAIL";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(file) = &arguments.results
+        && let Err(error) = output::can_hold(file)
+    {
+        output::print(&format!("{FAIL}\n"))?;
+        let message = format!("--results {}: cannot be written: {error}", file.display());
+        return Err(Failure::Input(vec![message]));
+    }
     let figures = figures(arguments);
     let line = figures.as_deref().unwrap_or(FAIL);
     match &arguments.results {
@@ -65,6 +73,7 @@ fn figures(arguments: &Arguments) -> Result<String, Failure> {
         sets.extend(Parameters::read(file)?.sets());
     }
     let scenario = arguments.scenario.source()?.scenario(&sets)?;
+    warn_of_seed(&scenario);
     let mut machine = assemble(&scenario)?;
     refuse_errors(findings(&scenario, &mut machine))?;
     // A signal ends the process: there is nothing to be kept.

@@ -3,7 +3,7 @@
 use super::output;
 use crate::calibrate::recording::Recording;
 use crate::measure::dialect;
-use crate::scenario::{Problem, Problems, Scenario};
+use crate::scenario::{Location, Problem, Problems, Scenario};
 use crate::simulate::{Finding, Severity};
 use crate::study::sweep::SweepError;
 use crate::study::{FolderError, RunError};
@@ -133,6 +133,16 @@ pub(super) fn say_what_is_ignored<'a>(recordings: impl IntoIterator<Item = &'a R
 /// Says which sections of a scenario mean nothing to its machine.
 pub(super) fn warn_of_unused(scenario: &Scenario) {
     for problem in scenario.unused() {
+        output::complain(&Finding::warning(problem).to_string());
+    }
+}
+
+/// Says that a seed that somebody set changes nothing, for commands that draw no random numbers.
+pub(super) fn warn_of_seed(scenario: &Scenario) {
+    let message = "is not used: this command draws no random numbers";
+    let help = "leave it out; noise of `freeplay record` and random values of `freeplay sweep` follow from it";
+    let problem = scenario.problem("seed", message, help);
+    if matches!(problem.location, Location::Set { .. }) {
         output::complain(&Finding::warning(problem).to_string());
     }
 }

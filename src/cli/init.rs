@@ -30,7 +30,11 @@ Examples:
   freeplay record rig.toml                       what its sensors would show";
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
-    let text = format!("name = \"{0}\"\n[mechanism]\nkind = \"{0}\"\n", arguments.kind);
+    let mut text = format!("name = \"{0}\"\n[mechanism]\nkind = \"{0}\"\n", arguments.kind);
+    // Nothing else moves what has no drives.
+    if ["pendulum", "double-pendulum"].contains(&arguments.kind.as_str()) {
+        text += "[environment]\ngravity = [0, -9.81]\n";
+    }
     let scenario = Scenario::from_text(&text, &arguments.kind, &[])?;
     let scenario = if arguments.rig { instrumented(&scenario)? } else { scenario };
     Ok(output::print(&annotated(&scenario))?)

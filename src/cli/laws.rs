@@ -61,10 +61,11 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.folder.out.is_some() {
         return draw(arguments, &chosen);
     }
-    let unused = arguments.folder.force || !arguments.sets.all().is_empty();
-    if unused {
-        let message = "--set and --force say what is drawn: give --out DIR, too";
-        return Err(Failure::Input(vec![message.to_owned()]));
+    let mut unused = arguments.sets.given();
+    unused.extend(arguments.folder.force.then_some("--force"));
+    if !unused.is_empty() {
+        let message = format!("{}: only pictures take it: give --out DIR, too", unused.join(", "));
+        return Err(Failure::Input(vec![message]));
     }
     Ok(output::print(&CATALOGUE.text(one, arguments.json))?)
 }

@@ -34,6 +34,12 @@ pub(super) struct Sets {
 }
 
 impl Sets {
+    /// The options that were given, for messages.
+    pub fn given(&self) -> Vec<&'static str> {
+        let given = [("--set", !self.sets.is_empty()), ("--engine", self.engine.is_some())];
+        given.into_iter().filter(|(_, given)| *given).map(|(flag, _)| flag).collect()
+    }
+
     /// All of them, in their order.
     pub fn all(&self) -> Vec<String> {
         let engine = self.engine.as_ref().map(|engine| format!("simulation.engine={engine}"));

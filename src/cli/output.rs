@@ -23,24 +23,43 @@ pub(super) fn whole(file: &Path, text: &str) -> io::Result<()> {
     if file.exists() && !file.is_file() {
         return fs::write(file, text);
     }
-    let file = file.canonicalize().unwrap_or_else(|_| file.to_owned());
-    let mut aside = file.as_os_str().to_owned();
-    aside.push(".partial");
-    let aside = PathBuf::from(aside);
+    let (file, aside) = beside(file);
     fs::write(&aside, text)
         .and_then(|()| fs::rename(&aside, &file))
         // The error is that of the writing.
         .inspect_err(|_| drop(fs::remove_file(&aside)))
 }
 
+/// Whether [`whole`] can write a file, found out before there is anything to be written.
+pub(super) fn can_hold(file: &Path) -> io::Result<()> {
+    if file.is_dir() {
+        return Err(ErrorKind::IsADirectory.into());
+    }
+    if file.exists() && !file.is_file() {
+        return Ok(());
+    }
+    let (_, aside) = beside(file);
+    fs::write(&aside, "")?;
+    fs::remove_file(&aside)
+}
+
+/// What a name stands for, and the name under which it is written first.
+fn beside(file: &Path) -> (PathBuf, PathBuf) {
+    let file = file.canonicalize().unwrap_or_else(|_| file.to_owned());
+    let mut aside = file.as_os_str().to_owned();
+    aside.push(".partial");
+    (file, PathBuf::from(aside))
+}
+
 /// Characters after which a complaint is cut: it quotes a file that is no text for people.
 const LONGEST: usize = 10_000;
 
-/// Prints a line on standard error, what would act on a terminal as numbers. If that is impossible there is nobody to tell.
+/// Prints a line on standard error, what would act on a terminal as numbers, wrapped by words on a terminal. If that is impossible there is nobody to tell.
 pub(super) fn complain(line: &str) {
     let end = line.char_indices().nth(LONGEST).map_or(line.len(), |(end, _)| end);
     let cut = if end < line.len() { " …" } else { "" };
-    let _ = writeln!(io::stderr(), "{}{cut}", shown(&line[..end]));
+    let line = format!("{}{cut}", shown(&line[..end]));
+    let _ = writeln!(io::stderr(), "{}", table::for_stderr(&line).unwrap_or(line));
 }
 
 /// Columns that words need to be read beside what they are about, and where they begin below it.

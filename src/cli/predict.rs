@@ -73,6 +73,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         }
         return along_commands(arguments, &model);
     }
+    refuse_windows(arguments)?;
     let read = recording::read_one(&arguments.data);
     let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
     say_what_is_ignored([&recording]);
@@ -86,22 +87,28 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The same of a mechanism that its file describes and that drives hold, or joints with play.
 fn along_commands(arguments: &Arguments, model: &Scenario) -> Result<(), Failure> {
-    for (flag, given) in
-        [("window", arguments.window), ("fit", arguments.fit), ("from", arguments.from)]
-    {
-        if given.is_some() {
-            let message = format!(
-                "--{flag}: this machine is predicted from its release on, not over windows; leave it out"
-            );
-            return Err(Failure::Input(vec![message]));
-        }
-    }
+    refuse_windows(arguments)?;
     let prepared = sensed::prepare(model, &arguments.data)?;
     let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
     let predicted = Spinner::during(arguments.print.quiet, |tell| {
         sensed::into_folder(model, &prepared, folder, tell)
     })?;
     shown(arguments, &predicted, &prepared.remarks())
+}
+
+/// Windows belong to machines that nothing holds.
+fn refuse_windows(arguments: &Arguments) -> Result<(), Failure> {
+    for (flag, given) in
+        [("window", arguments.window), ("fit", arguments.fit), ("from", arguments.from)]
+    {
+        if given.is_some() {
+            let message = format!(
+                "--{flag}: this machine is predicted from its first row on, not over windows; leave it out"
+            );
+            return Err(Failure::Input(vec![message]));
+        }
+    }
+    Ok(())
 }
 
 /// The result of a prediction, and what is to be known of the recording.

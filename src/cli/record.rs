@@ -1,11 +1,12 @@
 //! `freeplay record`: what the sensors of a scenario would record.
 
-use super::failure::{Failure, refuse_errors, warn_of_unused};
+use super::failure::{Failure, refuse_errors};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::table::{paragraph, table};
 use crate::calibrate::quantity;
 use crate::calibrate::record::{Done, RECORD_FILE, RIG_FILE, Rows, into_folder, prepare};
+use crate::calibrate::sensed::thresholds::{LOWEST_RATE, SHORTEST};
 use crate::scenario::Scenario;
 use crate::simulate::{assemble, findings};
 use clap::Args;
@@ -66,11 +67,11 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
             return Err(Failure::Input(vec![message]));
         }
     }
+    refuse_short(rows)?;
     // What is looked at beforehand is the motion up to the recordings' end.
     let end = format!("simulation.duration={:?}", rows.duration);
     let sets: Vec<String> = arguments.sets.all().into_iter().chain([end]).collect();
     let scenario = Scenario::load(arguments.file.as_deref(), &sets)?;
-    warn_of_unused(&scenario);
     let mut machine = assemble(&scenario)?;
     refuse_errors(findings(&scenario, &mut machine))?;
     let prepared = prepare(&scenario, &machine, rows)?;
@@ -87,6 +88,24 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     }
     let done = Spinner::during(arguments.print.quiet, |tell| into_folder(&prepared, folder, tell))?;
     Ok(arguments.print.result(&done.json, || text(&done))?)
+}
+
+/// Recordings that no calibration would take are not made.
+fn refuse_short(rows: Rows) -> Result<(), Failure> {
+    let mut wrong = Vec::new();
+    if rows.duration < SHORTEST {
+        wrong.push(format!(
+            "--duration: is {} s; expected at least {SHORTEST} s, the least that calibrate takes",
+            rows.duration
+        ));
+    }
+    if rows.rate < LOWEST_RATE {
+        wrong.push(format!(
+            "--rate: is {} Hz; expected at least {LOWEST_RATE} Hz, the least that calibrate takes",
+            rows.rate
+        ));
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(Failure::Input(wrong)) }
 }
 
 /// The result for people.

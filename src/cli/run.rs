@@ -1,12 +1,13 @@
 //! `freeplay run`: simulate a scenario.
 
-use super::failure::{Failure, refuse_errors, refuse_faults};
+use super::failure::{Failure, refuse_errors, refuse_faults, warn_of_seed};
 use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::output;
 use super::progress::Progress;
 use super::signals;
 use super::table::paragraph;
 use crate::report::{length, number};
+use crate::scenario::Motion;
 use crate::simulate::{Summary, assemble, findings};
 use crate::study::{self, Outcome, RunError, SUMMARY_FILE, Terms};
 use clap::Args;
@@ -54,6 +55,7 @@ Examples:
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.load()?;
+    warn_of_seed(&scenario);
     let mut machine = assemble(&scenario)?;
     refuse_errors(findings(&scenario, &mut machine))?;
     let folder = arguments.folder.prepare("run", &scenario.name, SUMMARY_FILE)?;
@@ -71,7 +73,10 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         }
         outcome => outcome?,
     };
-    arguments.print.result(&outcome.json, || text(&outcome))?;
+    // The file as it is written has [motion] where the machine follows one.
+    let has_phase = scenario.to_toml().lines().any(|line| line.starts_with("phase = "))
+        && matches!(scenario.motion, Motion::Circle(_));
+    arguments.print.result(&outcome.json, || text(&outcome, has_phase))?;
     let summary = &outcome.recorded.summary;
     let watched = &summary.watched;
     for doubt in &watched.doubts {
@@ -84,8 +89,8 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The result for people.
-fn text(outcome: &Outcome) -> String {
+/// The result for people; `has_phase` says whether the motion is one that can begin elsewhere.
+fn text(outcome: &Outcome, has_phase: bool) -> String {
     let s = &outcome.recorded.summary;
     let mut text = format!(
         "{}: {} s simulated in {} s, {} steps\n\n",
@@ -110,7 +115,7 @@ fn text(outcome: &Outcome) -> String {
         let _ = writeln!(text, "\n  (the first {} s left out)", number(s.settle_s));
     }
     if s.lyapunov_exponent_1_s.is_some_and(|rate| rate > 0.0) {
-        text += &format!("\n{}", paragraph("  ", "  ", ONE_DRAW));
+        text += &format!("\n{}", paragraph("  ", "  ", &one_draw(has_phase)));
     }
     let folder = outcome.folder.display();
     let page = outcome.folder.join("index.html");
@@ -119,8 +124,13 @@ fn text(outcome: &Outcome) -> String {
 }
 
 /// What the peaks of a chaotic run are worth.
-const ONE_DRAW: &str = "(chaotic: peaks and counts are one draw; `freeplay sweep` over motion.phase and `freeplay \
-                        diff` of scenario files take means over starts)";
+fn one_draw(has_phase: bool) -> String {
+    let sweep = if has_phase { "`freeplay sweep` over motion.phase and " } else { "" };
+    let take = if has_phase { "take" } else { "takes" };
+    format!(
+        "(chaotic: peaks and counts are one draw; {sweep}`freeplay diff` of scenario files {take} means over starts)"
+    )
+}
 
 fn figures(s: &Summary) -> Vec<(&'static str, String, String)> {
     if !s.has_figures() {

@@ -1,4 +1,4 @@
-//! What Ctrl-C (SIGINT) and SIGTERM do: a command ends without litter, or with what it has.
+//! What Ctrl-C (SIGINT), SIGTERM and the terminal's end (SIGHUP) do: a command ends without litter, or with what it has.
 //!
 //! A thread waits for them. By default it removes what the process has in the making and ends it; a run
 //! asks to be told instead, and keeps what was computed. The second signal always ends the process.
@@ -25,17 +25,29 @@ static WORK: Mutex<String> = Mutex::new(String::new());
 /// From now on, signals end this process as described above.
 #[cfg(unix)]
 pub(super) fn watch() {
-    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
+    let hangup = heeds_hangup().then_some(SIGHUP);
     // Where the system refuses, signals end the process at once, as they do by default: the next start
     // tidies up.
-    if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) {
+    if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup)) {
         std::thread::spawn(move || {
             for signal in signals.forever() {
                 received(u8::try_from(signal).unwrap_or(0));
             }
         });
     }
+}
+
+/// Whether the end of its terminal is to end this process: not under `nohup`, which has it ignored. Where the system does
+/// not tell, it is left as it is.
+#[cfg(unix)]
+fn heeds_hangup() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    // Signal 1 is the lowest bit.
+    ignored.is_some_and(|mask| mask & 1 == 0)
 }
 
 /// Elsewhere processes are ended at once; the next start tidies up.

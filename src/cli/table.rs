@@ -2,7 +2,7 @@
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
-use std::io::{IsTerminal, stdout};
+use std::io::{IsTerminal, stderr, stdout};
 use unicode_width::UnicodeWidthStr;
 
 /// Columns of text where nobody says how wide the reader's window is: what terminals have had since punched cards.
@@ -89,6 +89,22 @@ fn of_width(
     lines.collect()
 }
 
+/// Lines as they fit the terminal that standard error is, wrapped by words; none where it is no terminal.
+pub(super) fn for_stderr(text: &str) -> Option<String> {
+    let (terminal_size::Width(columns), _) = terminal_size::terminal_size_of(stderr())?;
+    stderr().is_terminal().then(|| wrapped(text, usize::from(columns)))
+}
+
+/// Lines no longer than `columns`, as far as words allow; what goes on below a line is indented.
+fn wrapped(text: &str, columns: usize) -> String {
+    let options = textwrap::Options::new(columns.max(*WIDTHS.start()))
+        .subsequent_indent("  ")
+        .break_words(false)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation);
+    let lines = text.lines().flat_map(|line| textwrap::wrap(line, &options));
+    lines.map(|line| line.trim_end().to_owned()).collect::<Vec<_>>().join("\n")
+}
+
 /// Words after `first`, lines after the first one after `next`.
 pub(super) fn paragraph(first: &str, next: &str, words: &str) -> String {
     let options = textwrap::Options::new(width())
@@ -121,5 +137,15 @@ mod tests {
         };
         assert_eq!(ends("value"), ends("1.5 µm"));
         assert_eq!(ends(" 2"), ends("value"));
+    }
+
+    #[test]
+    fn complaints_are_wrapped_by_words_and_lose_none() {
+        let text = "error: --set joints.clearance: is -1 m at A1, A2 and A3; expected a radial clearance above 0 m";
+        let said = wrapped(&format!("{text}\n{text}"), 40);
+        assert!(said.lines().all(|line| line.width() <= 40), "{said}");
+        assert_eq!(said.lines().filter(|line| line.starts_with("error: ")).count(), 2, "{said}");
+        let words: Vec<&str> = said.split_whitespace().collect();
+        assert_eq!(words.join(" "), format!("{text} {text}"));
     }
 }

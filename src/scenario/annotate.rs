@@ -14,7 +14,10 @@ pub fn annotated(scenario: &Scenario) -> String {
     let text = scenario.to_toml();
     // A table from its header to the line before the next one; the keys above all headers first.
     let mut tables: Vec<Vec<&str>> = vec![Vec::new()];
-    for line in text.lines().filter(|line| !line.is_empty()) {
+    // A start left out that follows from the duration goes on following it.
+    let follows =
+        |line: &str| scenario.simulation.settle.is_none() && line.starts_with("settle = ");
+    for line in text.lines().filter(|line| !line.is_empty() && !follows(line)) {
         if line.starts_with('[') {
             tables.push(Vec::new());
         }

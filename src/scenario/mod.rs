@@ -151,6 +151,25 @@ pub struct Scenario {
     unused: Vec<&'static str>,
 }
 
+/// Complaints about keys that several overrides give a value: nobody knows which one is meant.
+fn set_twice(sets: &[String]) -> Vec<Problem> {
+    let parts = |set: &String| {
+        let (path, value) = set.split_once('=')?;
+        Some([path, value].map(|part| part.trim().to_owned()))
+    };
+    let given: Vec<[String; 2]> = sets.iter().filter_map(parts).collect();
+    let complain = |(i, [path, value]): (usize, &[String; 2])| {
+        let [_, before] = given[..i].iter().find(|[earlier, _]| earlier == path)?;
+        Some(Problem {
+            path: path.clone(),
+            message: format!("is given twice, as {before} and as {value}"),
+            help: "give it once (--duration, --engine and --parameters set keys, too)".to_owned(),
+            location: Location::Set { path: path.clone() },
+        })
+    };
+    given.iter().enumerate().filter_map(complain).collect()
+}
+
 impl Scenario {
     /// Reads the scenario file at `path`, or the built-in default, with `PATH=VALUE` overrides
     /// applied in their order.
@@ -168,8 +187,8 @@ impl Scenario {
     /// Everything wrong with the text and the overrides.
     pub fn from_text(text: &str, source: &str, sets: &[String]) -> Result<Scenario, Problems> {
         let mut document = Document::parse(text, source)?;
-        let refused: Vec<Problem> =
-            sets.iter().filter_map(|assignment| document.set(assignment).err()).collect();
+        let mut refused = set_twice(sets);
+        refused.extend(sets.iter().filter_map(|assignment| document.set(assignment).err()));
         if !refused.is_empty() {
             return Err(Problems(refused));
         }

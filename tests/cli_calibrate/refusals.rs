@@ -195,3 +195,33 @@ fn unit(column: &str) -> &'static str {
         _ => "[m]",
     }
 }
+
+/// Windows belong to machines that nothing holds.
+#[test]
+fn a_platform_is_not_predicted_over_windows() {
+    let place = Place::new();
+    let [model, data] = ["rig.toml", "run-a.csv"].map(rig);
+    let (model, data) = (model.display(), data.display());
+    for flag in ["window", "fit", "from"] {
+        let line = format!("predict {model} --data {data} --{flag} 1");
+        place.refused(&line, &[&format!("--{flag}: "), "not over windows"]);
+    }
+}
+
+/// A machine without sensors is told how they are declared.
+#[test]
+fn a_described_machine_without_sensors_is_pointed_to_them() {
+    let place = Place::new();
+    place.write("four-bar.toml", &place.good("init four-bar"));
+    let data = rig("run-a.csv");
+    let data = data.display();
+    for line in [
+        format!("predict four-bar.toml --data {data}"),
+        format!("calibrate --rig four-bar.toml --data {data}"),
+    ] {
+        place.refused(
+            &line,
+            &["four-bar.toml: sensor: is missing", "[[sensor]]", "init four-bar --rig"],
+        );
+    }
+}

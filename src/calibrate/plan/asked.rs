@@ -54,7 +54,10 @@ pub fn between(text: &str, mechanism: &Mechanism) -> Result<Vec<Question>, Strin
             )));
         }
         match size {
-            Some(size) if rivals.is_empty() => found = sized(&found[0], size),
+            Some(size) if rivals.is_empty() => {
+                within(&found[0], size).map_err(told)?;
+                found = sized(&found[0], size);
+            }
             Some(_) => {
                 let wrong =
                     "a size belongs to the first effect: those of its rivals follow from it";
@@ -84,6 +87,9 @@ pub fn detect(text: &str, mechanism: &Mechanism) -> Result<Vec<Question>, String
     let told = |wrong: String| format!("--detect {text}: {wrong}");
     let (effect, size) = of_size(text).map_err(told)?;
     let found = effects(effect, mechanism).map_err(told)?;
+    for effect in &found {
+        size.map_or(Ok(()), |size| within(effect, size)).map_err(told)?;
+    }
     Ok(found.into_iter().map(|effect| Question::Detect(effect, size)).collect())
 }
 
@@ -93,6 +99,23 @@ fn of_size(text: &str) -> Result<(&str, Option<f64>), String> {
     let size = size.trim().parse::<f64>().ok().filter(|size| size.is_finite() && *size != 0.0);
     let wrong = || "expected a number other than 0 behind the =, in SI units".to_owned();
     Ok((effect.trim(), Some(size.ok_or_else(wrong)?)))
+}
+
+/// Refuses a size that takes an effect's value out of its bounds; above the upper one it counts downwards.
+fn within(effect: &Setting, size: f64) -> Result<(), String> {
+    let value = effect.values().next();
+    let Some((name, neutral)) = value else { return Ok(()) };
+    let Some(parameter) = effect.kind.parameter(name) else { return Ok(()) };
+    let [low, high] = parameter.bounds;
+    let reached = if neutral + size > high { neutral - size } else { neutral + size };
+    if (low..=high).contains(&reached) {
+        return Ok(());
+    }
+    Err(format!(
+        "{name} would be {} {unit}, out of its bounds; expected a size with which it is from {low} to {high} {unit}",
+        neutral + size,
+        unit = parameter.unit
+    ))
 }
 
 /// Effects at their neutral values that a text names: of the target that it names, else of all single ones.

@@ -74,16 +74,23 @@ pub fn incomplete(scenario: &Scenario, recordings: &[Recording]) -> Vec<String> 
     found
 }
 
+/// Complains about a machine other than a 3-RPR whose file does not say what recordings of it hold.
+pub fn without_sensors(rig: &Scenario) -> Problem {
+    let message = "is missing: nobody knows what the columns of a recording are";
+    let help = "add a [[sensor]] for each column (a drive stage or a pendulum with a kind takes [columns], too); \
+                `freeplay init four-bar --rig` prints a rig that has them";
+    rig.problem("sensor", message, help)
+}
+
 /// What keeps a rig from being calibrated.
 pub fn rig(rig: &Scenario) -> Vec<Problem> {
+    if !matches!(rig.mechanism, Mechanism::ThreeRpr(_)) {
+        return vec![without_sensors(rig)];
+    }
     let mut found = Vec::new();
     let mut complain = |path: &str, message: String, help: &str| {
         found.push(rig.problem(path, message, help));
     };
-    if !matches!(rig.mechanism, Mechanism::ThreeRpr(_)) {
-        let help = "calibrate takes a rig of the kind \"3rpr\", \"drive-stage\" or \"pendulum\"";
-        complain("mechanism.kind", "is another machine".to_owned(), help);
-    }
     if !rig.effects.is_empty() {
         let message = format!("holds {} effect(s)", rig.effects.len());
         let help = "calibrate starts from what a rig's maker declares: give it the rig without \

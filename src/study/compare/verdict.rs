@@ -137,7 +137,10 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
         (Use::Yes, "In this machine, native contacts may be used for"),
         (Use::Size, "They may be used to tell the size, not the value, of"),
         (Use::No, "They may not be used for"),
-        (Use::Unclear, "Too much scatter to tell (more --starts or a longer --duration would):"),
+        (
+            Use::Unclear,
+            "Too few steps or too much scatter to tell (more --steps, more --starts or a longer --duration would):",
+        ),
     ];
     let mut answer: Vec<String> = sentences
         .into_iter()
@@ -147,10 +150,14 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
         })
         .collect();
     if named(Use::Yes).is_empty() {
-        answer.insert(
-            0,
-            "In this machine, native contacts may be used for nothing compared here.".into(),
-        );
+        let told = comparison.verdicts.iter().any(|verdict| verdict.usable != Use::Unclear);
+        let first = match told {
+            true => "In this machine, native contacts may be used for nothing compared here.",
+            false => {
+                "This comparison cannot tell what native contacts may be used for in this machine."
+            }
+        };
+        answer.insert(0, first.into());
     }
     if let Some(hits) = &comparison.first_hits
         && let (Some([order, _]), Some([power, _])) = (hits.law_order, hits.native_power)

@@ -58,6 +58,25 @@ impl Side {
     }
 }
 
+/// A warning where the machines have unlike parts: figures of the one then say little of the other.
+fn unlike(sides: &[Side; 2]) -> Result<Option<String>, DiffError> {
+    let parts = |side: &Side| -> Result<[Vec<String>; 2], Problem> {
+        let machine = crate::model::parts_of(side.scenario())?;
+        let bodies = machine.bodies.into_iter().map(|body| body.name).collect();
+        Ok([bodies, machine.actuators.into_iter().map(|drive| drive.name).collect()])
+    };
+    let [a, b] = [parts(&sides[0])?, parts(&sides[1])?];
+    let listed = |names: &[String]| match names {
+        [] => "none".to_owned(),
+        names => names.join(", "),
+    };
+    let found = ["bodies", "drives"].into_iter().zip(a.iter().zip(&b)).find(|(_, (a, b))| a != b);
+    Ok(found.map(|(what, (a, b))| {
+        let (a, b) = (listed(a), listed(b));
+        format!("The machines are unlike: {what} of the first are {a}; of the second {b}. Figures of one name need not mean the same.")
+    }))
+}
+
 /// A finished comparison of two.
 #[derive(Debug)]
 pub struct Done {

@@ -3,7 +3,7 @@
 use super::page::{self, RUNS_FILE};
 use super::result::{Diff, Row};
 use super::series::{Series, overlaid};
-use super::{DiffError, Done, Side};
+use super::{DiffError, Done, Side, unlike};
 use crate::measure::student::t95;
 use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
 use crate::scenario::{Problem, Scenario};
@@ -52,12 +52,14 @@ pub fn diff_models(
         of: "models",
         starts,
         predictable_until_s: None,
+        sure: SURE,
         rows,
         warnings: broken(&runs),
         answer: String::new(),
         wall_s: 0.0,
         files: Vec::new(),
     };
+    diff.warnings.extend(unlike(sides)?);
     diff.answer = diff.in_words();
     let mut pictures = vec![every_run(&diff, &runs)?];
     pictures.extend(over_time(both, &diff.names)?);

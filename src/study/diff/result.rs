@@ -1,5 +1,6 @@
 //! `diff.json`: what two have in common and what not.
 
+use crate::report::number;
 use crate::simulate::Provenance;
 use serde::Serialize;
 
@@ -20,6 +21,8 @@ pub struct Diff {
     /// Time in s from which on two runs of a chaotic machine have nothing to do with each other; null where they
     /// do to the end, and of models.
     pub predictable_until_s: Option<f64>,
+    /// How many floors two figures have to lie apart to differ.
+    pub sure: f64,
     /// The figures, one by one.
     pub rows: Vec<Row>,
     /// What is to be known before a figure is believed.
@@ -48,7 +51,7 @@ pub struct Row {
     /// By how much the two may differ by chance or by their own error: of means half of the 95 % interval of their
     /// difference, of positions of results the runs' own errors. Null where nobody knows.
     pub floor: Option<f64>,
-    /// Whether they differ by more; null without a floor.
+    /// Whether they differ by more than [`Diff::sure`] floors; null without a floor.
     pub differs: Option<bool>,
     /// Whether each is one draw of a chaotic motion's peaks, means or counts.
     pub one_draw: bool,
@@ -96,14 +99,17 @@ impl Diff {
             .map(|row| row.label.as_str())
             .collect();
         let [a, b] = &self.names;
+        let times = number(self.sure);
         match (judged().count(), differing.len()) {
             (0, _) => format!("{a} and {b} have no figure in common whose floor is known."),
             (all, 0) => {
-                format!("{a} and {b} differ in none of {all} figures by more than their floors.")
+                format!(
+                    "{a} and {b} differ in none of {all} figures by more than {times} × their floors."
+                )
             }
             (all, count) => {
                 format!(
-                    "{a} and {b} differ in {count} of {all} figures by more than their floors: {}.",
+                    "{a} and {b} differ in {count} of {all} figures by more than {times} × their floors: {}.",
                     differing.join("; ")
                 )
             }

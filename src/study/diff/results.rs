@@ -3,7 +3,7 @@
 use super::page;
 use super::result::{Diff, Row};
 use super::series::{Series, overlaid};
-use super::{DiffError, Done, Side};
+use super::{DiffError, Done, Side, unlike};
 use crate::measure::bounded;
 use crate::report::{Panel, Picture, panels_svg};
 use crate::simulate::Provenance;
@@ -80,6 +80,7 @@ pub fn diff_results(
         of: "results",
         starts: 1,
         predictable_until_s: horizon,
+        sure: SURE,
         rows,
         warnings: warnings(chaotic, horizon, folders),
         answer: String::new(),
@@ -87,6 +88,7 @@ pub fn diff_results(
         files: Vec::new(),
         names,
     };
+    diff.warnings.extend(unlike(sides)?);
     diff.answer = diff.in_words();
     let pictures = over_time(&both, &diff)?;
     diff.wall_s = started.elapsed().as_secs_f64();
@@ -118,7 +120,7 @@ fn figures(both: &[Read; 2], chaotic: bool) -> Vec<Row> {
         let [a, b] = [both[0].number(&path)?, both[1].number(&path)?];
         let floor = (!chaotic).then(|| ROUNDING * a.abs().max(b.abs()));
         let difference = b - a;
-        let differs = floor.map(|floor| difference.abs() > floor);
+        let differs = floor.map(|floor| difference.abs() > SURE * floor);
         let (key, label) = (key.to_owned(), label.to_owned());
         Some(Row {
             key,

@@ -23,10 +23,14 @@ impl Parameters {
         let wrong = |what: String| EvaluateError::Input(format!("{}{what}", path.display()));
         let text = bounded::text(path, bounded::SCENARIO)
             .map_err(|error| wrong(format!(": cannot be read: {error}")))?;
-        Self::parse(&text).map_err(|(line, what)| match line {
+        let parameters = Self::parse(&text).map_err(|(line, what)| match line {
             0 => wrong(format!(": {what}; {FORMS}")),
             line => wrong(format!(":{line}: {what}; {FORMS}")),
-        })
+        })?;
+        match parameters.0.is_empty() {
+            true => Err(wrong(format!(": holds no parameter; {FORMS}"))),
+            false => Ok(parameters),
+        }
     }
 
     /// As overrides of a scenario, `PATH=VALUE` each.

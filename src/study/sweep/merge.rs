@@ -24,6 +24,7 @@ pub fn merge(
     force: bool,
     partial: bool,
 ) -> Result<Outcome, SweepError> {
+    refuse_twice(parts)?;
     let records: Vec<Record> =
         parts.iter().map(|part| Record::read(part)).collect::<Result<_, _>>()?;
     refuse_foreign(parts, &records)?;
@@ -62,6 +63,17 @@ pub fn merge(
     let outcome = write(place, target, identity, Shard::WHOLE, &rows)?;
     folder.finish().map_err(RunError::from)?;
     Ok(outcome)
+}
+
+/// Fails if a folder is given twice, under whatever names.
+fn refuse_twice(parts: &[PathBuf]) -> Result<(), SweepError> {
+    let real: Vec<PathBuf> =
+        parts.iter().map(|part| part.canonicalize().unwrap_or_else(|_| part.clone())).collect();
+    let again = (0..real.len()).find(|&i| real[..i].contains(&real[i]));
+    again.map_or(Ok(()), |i| {
+        let part = parts[i].display();
+        Err(SweepError::input(format!("`{part}` is given twice; expected each part once")))
+    })
 }
 
 /// Fails if parts belong to another sweep than the first, and names all of them.

@@ -49,7 +49,7 @@ fn lead(record: &Record, rows: &Rows) -> String {
             + " Means over the starts, with their 95 % intervals, stand in statistics.csv.";
     }
     lead + " Where joints rattle, the peaks and counts of a run are one draw: what differs from run to run may be \
-            chaos. --vary motion.phase=0..5.5:12 (or seed) gives each value twelve starts, and means with intervals."
+            chaos. --vary motion.phase=0..5.5:12 gives each value twelve starts, and means with intervals."
 }
 
 /// Groups of a page's table: more are in the file.

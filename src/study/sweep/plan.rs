@@ -165,7 +165,12 @@ impl Plan {
     fn scenario(&self, run: usize) -> Result<Scenario, Problem> {
         let values = self.values(run);
         let varied = self.design.varied().iter().zip(&values);
-        let mut sets = self.sets.clone();
+        let replaced = |set: &&String| {
+            let path = set.split_once('=').map_or("", |(path, _)| path.trim());
+            self.design.varied().iter().any(|vary| vary.path == path)
+        };
+        let mut sets: Vec<String> =
+            self.sets.iter().filter(|set| !replaced(set)).cloned().collect();
         sets.extend(varied.map(|(vary, value)| format!("{}={value}", vary.path)));
         // One complaint is enough: the runs share their mistakes.
         self.source.scenario(&sets).map_err(|mut problems| problems.0.swap_remove(0))
@@ -188,6 +193,13 @@ impl Plan {
             warned.extend(checked.warning.map(|warning| (run, warning)));
         }
         self.identity.runs_hash = hexadecimal(&hash.finalize());
+        if self.design.varied().iter().any(|vary| vary.path == "seed") {
+            self.warnings.push(
+                "--vary seed changes nothing: runs draw no random numbers, so that its rows are equal and no starts of \
+                 their own; a circle has other starts by --vary motion.phase=0..5.5:12"
+                    .to_owned(),
+            );
+        }
         for vary in self.design.varied() {
             let set =
                 |set: &&String| set.split_once('=').is_some_and(|(path, _)| path == vary.path);

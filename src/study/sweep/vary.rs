@@ -54,9 +54,10 @@ impl Vary {
         let elements = split(values);
         let values = match elements.as_slice() {
             [element] if is_range(element) => Values::Range(Range::parse(element).map_err(refuse)?),
-            _ => Values::List(
-                elements.iter().map(|e| value(e)).collect::<Result<_, _>>().map_err(refuse)?,
-            ),
+            _ => {
+                let values = elements.iter().map(|e| value(e)).collect::<Result<Vec<_>, _>>();
+                Values::List(values.and_then(each_once).map_err(refuse)?)
+            }
         };
         Ok(Vary { path: path.to_owned(), values })
     }
@@ -81,6 +82,15 @@ impl Vary {
             // One value has no distance to the next; `parse` allows that for random keys only.
             Values::Range(range) => range.at(k as f64 / (range.count - 1).max(1) as f64),
         }
+    }
+}
+
+/// The values of a list, none of which may stand there twice: equal runs say nothing new.
+fn each_once(values: Vec<String>) -> Result<Vec<String>, String> {
+    let again = |(i, value): &(usize, &String)| values[..*i].contains(value);
+    match values.iter().enumerate().find(again) {
+        Some((_, value)) => Err(format!("`{value}` stands there twice: give each value once")),
+        None => Ok(values),
     }
 }
 
@@ -243,6 +253,7 @@ mod tests {
             ("joints.clearance", "no values"),
             ("=1", "no path"),
             ("a=1,,2", "empty element"),
+            ("a=1e-4,0.0001", "stands there twice"),
             ("a=1..2", "`` is no number of values"),
             ("a=1..2:0", "at least 2"),
             ("a=1..2:1", "at least 2"),
@@ -268,6 +279,8 @@ mod tests {
         {
             assert_eq!(Vary::parse(text).expect("right").to_string(), text);
         }
-        assert_eq!(values("a=-0,-0.0"), ["0", "0"]);
+        for zero in ["a=-0", "a=-0.0"] {
+            assert_eq!(values(zero), ["0"]);
+        }
     }
 }
