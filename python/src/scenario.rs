@@ -126,7 +126,16 @@ impl Scenario {
             }
         };
         let made = more.and_then(|more| {
-            let sets = self.sets.iter().cloned().chain(more).collect();
+            // What is set again, or with all that stands above it, is not what it was before.
+            let path = |set: &str| set.split_once('=').map_or(set, |(path, _)| path).to_owned();
+            let again = |set: &&String| {
+                more.iter().any(|later| {
+                    let below = path(set).strip_prefix(&path(later)).map(str::to_owned);
+                    below.is_some_and(|below| below.is_empty() || below.starts_with('.'))
+                })
+            };
+            let kept = self.sets.iter().filter(|set| !again(set)).cloned();
+            let sets = kept.chain(more.iter().cloned()).collect();
             Self::make(self.source.clone(), sets)
         });
         made.map_err(|failure| failure.exception(py))

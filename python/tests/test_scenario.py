@@ -45,6 +45,15 @@ def test_values_are_set_and_read_by_path() -> None:
     assert changed.set("joints.clearance", np.float32(0.5)  * 1e-3)["joints.clearance"] == pytest.approx(5e-4)
 
 
+def test_what_is_set_again_replaces_what_was_set_before() -> None:
+    machine = fp.Scenario().set("motion.radius", 0.04).set("motion.radius", 0.05)
+    assert machine["motion.radius"] == 0.05
+    payload = machine.set("effect", [{"kind": "payload", "mass_kg": 1.0}]).set("effect.0.mass_kg", 2.0)
+    assert payload["effect.0.mass_kg"] == 2.0
+    again = payload.set("effect", [{"kind": "payload", "mass_kg": 3.0}])
+    assert again["effect.0.mass_kg"] == 3.0 and again["motion.radius"] == 0.05
+
+
 def test_effects_and_joints_are_set_by_name() -> None:
     loaded = fp.Scenario().set("effect", [{"kind": "payload", "mass_kg": 0.5}])
     assert loaded["effect.0.mass_kg"] == 0.5

@@ -1,8 +1,8 @@
 //! The command line: one file per command. Commands parse, call and print; what they call is in the
 //! rooms below.
 //!
-//! Exit codes: 0 done, 2 wrong input (what, where, what would be right), 130 and 143 ended by Ctrl-C and
-//! SIGTERM, or 75 where the same command goes on from there, 1 anything else. Results go
+//! Exit codes: 0 done, 2 wrong input (what, where, what would be right), 129, 130 and 143 ended by SIGHUP,
+//! Ctrl-C and SIGTERM, or 75 where the same command goes on from there, 1 anything else. Results go
 //! to standard output, everything else to standard error.
 
 mod calibrate;
@@ -79,9 +79,9 @@ Examples:
   freeplay laws hunt-crossley              contact laws, what they are and do
   freeplay wear mine.toml --cycles 1e6     how rings wear
 
-Exit codes: 0 done, 2 wrong input, 130 and 143 ended by Ctrl-C and SIGTERM
-(75 where the same command goes on from there: sweep, calibrate --self-test),
-1 anything else.";
+Exit codes: 0 done, 2 wrong input, 129, 130 and 143 ended by SIGHUP, Ctrl-C
+and SIGTERM (75 where the same command goes on from there: sweep, calibrate
+--self-test), 1 anything else.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -116,7 +116,7 @@ impl Source {
 pub struct Scenario {
     /// What the results are called. Default "default".
     pub name: String,
-    /// Seed of all random numbers, 0 to 2⁶³ − 1 (the range of TOML). Default 1: any would do, as
+    /// Seed of all random numbers (noise that `record` adds, random values of a sweep; a run draws none), 0 to 2⁶³ − 1 (the range of TOML). Default 1: any would do, as
     /// long as it is the same each time.
     pub seed: u64,
     /// `[mechanism]`, or the sections that describe one.
