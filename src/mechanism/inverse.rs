@@ -53,8 +53,12 @@ impl Tracker {
         let all = 0..closure.rows.len();
         let (driven, joints): (Vec<usize>, Vec<usize>) =
             all.partition(|&row| closure.driven[row].is_some());
-        let is_revolute = |row: &usize| matches!(closure.joints[*row], JointIndex::Revolute(_));
-        let places: Vec<usize> = (0..joints.len()).filter(|&k| is_revolute(&joints[k])).collect();
+        let revolute = |row: usize| match closure.joints[row] {
+            JointIndex::Revolute(i) => Some(i),
+            JointIndex::Prismatic(_) => None,
+        };
+        let is_revolute = |place: &usize| revolute(joints[*place]).is_some();
+        let places: Vec<usize> = (0..joints.len()).filter(is_revolute).collect();
         let own: Vec<usize> = places.iter().map(|&k| joints[k]).collect();
         let all_forces = forces(&rows.select_rows(&joints), self.mechanism().size())?;
         // What is imposed stays where it is. By a target the rows of joints stand first, without those of drives among them.
@@ -67,10 +71,6 @@ impl Tracker {
                 Factors::of(determining).responses(height, &places)?
             }
         };
-        let revolute = |row: &usize| match closure.joints[*row] {
-            JointIndex::Revolute(i) => Some(i),
-            JointIndex::Prismatic(_) => None,
-        };
         Some(Posed {
             t: self.time(),
             states: self.states().to_vec(),
@@ -81,7 +81,7 @@ impl Tracker {
             efforts: factors.responses(rows.nrows(), &driven)?,
             driving: driven.iter().filter_map(|&row| closure.driven[row]).collect(),
             driven: rows.select_rows(&driven).transpose(),
-            revolutes: own.iter().step_by(2).filter_map(revolute).collect(),
+            revolutes: own.iter().step_by(2).filter_map(|&row| revolute(row)).collect(),
             forces: all_forces.select_rows(&places),
             shifts,
         })
@@ -94,9 +94,11 @@ impl Posed {
         self.t
     }
 
-    /// Memory that it takes, in numbers of eight bytes, all but a few.
+    /// Memory that it takes, in numbers of eight bytes, all but a few: twelve of each body's state, acceleration and reference
+    /// point, and the matrices.
     pub fn size(&self) -> usize {
-        self.driven.len() + self.efforts.len() + self.forces.len() + self.shifts.len()
+        let matrices = [&self.driven, &self.efforts, &self.forces, &self.shifts];
+        12 * self.states.len() + matrices.map(|matrix| matrix.len()).iter().sum::<usize>()
     }
 
     /// Centre of mass of a body of `mechanism` (m, in its own axes) from the one that the motion is given for.

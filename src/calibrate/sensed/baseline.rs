@@ -333,16 +333,8 @@ mod tests {
     /// A softer servo makes less of its encoder's steps, and a model as it is nothing else of its noise.
     #[test]
     fn a_softer_servo_shrinks_noise() {
-        use crate::calibrate::result::control;
         use crate::effects::{Target, named};
-        use crate::scenario::Scenario;
-        let folder =
-            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar/planar-2");
-        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
-        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
-        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
-        let control = control(&rig);
-        let problem = Problem::new(rig, vec![recording], control).unwrap();
+        let problem = Problem::planar("planar-2");
         let segments = problem.split().hold;
         let baseline = Baseline::of(&problem, &[], &[], &segments).unwrap();
         let shrunk = |relative: f64| {

@@ -84,24 +84,22 @@ fn followed(moved: Moved, view: &View, rows: Range<usize>) -> Option<Vec<Posed>>
 
 #[cfg(test)]
 mod tests {
+    use super::super::problem::Problem;
     use super::super::recording::Recording;
     use super::super::residual::residuals;
     use super::super::start::machine;
     use super::*;
     use crate::effects::{Setting, Target, named};
-    use crate::scenario::Scenario;
-    use std::path::Path;
 
     /// A recorded slider-crank, and the same with something on its piston, which moves that body's centre of mass.
     fn loaded() -> (Recording, [Mechanism; 2]) {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar/planar-1");
-        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
-        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
-        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
+        let mut problem = Problem::planar("planar-1");
+        let recording = problem.runs.remove(0).recording;
         let target = Target::Body("piston".to_owned());
         let values = [("mass_kg", 0.1), ("com_x_m", 0.01), ("com_y_m", -0.02)];
         let payload = Setting::on(named("payload").unwrap(), target, &values);
-        let machines = [vec![], vec![payload]].map(|e| machine(&rig, &e, &recording).unwrap());
+        let machines =
+            [vec![], vec![payload]].map(|e| machine(&problem.rig, &e, &recording).unwrap());
         (recording, machines)
     }
 

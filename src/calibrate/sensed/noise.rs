@@ -266,6 +266,20 @@ mod tests {
         assert!(super::usual(&vec![vec![1.0; 4]; 9], 0.5).is_none());
     }
 
+    /// A crank that swings through 2 rad four times a second, its encoder's step of 1e-5 rad, in blocks of 50 rows: what leaked
+    /// into the band was larger than the noise there.
+    #[test]
+    fn fast_motion_leaves_the_band_to_noise() {
+        let turn = |k: usize| 2.0 * (std::f64::consts::TAU * 4.0 * k as f64 / 500.0).sin();
+        let clean: Vec<f64> = (0..1500).map(turn).collect();
+        let noisy: Vec<f64> = clean.iter().map(|q| (q / 1e-5).round() * 1e-5).collect();
+        let noise: Vec<f64> = noisy.iter().zip(&clean).map(|(noisy, q)| noisy - q).collect();
+        let sum = |values: &[f64]| super::powers(values, 50).iter().map(|p| p.0).sum::<f64>();
+        let (own, all, expected) = (sum(&clean), sum(&noisy), sum(&noise));
+        assert!(own < 0.1 * expected, "{own:e} {expected:e}");
+        assert!((all / expected - 1.0).abs() < 0.3, "{all:e} {expected:e}");
+    }
+
     /// Of white noise as much lies in the band as the band is wide.
     #[test]
     fn power_of_white_noise_is_that_of_its_share_of_the_band() {

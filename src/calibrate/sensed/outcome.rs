@@ -81,26 +81,9 @@ pub fn calibrate(
     // What is noise as a whole hides nothing that does not last.
     let mut events = Vec::new();
     if unnamed && !asked.search(problem).is_noise(&found.best) {
-        events = what_does_not_last(problem, &found, &logs, tell)?;
-        if !events.is_empty() {
-            let all = |problem: &Problem, found: &Found| {
-                let search = asked.search(problem);
-                [&found.declared, &found.best].map(|model| search.left(model))
-            };
-            let without = all(problem, &found);
-            problem.rig.effects = events.iter().map(Event::setting).collect();
-            let again = searched(problem, &asked, &mut rattle)?;
-            // What leaves most of what there was, beside the declared and beside the best model, is not what acted. An
-            // effect that imitates a part of it may leave less without it.
-            let left = all(problem, &again);
-            let mut pairs = left.iter().zip(&without);
-            let cleared = pairs.any(|(left, without)| largest(left) < CLEARED * largest(without));
-            if is_noise(&left[1]) || cleared {
-                found = again;
-            } else {
-                problem.rig.effects.clear();
-                events.clear();
-            }
+        let acting = what_does_not_last(problem, &found, &logs, tell)?;
+        if let Some(again) = searched_beside(problem, &asked, &acting, &found, &mut rattle)? {
+            (found, events) = (again, acting);
         }
     }
     let Found { mut best, declared, mut rounds, rest } = found;
@@ -115,8 +98,10 @@ pub fn calibrate(
     }
     let after = search.left(&best);
     // What no simulation bears out is nothing that the declared model lacks.
-    let rest = rest.filter(|_| is_noise(&after) && !best.fit.effects.is_empty());
-    let rest = rest.or_else(|| uncertain(problem, &best, &split.on).map(Rest::Uncertain));
+    let uncertain = || uncertain(problem, &best, &split.on).map(Rest::Uncertain);
+    let rest = (is_noise(&after) && !best.fit.effects.is_empty())
+        .then(|| rest.or_else(uncertain))
+        .flatten();
     let noise = is_noise(&after) && rest.is_none();
     let limits = if noise { limits(&search, &best) } else { Vec::new() };
     let mut described = match noise || !unnamed {
@@ -211,6 +196,36 @@ fn searched(problem: &mut Problem, asked: &Asked, rattle: &mut f64) -> Result<Fo
     Ok(found)
 }
 
+/// What a search finds beside these events, which act on the rig from then on; none, and the rig as it was, where there are
+/// none, or where they leave most of what there was, beside the declared and beside the best model: then they are not what
+/// acted. An effect that imitates a part of them may leave less without them.
+fn searched_beside(
+    problem: &mut Problem,
+    asked: &Asked,
+    events: &[Event],
+    before: &Found,
+    rattle: &mut f64,
+) -> Result<Option<Found>, Stopped> {
+    if events.is_empty() {
+        return Ok(None);
+    }
+    let all = |problem: &Problem, found: &Found| {
+        let search = asked.search(problem);
+        [&found.declared, &found.best].map(|model| search.left(model))
+    };
+    let without = all(problem, before);
+    problem.rig.effects = events.iter().map(Event::setting).collect();
+    let again = searched(problem, asked, rattle)?;
+    let left = all(problem, &again);
+    let mut pairs = left.iter().zip(&without);
+    let cleared = pairs.any(|(left, without)| largest(left) < CLEARED * largest(without));
+    if is_noise(&left[1]) || cleared {
+        return Ok(Some(again));
+    }
+    problem.rig.effects.clear();
+    Ok(None)
+}
+
 /// What does not last, beside the declared model, or, where nothing of it shows there, beside what was found.
 fn what_does_not_last(
     problem: &Problem,
@@ -284,24 +299,32 @@ fn covariance(model: &Model, on: &[Segment]) -> Option<DMatrix<f64>> {
     Some(inverse * factor)
 }
 
-/// An effect of a model whose values are, all together, no further from those at which there is nothing of it than
-/// [`SURE`] standard deviations (Wald's test): nobody knows that there is any.
+/// An effect of a model of which nobody knows that there is any, if there is one.
 fn uncertain(problem: &Problem, model: &Model, on: &[Segment]) -> Option<Setting> {
-    let covariance = covariance(model, on)?;
-    let mut first = 0;
-    model.fit.effects.iter().find_map(|effect| {
-        let own: Vec<f64> = effect.values().map(|(_, value)| value).collect();
+    let effects = &model.fit.effects;
+    let away = |effect: &Setting| -> Vec<f64> {
         let neutral = (effect.kind.neutral)(&problem.declared, effect);
+        effect.values().zip(neutral).map(|((_, own), neutral)| own - neutral).collect()
+    };
+    let away: Vec<Vec<f64>> = effects.iter().map(away).collect();
+    within_chance(&away, &covariance(model, on)?).map(|place| effects[place].clone())
+}
+
+/// The first effect whose values, of which it is told how far `away` they are from those at which there is nothing of it,
+/// are all together no further from these than [`SURE`] standard deviations: aᵀ C⁻¹ a (Wald's test), C being its part of the
+/// `covariance` of all values.
+fn within_chance(away: &[Vec<f64>], covariance: &DMatrix<f64>) -> Option<usize> {
+    let mut first = 0;
+    away.iter().position(|away| {
         // What nothing depends on has no variance, and no part in this.
         let told: Vec<usize> =
-            (0..own.len()).filter(|i| covariance[(first + i, first + i)] > 0.0).collect();
-        let away = DVector::from_fn(told.len(), |k, _| own[told[k]] - neutral[told[k]]);
+            (0..away.len()).filter(|i| covariance[(first + i, first + i)] > 0.0).collect();
         let part = DMatrix::from_fn(told.len(), told.len(), |r, c| {
             covariance[(first + told[r], first + told[c])]
         });
-        first += own.len();
-        let square = away.dot(&part.cholesky()?.solve(&away));
-        (square < SURE * SURE).then(|| effect.clone())
+        let apart = DVector::from_fn(told.len(), |k, _| away[told[k]]);
+        first += away.len();
+        part.cholesky().is_some_and(|part| apart.dot(&part.solve(&apart)) < SURE * SURE)
     })
 }
 
@@ -323,4 +346,25 @@ fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
             (effect.clone(), fitted.collect())
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_within_two_standard_deviations_of_nothing_may_not_be_there() {
+        let of = |away: &[&[f64]], covariance: &[f64]| {
+            let away: Vec<Vec<f64>> = away.iter().map(|own| own.to_vec()).collect();
+            let count = away.iter().map(Vec::len).sum();
+            within_chance(&away, &DMatrix::from_row_slice(count, count, covariance))
+        };
+        assert_eq!(of(&[&[3.0], &[-1.9]], &[1.0, 0.0, 0.0, 1.0]), Some(1));
+        assert_eq!(of(&[&[3.0], &[-2.1]], &[1.0, 0.0, 0.0, 1.0]), None);
+        // Neither of two values that make up for each other is known, and their sum is: 1 + 1 of ±0.2.
+        assert_eq!(of(&[&[1.0, 1.0]], &[1.01, -0.99, -0.99, 1.01]), None);
+        assert_eq!(of(&[&[1.0, -1.0]], &[1.01, -0.99, -0.99, 1.01]), Some(0));
+        // A value without any variance is none that anything depends on.
+        assert_eq!(of(&[&[3.0, 50.0]], &[1.0, 0.0, 0.0, 0.0]), None);
+    }
 }

@@ -57,13 +57,20 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
     let residuals = Table {
         id: "residuals",
         title: "Residuals in units of noise, on the run where most is left".into(),
-        header: head(&["residual", "mean square before", "after", "largest before", "after"]),
+        header: head(&[
+            "residual",
+            "mean square before",
+            "after",
+            "noise up to",
+            "largest before",
+            "after",
+        ]),
         rows: report
             .residuals
             .iter()
             .map(|r| {
-                let cells =
-                    [r.mean_square_before, r.mean_square_after, r.largest_before, r.largest_after];
+                let squares = [r.mean_square_before, r.mean_square_after, r.noise_up_to];
+                let cells = squares.into_iter().chain([r.largest_before, r.largest_after]);
                 std::iter::once(r.residual.clone()).chain(cells.map(number)).collect()
             })
             .collect(),

@@ -152,23 +152,14 @@ fn wave(times: &[f64], (cosine, sine): (&Signal, &Signal), frequency: f64, later
 
 #[cfg(test)]
 mod tests {
-    use super::super::recording::Recording;
     use super::*;
     use crate::effects::{Target as On, named};
-    use crate::engine::StepControl;
-    use crate::model::parts_of;
-    use crate::scenario::Scenario;
-    use std::path::Path;
 
     /// Two looks at one frequency tell what the effect itself does at another one: forces that go round, and a base that
     /// shakes along a line.
     #[test]
     fn looks_at_one_frequency_tell_of_any_other() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar/planar-2");
-        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
-        let sensors = parts_of(&rig).unwrap().sensors;
-        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
-        let problem = Problem::new(rig, vec![recording], StepControl::Tolerance(1e-5)).unwrap();
+        let problem = Problem::planar("planar-2");
         let segment = Segment { run: 0, rows: problem.runs[0].view.rows() };
         let (frequency, phase) = (7.3, 0.8);
         for (kind, on, amplitude, grows) in [

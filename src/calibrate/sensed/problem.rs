@@ -381,3 +381,17 @@ fn drawn(effects: &[Setting], deviations: &[f64], replica: u64) -> Option<Vec<Se
     });
     Some(with_values(effects, &drawn.collect::<Vec<f64>>()))
 }
+
+#[cfg(test)]
+impl Problem {
+    /// One of the `planar-…` rigs with its first recording.
+    pub fn planar(name: &str) -> Self {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let folder = root.join("assets/rigs-planar").join(name);
+        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
+        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
+        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
+        let control = crate::calibrate::result::control(&rig);
+        Self::new(rig, vec![recording], control).unwrap()
+    }
+}

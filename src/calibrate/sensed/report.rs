@@ -193,7 +193,7 @@ fn summary(outcome: &Outcome) -> String {
             as_good(outcome)
         ),
         Verdict::Unexplained if outcome.rest.is_some() => format!(
-            "{} leaves no more than noise{worst}, but {}.",
+            "{} leaves residuals that are no more than noise, but {}.",
             names(&outcome.tried),
             outcome.rest.as_ref().map_or_else(String::new, Rest::words)
         ),

@@ -196,20 +196,11 @@ mod tests {
     use super::super::baseline::Baseline;
     use super::super::candidates::candidates;
     use super::super::problem::Problem;
-    use super::super::recording::Recording;
-    use crate::calibrate::result::control;
-    use crate::scenario::Scenario;
 
     /// A candidate at neutral values leaves what the model leaves: it is not looked at again.
     #[test]
     fn neutral_candidates_leave_what_the_model_leaves() {
-        let folder =
-            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/rigs-planar/planar-3");
-        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
-        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
-        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
-        let control = control(&rig);
-        let problem = Problem::new(rig, vec![recording], control).unwrap();
+        let problem = Problem::planar("planar-3");
         let on = problem.split().on;
         let baseline = Baseline::of(&problem, &[], &[], &on).unwrap();
         let look = |effects: &[_]| baseline.white(&problem, effects, &on).unwrap().unwrap();
