@@ -57,6 +57,20 @@ fn foreign_parts_are_all_named() {
 }
 
 #[test]
+fn more_parts_than_runs_are_joined_as_soon_as_few_ones() {
+    let place = Place::new();
+    place.good(&format!("{SWEEP} --shard 2/1000000000000 --out a"));
+    place.refused(
+        "merge a --out all",
+        &[
+            "8 of 9 rows are missing (runs 1, 3, 4, 5, 6, …)",
+            "shards 1/1000000000000, 3/1000000000000",
+            ", 6/1000000000000, … are not among the parts",
+        ],
+    );
+}
+
+#[test]
 fn a_dry_run_says_how_many_and_how_long_and_makes_nothing() {
     let place = Place::new();
     let text = place.good(&format!("{} --dry-run", SWEEP.replace("--quiet", "")));

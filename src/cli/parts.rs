@@ -61,7 +61,7 @@ impl PartOptions {
             return Err(Failure::Input(vec![message]));
         }
         let first = format!("1/{count}").parse::<Shard>().map_err(|e| Failure::Input(vec![e]))?;
-        Ok(Some(first.siblings().collect()))
+        Ok(Some((0..count as usize).map(|number| first.sibling(number)).collect()))
     }
 
     /// The options that mean something for work in parts only and were given.

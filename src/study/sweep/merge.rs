@@ -8,7 +8,7 @@ use crate::study::run::{RunError, SCENARIO_FILE};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Runs that are named where many are missing.
+/// Runs and parts that are named where many are missing.
 const NAMED: usize = 5;
 
 /// Joins the folders `parts` of one sweep into the folder `target`, as if it had been one sweep from
@@ -111,27 +111,37 @@ fn refuse_missing(
     let Some(record) = records.first().filter(|_| !missing.is_empty()) else {
         return Ok(());
     };
-    let names: Vec<String> = missing.iter().take(NAMED).map(|run| (run + 1).to_string()).collect();
-    let more = if missing.len() > NAMED { ", …" } else { "" };
     let lacks = |shard: Shard| missing.iter().any(|run| shard.holds(*run));
     let there = |shard: Shard| records.iter().any(|record| record.shard == shard);
-    let absent = record.shard.siblings().filter(|shard| !there(*shard) && lacks(*shard));
-    let absent: Vec<String> = absent.map(|shard| shard.to_string()).collect();
+    let mut absent: Vec<Shard> = missing.iter().map(|run| record.shard.sibling(*run)).collect();
+    absent.sort_unstable();
+    absent.dedup();
+    absent.retain(|shard| !there(*shard));
+    let shards = listed(absent.iter().map(Shard::to_string));
     let unfinished = parts.iter().zip(records).filter(|(_, record)| lacks(record.shard));
     let unfinished = unfinished.map(|(part, record)| {
         format!("`{}` (shard {}) is unfinished", part.display(), record.shard)
     });
     let mut said: Vec<String> = unfinished.collect();
-    match absent.as_slice() {
-        [] => {}
-        [one] => said.insert(0, format!("shard {one} is not among the parts")),
-        many => said.insert(0, format!("shards {} are not among the parts", many.join(", "))),
+    match absent.len() {
+        0 => {}
+        1 => said.insert(0, format!("shard {shards} is not among the parts")),
+        _ => said.insert(0, format!("shards {shards} are not among the parts")),
     }
     Err(SweepError::input(format!(
-        "{} of {runs} rows are missing (runs {}{more}): {}; give all parts, let the same sweep \
+        "{} of {runs} rows are missing (runs {}): {}; give all parts, let the same sweep \
          finish there, or merge what there is with --partial",
         missing.len(),
-        names.join(", "),
+        listed(missing.iter().map(|run| (run + 1).to_string())),
         said.join("; ")
     )))
+}
+
+/// The first [`NAMED`] of them with commas between, and a sign that there are more.
+fn listed(names: impl Iterator<Item = String>) -> String {
+    let mut names: Vec<String> = names.take(NAMED + 1).collect();
+    if names.len() > NAMED {
+        names[NAMED] = "…".to_owned();
+    }
+    names.join(", ")
 }

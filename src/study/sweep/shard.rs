@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 /// Part `index` of `count`, counted from 1: every run whose number leaves `index` − 1 when divided
 /// by `count`. Neighbours, which tend to cost the same, go to different parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Shard {
     index: usize,
@@ -27,10 +27,9 @@ impl Shard {
         self.index
     }
 
-    /// All parts that it is one of, itself among them.
-    pub fn siblings(self) -> impl Iterator<Item = Shard> {
-        let count = self.count;
-        (1..=count).map(move |index| Shard { index, count })
+    /// The one of its parts, itself among them, that run `run` belongs to.
+    pub fn sibling(self, run: usize) -> Shard {
+        Shard { index: run % self.count + 1, count: self.count }
     }
 
     /// Those of `runs` runs that belong to this part.
@@ -86,6 +85,7 @@ mod tests {
         let shards: Vec<Shard> = ["1/3", "2/3", "3/3"].map(|s| s.parse().expect("right")).into();
         for run in 0..10 {
             assert_eq!(shards.iter().filter(|shard| shard.holds(run)).count(), 1);
+            assert!(shards[1].sibling(run).holds(run));
         }
         assert_eq!(shards[1].runs(8).collect::<Vec<_>>(), [1, 4, 7]);
         assert_eq!(shards[2].runs(2).count(), 0);
