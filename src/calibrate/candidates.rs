@@ -19,7 +19,7 @@ pub fn all(mechanism: &Mechanism, without: &[&str]) -> Vec<Setting> {
     for kind in ALL.iter().filter(|kind| !ruled_out(kind)) {
         for on in targets(kind, mechanism) {
             for variant in kind.variants_of(mechanism, &on) {
-                found.push(Setting::neutral(kind, on.clone(), variant, mechanism));
+                found.extend(Setting::neutral(kind, on.clone(), variant, mechanism));
             }
         }
     }

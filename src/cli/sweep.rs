@@ -6,6 +6,7 @@ use super::output;
 use super::parts::{PartOptions, list, named};
 use super::progress::RunsProgress;
 use super::signals;
+use super::table::paragraph;
 use crate::report::number;
 use crate::study::sweep::{
     Outcome, Plan, Shard, Standing, SweepError, forecast, on_threads, sweep,
@@ -169,7 +170,7 @@ fn print_forecast(plan: &Plan, out: &Path, arguments: &Arguments) -> Result<(), 
                 "; a run takes {run_s} s ({tried} tried), the rest {rest_s} s on {threads} threads"
             )
         });
-        format!("{runs} runs, {finished} of them done{time}\n")
+        paragraph("", "", &format!("{runs} runs, {finished} of them done{time}"))
     };
     Ok(arguments.print.result(&json, text)?)
 }

@@ -174,6 +174,18 @@ impl Friction {
         }
     }
 
+    /// The coefficient μ of sliding.
+    pub fn coefficient(&self) -> f64 {
+        match *self {
+            Friction::Coulomb(CoulombFriction { coefficient, .. })
+            | Friction::Threlfall { coefficient, .. }
+            | Friction::BengisuAkay { coefficient, .. }
+            | Friction::Ambrosio { coefficient, .. }
+            | Friction::Stribeck { coefficient, .. }
+            | Friction::LuGre { coefficient, .. } => coefficient,
+        }
+    }
+
     /// The same law with the coefficient μ of sliding, and that of rest in proportion.
     pub fn with_coefficient(mut self, mu: f64) -> Self {
         match &mut self {

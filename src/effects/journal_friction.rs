@@ -1,6 +1,6 @@
 //! Dry friction between journal and bearing.
 
-use super::kind::{defaults, linear};
+use super::kind::linear;
 use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
 use crate::contact::CoulombFriction;
 use crate::mechanism::{Bearing, Mechanism};
@@ -24,11 +24,26 @@ pub(super) const KIND: Kind = Kind {
         0.02,
     )],
     variants: &[&["mu"]],
-    neutral: defaults,
+    // Joints that are not declared alike have no coefficient in common that leaves them as they are.
+    neutral: |mechanism, setting| {
+        let joints = setting.revolutes(mechanism).unwrap_or_default().into_iter();
+        let mut declared = joints.filter_map(|joint| declared(&mechanism.revolutes[joint].bearing));
+        let first = declared.next().unwrap_or(0.0);
+        if declared.all(|other| other == first) { vec![first] } else { Vec::new() }
+    },
     starts: linear,
     scan: None,
     apply,
 };
+
+/// The coefficient of friction that a joint with clearance has without the effect.
+fn declared(bearing: &Bearing) -> Option<f64> {
+    match bearing {
+        Bearing::Clearance(clearance) => Some(clearance.friction.map_or(0.0, |f| f.coefficient())),
+        Bearing::Native { friction, .. } => Some(*friction),
+        Bearing::Ideal => None,
+    }
+}
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let coefficient = setting.number("mu");

@@ -202,7 +202,7 @@ pub struct Kind {
     /// Sets of parameters that a search leaves free together, from the simplest on; the others keep
     /// their defaults.
     pub variants: &'static [&'static [&'static str]],
-    /// The values (of a variant's parameters) at which the effect changes nothing.
+    /// The values (of a variant's parameters) at which the effect changes nothing; empty where none do.
     pub neutral: fn(&Mechanism, &Setting) -> Vec<f64>,
     /// Where a search starts beside the neutral point, for parameters in which the machine's response
     /// is not linear: values of a variant's parameters. Empty where neutral is enough.
@@ -321,7 +321,9 @@ impl Kind {
         let targets = self.targets_of(mechanism);
         let each = |target: Target| {
             let variants = self.variants_of(mechanism, &target);
-            variants.into_iter().map(move |v| Setting::neutral(self, target.clone(), v, mechanism))
+            variants
+                .into_iter()
+                .filter_map(move |v| Setting::neutral(self, target.clone(), v, mechanism))
         };
         targets.into_iter().flat_map(each).collect()
     }

@@ -144,6 +144,28 @@ pub fn named(name: &str) -> Option<&'static Kind> {
 mod tests {
     use super::rigs::{SLIDER_CRANK, closed};
     use super::*;
+    use crate::mechanism::Bearing;
+
+    /// Where an effect takes the place of what is declared, that is where it changes nothing.
+    #[test]
+    fn journals_that_are_declared_to_rub_are_as_declared_where_nothing_is_missing() {
+        let neutral = |frictions: [f64; 2]| {
+            let mut machine = closed(SLIDER_CRANK).mechanism.clone();
+            for (joint, friction) in machine.revolutes.iter_mut().skip(1).zip(frictions) {
+                joint.bearing =
+                    Bearing::Native { bearing_radius: 0.01, journal_radius: 0.0099, friction };
+            }
+            let candidates = named("journal-friction").unwrap().candidates(&machine);
+            candidates
+                .iter()
+                .map(Setting::to_string)
+                .zip(candidates.iter().map(|c| c.value("mu")))
+                .collect::<Vec<_>>()
+        };
+        let of = |target: &str, mu: f64| (format!("journal-friction{target}"), Some(mu));
+        assert_eq!(neutral([0.1, 0.1]), [of(" at A", 0.1), of(" at B", 0.1), of("", 0.1)]);
+        assert_eq!(neutral([0.1, 0.2]), [of(" at A", 0.1), of(" at B", 0.2)]);
+    }
 
     /// A search needs the catalogue alone: every target of a mechanism, every variant, values that change
     /// nothing.

@@ -67,16 +67,17 @@ impl Setting {
         Self { kind, target, values: values.to_vec(), map: None, efforts: None, history: None }
     }
 
-    /// The effect `kind` of a target of `mechanism`, where a variant's values change nothing.
+    /// The effect `kind` of a target of `mechanism`, where a variant's values change nothing; none where none do.
     pub fn neutral(
         kind: &'static Kind,
         target: Target,
         variant: &[&'static str],
         mechanism: &Mechanism,
-    ) -> Self {
+    ) -> Option<Self> {
         let zero: Vec<(&'static str, f64)> = variant.iter().map(|name| (*name, 0.0)).collect();
         let setting = Self::on(kind, target, &zero);
-        setting.with(&(kind.neutral)(mechanism, &setting))
+        let neutral = (kind.neutral)(mechanism, &setting);
+        (neutral.len() == variant.len()).then(|| setting.with(&neutral))
     }
 
     /// The joint that it is given, if it is given one alone.

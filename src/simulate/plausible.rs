@@ -34,7 +34,9 @@ fn idle(scenario: &Scenario, declared: &Mechanism) -> Vec<Finding> {
         let variants = setting.kind.variants_of(declared, &setting.target);
         let neutral = |variant: &&[&'static str]| {
             let neutral = Setting::neutral(setting.kind, setting.target.clone(), variant, declared);
-            neutral.values().all(|(name, value)| setting.value(name) == Some(value))
+            neutral.is_some_and(|neutral| {
+                neutral.values().all(|(name, value)| setting.value(name) == Some(value))
+            })
         };
         !variants.is_empty() && variants.iter().all(neutral)
     });

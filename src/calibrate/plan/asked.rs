@@ -177,7 +177,7 @@ fn effects(text: &str, mechanism: &Mechanism) -> Result<Vec<Setting>, String> {
 fn simplest(kind: &'static Kind, target: &Target, mechanism: &Mechanism) -> Option<Setting> {
     let variants = kind.variants_of(mechanism, target);
     let variant = variants.into_iter().min_by_key(|variant| variant.len())?;
-    Some(Setting::neutral(kind, target.clone(), variant, mechanism))
+    Setting::neutral(kind, target.clone(), variant, mechanism)
 }
 
 /// What a report left open: effects that explain the recordings as well as those that were found; else, where nothing is

@@ -255,7 +255,7 @@ fn pose(
             // An effect of a report comes with its values.
             let names: Vec<&'static str> = a.values().map(|(name, _)| name).collect();
             let neutral = Setting::neutral(a.kind, a.target.clone(), &names, reference.declared());
-            let given = *a != neutral;
+            let given = neutral.is_none_or(|neutral| *a != neutral);
             let large = |effect: &Setting| -> Result<Setting, String> {
                 let size = LARGE * size_of(effect, (reference, seen), frozen, others)?;
                 Ok(sized(effect, size).into_iter().next().unwrap_or_else(|| effect.clone()))

@@ -155,8 +155,10 @@ pub fn nearest(
     let variants = rival.kind.variants_of(mechanism, &rival.target);
     let starts: Vec<(f64, Setting)> = variants
         .into_iter()
-        .flat_map(|variant| {
-            let neutral = Setting::neutral(rival.kind, rival.target.clone(), variant, mechanism);
+        .filter_map(|variant| {
+            Setting::neutral(rival.kind, rival.target.clone(), variant, mechanism)
+        })
+        .flat_map(|neutral| {
             let first = neutral.values().next().map_or(0.0, |(_, value)| value);
             stepped(&neutral).into_iter().map(move |start| (first, start))
         })

@@ -46,6 +46,8 @@ pub struct Baseline {
     parts: Arc<Vec<Part>>,
     /// Whether replicas differ by more than sensors see.
     pub rattles: bool,
+    /// Replicas that its draws are of: the i-th one of that many in turn.
+    pub replicas: usize,
 }
 
 type Coefficients = Vec<Vec<f64>>;
@@ -148,7 +150,8 @@ impl Baseline {
                 lost,
             });
         }
-        Ok(Self { parts: Arc::new(parts), rattles })
+        let replicas = simulated.first().map_or(1, Vec::len);
+        Ok(Self { parts: Arc::new(parts), rattles, replicas })
     }
 
     /// Residuals of the data under a model in units of noise, of all these segments in a row; none where the

@@ -86,7 +86,7 @@ impl Columns {
     /// The largest drop of the sum of squares, on data to judge on, that such a step of the candidate's values brings in
     /// draws of noise (on both kinds of data): where joints rattle noise has more of some shapes than a covariance frequency
     /// by frequency knows, and a candidate of that shape fits it.
-    pub fn chance(&self, step: &Step, draws: &[[DVector<f64>; 2]]) -> Option<f64> {
+    pub fn chance(&self, step: &Step, draws: &[[DVector<f64>; 2]], replicas: usize) -> Option<f64> {
         let model: Vec<usize> = (0..self.known).collect();
         let parts = [&model, &step.moving];
         let solvers = parts.map(|moving| Normal::of(&self.on, moving));
@@ -97,12 +97,12 @@ impl Columns {
                 .map(|(solver, matrix)| (hold + matrix * solver.solve(on)).norm_squared());
             without - with
         };
-        Some(up_to(&draws.iter().map(gain).collect::<Vec<f64>>()))
+        Some(up_to(&draws.iter().map(gain).collect::<Vec<f64>>(), replicas))
     }
 
     /// The largest drop of the sum of squares, on data to judge on, that values fitted to those bring in draws of noise
     /// beside values fitted to the others.
-    pub fn refitted(&self, draws: &[[DVector<f64>; 2]]) -> Option<f64> {
+    pub fn refitted(&self, draws: &[[DVector<f64>; 2]], replicas: usize) -> Option<f64> {
         let all: Vec<usize> = (0..self.on.ncols()).collect();
         let [on, hold] = [&self.on, &self.hold].map(|matrix| Normal::of(matrix, &all));
         let (on, hold) = (on?, hold?);
@@ -111,7 +111,7 @@ impl Columns {
                 .map(|change| (other + &self.hold * change).norm_squared());
             before - after
         };
-        Some(up_to(&draws.iter().map(drop).collect::<Vec<f64>>()))
+        Some(up_to(&draws.iter().map(drop).collect::<Vec<f64>>(), replicas))
     }
 }
 
@@ -141,7 +141,8 @@ mod tests {
             .collect();
         let free = [Free { step: 1.0, bounds: [-1e3, 1e3] }];
         let step = step(&shape, 0, &white(), &[0.0], &free).unwrap();
-        let [plain, shaped] = [plain, shaped].map(|draws| columns.chance(&step, &draws).unwrap());
+        let [plain, shaped] =
+            [plain, shaped].map(|draws| columns.chance(&step, &draws, 1).unwrap());
         assert!((0.0..15.0).contains(&plain), "{plain}");
         assert!((350.0..800.0).contains(&shaped), "{shaped}");
     }

@@ -302,11 +302,15 @@ fn covariance(model: &Model, on: &[Segment]) -> Option<DMatrix<f64>> {
 /// An effect of a model of which nobody knows that there is any, if there is one.
 fn uncertain(problem: &Problem, model: &Model, on: &[Segment]) -> Option<Setting> {
     let effects = &model.fit.effects;
-    let away = |effect: &Setting| -> Vec<f64> {
-        let neutral = (effect.kind.neutral)(&problem.declared, effect);
-        effect.values().zip(neutral).map(|((_, own), neutral)| own - neutral).collect()
+    let away = |effect: &Setting| -> Option<Vec<f64>> {
+        let names: Vec<&'static str> = effect.values().map(|(name, _)| name).collect();
+        let neutral =
+            Setting::neutral(effect.kind, effect.target.clone(), &names, &problem.declared)?;
+        Some(
+            effect.values().zip(neutral.values()).map(|((_, own), (_, none))| own - none).collect(),
+        )
     };
-    let away: Vec<Vec<f64>> = effects.iter().map(away).collect();
+    let away: Vec<Vec<f64>> = effects.iter().map(away).collect::<Option<_>>()?;
     within_chance(&away, &covariance(model, on)?).map(|place| effects[place].clone())
 }
 

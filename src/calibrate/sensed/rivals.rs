@@ -149,9 +149,9 @@ impl Search<'_> {
             .as_ref()
             .map_or(0.0, |refitted| model.held - refitted.chi2 - shrunk(&refitted.effects));
         let chance = || {
-            let on = model.fit.jacobian.clone()?;
+            let on = self.target(&model.baseline, false).jacobian(&model.fit)?;
             let columns = Columns { on, hold: hold.jacobian(refitted.as_ref()?)?, known: 0 };
-            columns.refitted(&self.draws(model))
+            columns.refitted(&self.draws(model), model.baseline.replicas)
         };
         if drop > enough(values) && chance().is_none_or(|chance| drop > chance) {
             return Some(Rest::Values(drop));

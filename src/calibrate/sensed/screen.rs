@@ -44,7 +44,7 @@ impl Search<'_> {
             let share = (gain / held.chi2).clamp(0.0, 1.0);
             let columns = Columns { on: found.on.clone(), hold, known: found.known };
             let chance = match gain > 0.5 * GAIN[0] {
-                true => columns.chance(&found.step, &draws)?,
+                true => columns.chance(&found.step, &draws, model.baseline.replicas)?,
                 false => 0.0,
             };
             let (effect, fitted, simulated) = (found.effect(), false, false);

@@ -8,6 +8,8 @@ use super::problem::{Segment, Stopped};
 use super::search::{Search, name, names};
 use super::thresholds::GAIN_PER_VALUE;
 use super::trajectory::{fitted, predicted};
+use crate::calibrate::fit::{free, values, with_values};
+use crate::calibrate::least_squares::jacobian;
 use crate::effects::Setting;
 
 /// A model that simulations of itself have been held against.
@@ -93,9 +95,19 @@ impl Search<'_> {
         Ok(refined.filter(|refined| refined.misfit < model.misfit).unwrap_or(model))
     }
 
-    /// A model with values from whole simulations, from these on; none where it cannot be.
+    /// A model with values from whole simulations, from these on; none where it cannot be. Simulations say how well they are
+    /// known, too: looks may hardly depend on them.
     pub(super) fn fitted(&self, effects: &[Setting]) -> Result<Option<Model>, Stopped> {
-        self.at(&fitted(self.problem, effects, &self.split.on)?, &[])
+        let mut model = self.at(&fitted(self.problem, effects, &self.split.on)?, &[])?;
+        if let Some(Model { fit, baseline, .. }) = &mut model {
+            let look = |values: &[f64]| {
+                let there = with_values(&fit.effects, values);
+                baseline.simulated_white(self.problem, &there, &self.split.on).ok().flatten()
+            };
+            let known = jacobian(&look, &free(&fit.effects), &values(&fit.effects), &fit.white);
+            fit.jacobian = known.or(fit.jacobian.take());
+        }
+        Ok(model)
     }
 
     /// A model whose predictions of the runs that values are fitted to are met, and the round that led to it, in place of
@@ -192,7 +204,6 @@ impl Search<'_> {
 
 /// Largest change of a value by a fit, in its standard deviations, each by itself.
 fn change(before: &[Setting], fit: &Fit) -> f64 {
-    use crate::calibrate::fit::values;
     let Some(jacobian) = &fit.jacobian else { return 0.0 };
     let sizes = jacobian.column_iter().map(|column| column.norm());
     let pairs = values(before).into_iter().zip(values(&fit.effects)).zip(sizes);

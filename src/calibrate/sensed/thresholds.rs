@@ -234,9 +234,9 @@ pub const ROWS_A_FEATURE: usize = 40;
 /// theirs.
 pub const CLEARED: f64 = 0.5;
 
-/// Standard deviations of the mean squares of draws of noise, beyond their mean, up to which a residual's own is noise:
-/// of sixteen draws, one of two hundred lies beyond by chance (Student's t).
-pub const CHANCE: f64 = 3.0;
+/// Share of draws of noise that are beyond what chance is said to lead to: of some ten residuals, on one run or the other,
+/// three in a hundred calibrations then have one that is.
+pub const CHANCE: f64 = 0.003;
 
 /// Factors by which units are mistaken: milli, centi, inches, degrees.
 pub const FACTORS: [f64; 8] = [
