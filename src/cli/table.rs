@@ -71,22 +71,36 @@ fn of_width(
         words.map(UnicodeWidthStr::width).max().unwrap_or(0) + PADDING
     };
     let least: Vec<usize> = (0..heads.len()).map(longest).collect();
-    let fits = least.iter().sum::<usize>() <= width;
+    if least.iter().sum::<usize>() > width {
+        return blocks(width, heads, &rows);
+    }
     table.set_header(heads);
     table.add_rows(rows);
     for ((column, side), least) in table.column_iter_mut().zip(sides.chars()).zip(least) {
         column.set_padding((PADDING as u16, 0));
-        // Words are broken only where not even the longest of each column stand side by side.
-        if fits {
-            let least = u16::try_from(least).unwrap_or(u16::MAX);
-            column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(least)));
-        }
+        // No word is broken.
+        let least = u16::try_from(least).unwrap_or(u16::MAX);
+        column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(least)));
         if side == 'r' {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
     let lines = table.lines().map(|line| line.replace(FIXED, " ").trim_end().to_owned() + "\n");
     lines.collect()
+}
+
+/// A table whose words do not fit side by side: its rows one below the other, each cell after its head.
+fn blocks(width: usize, heads: &[&str], rows: &[Vec<String>]) -> String {
+    let row = |row: &Vec<String>| {
+        let (first, others) = (row.first(), heads.iter().zip(row).skip(1));
+        let first = first.map(|first| filled(width, "  ", "  ", first)).unwrap_or_default();
+        let others = others.filter(|(_, cell)| !cell.trim().is_empty());
+        let line = |(head, cell): (&&str, &String)| {
+            filled(width, "    ", "      ", &format!("{head}: {cell}"))
+        };
+        first + &others.map(line).collect::<String>()
+    };
+    rows.iter().map(row).collect()
 }
 
 /// Lines as they fit the terminal that standard error is, wrapped by words; none where it is no terminal.
@@ -107,7 +121,11 @@ fn wrapped(text: &str, columns: usize) -> String {
 
 /// Words after `first`, lines after the first one after `next`.
 pub(super) fn paragraph(first: &str, next: &str, words: &str) -> String {
-    let options = textwrap::Options::new(width())
+    filled(width(), first, next, words)
+}
+
+fn filled(width: usize, first: &str, next: &str, words: &str) -> String {
+    let options = textwrap::Options::new(width)
         .initial_indent(first)
         .subsequent_indent(next)
         .break_words(false)
@@ -137,6 +155,16 @@ mod tests {
         };
         assert_eq!(ends("value"), ends("1.5 µm"));
         assert_eq!(ends(" 2"), ends("value"));
+    }
+
+    #[test]
+    fn rows_whose_words_do_not_fit_side_by_side_stand_below_each_other() {
+        let heads = ["machine", "explained-by-itself", "explained-by-others", "misunderstood"];
+        let row = ["six-bar", "3.5 % to 4.5 %", "", "1.5 µm"].map(str::to_owned);
+        let text = of_width(40, "lrrr", &heads, [row.to_vec()].into_iter());
+        let expected =
+            "  six-bar\n    explained-by-itself: 3.5 % to 4.5 %\n    misunderstood: 1.5 µm\n";
+        assert_eq!(text, expected);
     }
 
     #[test]

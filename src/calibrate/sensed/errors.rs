@@ -11,6 +11,9 @@ use crate::mechanism::Mechanism;
 /// Corner in Hz of the low-pass that errors are looked at through: as agreed on with whoever reads them.
 pub const CORNER: f64 = 25.0;
 
+/// Values that [`in_floors`] has for each that is independent of the others: four a period of the corner, where two say all.
+pub const OVERSAMPLED: f64 = 2.0;
+
 /// Lowest rate in Hz of a recording that they are looked at in: four samples a period.
 pub const LOWEST_RATE: f64 = 4.0 * CORNER;
 

@@ -19,6 +19,8 @@ pub struct Fit {
     pub white: DVector<f64>,
     /// Its derivative by each value in a row, where it was asked for.
     pub jacobian: Option<DMatrix<f64>>,
+    /// The covariance of its values where whole simulations tell it: looks may hardly depend on them.
+    pub told: Option<DMatrix<f64>>,
 }
 
 impl Fit {
@@ -26,7 +28,7 @@ impl Fit {
     /// known.
     pub fn deviations(&self) -> Vec<f64> {
         let some = self.jacobian.as_ref().filter(|jacobian| jacobian.ncols() > 0);
-        let inverse = some.and_then(inverse_normal);
+        let inverse = self.told.clone().or_else(|| some.and_then(inverse_normal));
         inverse.map_or_else(Vec::new, |inverse| {
             inverse.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
         })
@@ -49,7 +51,13 @@ impl Target<'_> {
     pub fn look(&self, effects: &[Setting]) -> Option<Fit> {
         let white = self.baseline.white(self.problem, effects, self.on).ok()??;
         let chi2 = white.norm_squared();
-        chi2.is_finite().then(|| Fit { effects: effects.to_vec(), chi2, white, jacobian: None })
+        chi2.is_finite().then(|| Fit {
+            effects: effects.to_vec(),
+            chi2,
+            white,
+            jacobian: None,
+            told: None,
+        })
     }
 
     /// Derivative of the residual by each value.
@@ -70,6 +78,7 @@ impl Target<'_> {
             chi2: best.residual.norm_squared(),
             white: best.residual,
             jacobian: best.jacobian,
+            told: None,
         })
     }
 }

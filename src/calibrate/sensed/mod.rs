@@ -48,6 +48,7 @@ pub mod thresholds;
 pub mod trajectory;
 pub mod unnamed;
 mod unseen;
+mod whole;
 pub mod windows;
 
 pub use prepare::prepare;

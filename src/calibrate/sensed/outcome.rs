@@ -89,19 +89,32 @@ pub fn calibrate(
     let Found { mut best, declared, mut rounds, rest } = found;
     let search = asked.search(problem);
     let before = search.left(&declared);
-    if search.is_noise(&best)
-        && rest.is_none()
-        && let Some((predicting, round)) = search.predicting(&best)?
-    {
+    // What no simulation bears out is nothing that the declared model lacks.
+    let against = |model: &Model, rest: Option<Rest>| {
+        let uncertain = || uncertain(problem, model, &split.on).map(Rest::Uncertain);
+        let named = search.is_noise(model) && !model.fit.effects.is_empty();
+        named.then(|| rest.or_else(uncertain)).flatten()
+    };
+    let mut speaks = against(&best, rest);
+    let mut better = None;
+    if search.is_noise(&best) && speaks.is_none() {
+        better = search.predicting(&best)?;
+    }
+    // How a machine falls shows effects that its accelerations hardly do, and imitate one another in.
+    let other = || -> Result<bool, Stopped> {
+        let found = !best.fit.effects.is_empty() && better.is_none() && search.falls(&[])?;
+        Ok(found && (speaks.is_some() || !search.is_noise(&best) || search.misses(&best)?))
+    };
+    if other()? {
+        better = search.predicting(&declared)?;
+    }
+    if let Some((predicting, round)) = better {
         best = predicting;
         rounds.extend(round);
+        speaks = against(&best, None);
     }
     let after = search.left(&best);
-    // What no simulation bears out is nothing that the declared model lacks.
-    let uncertain = || uncertain(problem, &best, &split.on).map(Rest::Uncertain);
-    let rest = (is_noise(&after) && !best.fit.effects.is_empty())
-        .then(|| rest.or_else(uncertain))
-        .flatten();
+    let rest = speaks;
     let noise = is_noise(&after) && rest.is_none();
     let limits = if noise { limits(&search, &best) } else { Vec::new() };
     let mut described = match noise || !unnamed {
@@ -290,7 +303,10 @@ impl Predicting {
 /// than noise, and where noise pulls values further than that of each frequency by itself does: rattle, and journals that
 /// lean under forces no larger than a sensor's noise. None where no derivatives are known.
 fn covariance(model: &Model, on: &[Segment]) -> Option<DMatrix<f64>> {
-    let Fit { jacobian, chi2, white, .. } = &model.fit;
+    let Fit { jacobian, chi2, white, told, .. } = &model.fit;
+    if told.is_some() {
+        return told.clone();
+    }
     let jacobian = jacobian.as_ref()?;
     let inverse = inverse_normal(jacobian)?;
     let spare = white.len().saturating_sub(jacobian.ncols()).max(1);

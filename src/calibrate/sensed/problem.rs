@@ -47,6 +47,11 @@ pub struct Start {
 }
 
 impl Start {
+    /// Coordinates in m or rad from which a machine that nothing holds is let go.
+    pub fn coordinates(&self) -> &[f64] {
+        &self.released.coordinates
+    }
+
     /// Whether it was fitted to the recording's first rows: nothing held the machine there.
     pub fn is_fitted(&self) -> bool {
         self.released.is_fitted()
@@ -270,8 +275,7 @@ impl Problem {
         Ok(recorded.chunks(replicas.len()).map(<[Recording]>::to_vec).collect())
     }
 
-    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it: the first
-    /// replica, or another one.
+    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it: a replica.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
@@ -282,12 +286,38 @@ impl Problem {
         until: usize,
         replica: u64,
     ) -> Result<Recording, Stopped> {
-        let recording = &self.runs[index].recording;
         let machine = self.released(effects, index)?.machine;
+        Ok(self.recorded(&machine, index, until, replica)?)
+    }
+
+    /// The same of the first replica where the machine, which nothing holds, is let go at these coordinates.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn from(
+        &self,
+        effects: &[Setting],
+        index: usize,
+        until: usize,
+        coordinates: &[f64],
+    ) -> Result<Recording, Stopped> {
+        let recording = &self.runs[index].recording;
+        let machine = let_go_at(&self.rig, effects, recording, coordinates, self.control)?;
+        Ok(self.recorded(&machine, index, until, 0)?)
+    }
+
+    fn recorded(
+        &self,
+        machine: &Mechanism,
+        index: usize,
+        until: usize,
+        replica: u64,
+    ) -> Result<Recording, Halt> {
+        let recording = &self.runs[index].recording;
         // Filters see a little beyond the last row.
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        Ok(simulate::record(&machine, self.control, &recording.first(seconds), replica)?)
+        simulate::record(machine, self.control, &recording.first(seconds), replica)
     }
 
     /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held

@@ -149,7 +149,7 @@ impl Search<'_> {
             .as_ref()
             .map_or(0.0, |refitted| model.held - refitted.chi2 - shrunk(&refitted.effects));
         let chance = || {
-            let on = self.target(&model.baseline, false).jacobian(&model.fit)?;
+            let on = model.fit.jacobian.clone()?;
             let columns = Columns { on, hold: hold.jacobian(refitted.as_ref()?)?, known: 0 };
             columns.refitted(&self.draws(model), model.baseline.replicas)
         };

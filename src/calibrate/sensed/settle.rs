@@ -7,9 +7,9 @@ use super::hypotheses::{Round, price};
 use super::problem::{Segment, Stopped};
 use super::search::{Search, name, names};
 use super::thresholds::GAIN_PER_VALUE;
-use super::trajectory::{fitted, predicted};
-use crate::calibrate::fit::{free, values, with_values};
-use crate::calibrate::least_squares::jacobian;
+use super::trajectory::{fitted, followed, predicted, shorter};
+use super::whole::Whole;
+use crate::calibrate::fit::values;
 use crate::effects::Setting;
 
 /// A model that simulations of itself have been held against.
@@ -100,12 +100,13 @@ impl Search<'_> {
     pub(super) fn fitted(&self, effects: &[Setting]) -> Result<Option<Model>, Stopped> {
         let mut model = self.at(&fitted(self.problem, effects, &self.split.on)?, &[])?;
         if let Some(Model { fit, baseline, .. }) = &mut model {
-            let look = |values: &[f64]| {
-                let there = with_values(&fit.effects, values);
-                baseline.simulated_white(self.problem, &there, &self.split.on).ok().flatten()
-            };
-            let known = jacobian(&look, &free(&fit.effects), &values(&fit.effects), &fit.white);
-            fit.jacobian = known.or(fit.jacobian.take());
+            let length = followed(self.problem, &fit.effects, &self.split.on)?.pop().flatten();
+            let on = self.split.on.iter();
+            let on: Vec<_> = on.map(|segment| shorter(self.problem, segment, length)).collect();
+            let whole = Whole::of(self.problem, baseline, &on, &fit.effects)?;
+            if whole.falls() || !baseline.rattles {
+                fit.told = whole.covariance(&fit.effects);
+            }
         }
         Ok(model)
     }
@@ -157,7 +158,7 @@ impl Search<'_> {
     }
 
     /// Whether a model's predictions miss a run that its values were fitted to.
-    fn misses(&self, model: &Model) -> Result<bool, Stopped> {
+    pub(super) fn misses(&self, model: &Model) -> Result<bool, Stopped> {
         let (problem, effects) = (self.problem, &model.fit.effects);
         let starts = problem.starts(effects)?;
         let replicas = 0..problem.replicas;

@@ -395,10 +395,10 @@ fn mean_square(left: &DVector<f64>) -> f64 {
     left.norm_squared() / left.len().max(1) as f64
 }
 
-/// Time in s from the first row over which the start of a free machine is fitted: long enough to average a
-/// sensor's steps, and short beside the time in which a double pendulum forgets its start. Twice as long, again and
-/// again, follows while the model shows that.
-const SEEN: f64 = 0.5;
+/// Time in s from the first row over which the start of a free machine is fitted first: a start that is wrong by fifty
+/// steps of an encoder then shows as such, and after a tenth of a second of journals that hit their rings no longer. Twice
+/// as long, again and again, follows while the model shows that: many rows average a sensor's steps.
+const SEEN: f64 = 0.05;
 
 /// Mean square in units of noise up to which it does: a model that lacks an effect of the size of noise may be
 /// right about the start.
@@ -409,7 +409,7 @@ const KEPT: f64 = 4.0;
 const EFFORT: Effort = Effort { steps: 6, enough: 1.0, secant: true };
 
 /// A small change of a coordinate in m or rad: far above rounding, far below a swing.
-const SMALL: f64 = 1e-4;
+pub const SMALL: f64 = 1e-4;
 
 /// A machine that was held at its start by the last `held` of its drives until its journals settled, and let go.
 fn held_there(

@@ -4,7 +4,9 @@
 
 use super::baseline::Baseline;
 use super::errors::{floors_of, in_floors};
-use super::problem::{Problem, Segment, Stopped};
+use super::problem::{Problem, Segment, Start, Stopped};
+use super::simulate::apart;
+use super::whole::Whole;
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::least_squares::{Effort, least_squares};
 use crate::effects::Setting;
@@ -19,7 +21,42 @@ const LENGTHS: [f64; 2] = [0.5, 1.2];
 /// simulation.
 const EFFORT: Effort = Effort { steps: 4, enough: 2.0, secant: true };
 
-/// The effects at values that simulations of these runs agree with, from values near them on.
+/// Root mean square of the difference of two replicas in units of a sensor's noise up to which one may stand for the other.
+const ALIKE: f64 = 3.0;
+
+/// The lengths of these runs, one after another, over which values of a model with these effects are fitted to one simulation
+/// of it: all where joints do not rattle. What drives hold rattles from its first moments on; what nothing holds falls for a
+/// while before its replicas part, and as far as that goes its start is known.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn followed(
+    problem: &Problem,
+    effects: &[Setting],
+    on: &[Segment],
+) -> Result<Vec<Option<f64>>, Stopped> {
+    let mut lengths: Vec<Option<f64>> = LENGTHS.map(Some).into_iter().chain([None]).collect();
+    let starts = problem.let_go(effects)?;
+    if !starts.iter().any(Start::is_fitted) {
+        lengths.truncate(if problem.replicas > 1 { 1 } else { lengths.len() });
+        return Ok(lengths);
+    }
+    let logs = problem.simulated(&starts, 2)?;
+    let alike = |length: &Option<f64>| {
+        on.iter().all(|segment| {
+            let [first, other] = [0, 1].map(|k| {
+                let log = &logs[segment.run][k];
+                log.first(length.unwrap_or(log.duration()))
+            });
+            apart(&problem.declared.sensors, &first, &other) < ALIKE
+        })
+    };
+    let longest = lengths.iter().rev().find(|length| alike(length));
+    Ok(vec![*longest.unwrap_or(&lengths[0])])
+}
+
+/// The effects at values that simulations of these runs agree with, from values near them on, as long as these can be
+/// [followed].
 ///
 /// # Errors
 /// A machine that cannot be simulated.
@@ -29,18 +66,12 @@ pub fn fitted(
     on: &[Segment],
 ) -> Result<Vec<Setting>, Stopped> {
     let mut effects = effects.to_vec();
-    for length in LENGTHS.map(Some).into_iter().chain([None]) {
+    for length in followed(problem, &effects, on)? {
         let part: Vec<Segment> =
             on.iter().map(|segment| shorter(problem, segment, length)).collect();
         let baseline = Baseline::of(problem, &effects, &[], &part)?;
-        let look = |values: &[f64]| {
-            let there = with_values(&effects, values);
-            baseline.simulated_white(problem, &there, &part).ok().flatten()
-        };
-        let start = values(&effects);
-        if let Some(best) = least_squares(&look, &free(&effects), start, EFFORT, None) {
-            effects = with_values(&effects, &best.values);
-        }
+        let whole = Whole::of(problem, &baseline, &part, &effects)?;
+        effects = whole.fitted(&effects, EFFORT).unwrap_or(effects);
     }
     Ok(effects)
 }

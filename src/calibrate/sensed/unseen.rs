@@ -6,7 +6,8 @@ use super::linear::step;
 use super::problem::{Segment, Start, Stopped};
 use super::search::Search;
 use super::settle::Model;
-use super::trajectory::shorter;
+use super::trajectory::{followed, shorter};
+use super::whole::Whole;
 use crate::calibrate::fit::free;
 use crate::calibrate::least_squares::{Look, derivative};
 use crate::effects::Setting;
@@ -26,8 +27,8 @@ const FITTED: usize = 3;
 
 impl Search<'_> {
     /// Models with one more effect that residuals hardly see without a simulation: how bodies swing in their play shows
-    /// it. The [promising](Self::promising) ones are fitted to whole simulations. The best one comes first; none of a
-    /// machine whose start has to be fitted, too, which costs more than a simulation.
+    /// it, and how a machine that nothing holds falls. The [promising](Self::promising) ones are fitted to whole simulations.
+    /// The best one comes first.
     pub(super) fn unseen(
         &self,
         model: &Model,
@@ -35,46 +36,68 @@ impl Search<'_> {
     ) -> Result<Vec<Model>, Stopped> {
         let mut found = Vec::new();
         let own = &model.fit.effects;
-        if self.problem.starts(own)?.iter().any(Start::is_fitted) {
-            return Ok(found);
-        }
         for start in self.promising(model)? {
             // What cannot be simulated is no model.
             let there = self.fitted(&[own.as_slice(), &[start]].concat()).ok().flatten();
             let Some(there) = there else { continue };
             let Some(effect) = there.fit.effects.last().cloned() else { continue };
-            let gain = model.cost() - there.cost();
+            let gain = self.gained(model, &there)?;
             match tried.iter_mut().find(|tried| tried.effect.is(&effect)) {
                 Some(tried) => (tried.simulated, tried.gain) = (true, gain),
                 None => tried.push(Tried::simulated(effect, gain, model)),
             }
             if gain > price(model) {
-                found.push(there);
+                found.push((gain, there));
             }
         }
-        found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
-        Ok(found)
+        found.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        Ok(found.into_iter().map(|(_, model)| model).collect())
     }
 
-    /// Candidates beside a model that explain most by one linear step, each simulated a hair from neutral for [`SECONDS`].
+    /// Whether nothing holds the machine with these effects.
+    pub(super) fn falls(&self, effects: &[Setting]) -> Result<bool, Stopped> {
+        Ok(self.problem.let_go(effects)?.iter().any(Start::is_fitted))
+    }
+
+    /// What a model with one more effect takes off the cost of another one, on runs that it was not fitted to.
+    fn gained(&self, model: &Model, there: &Model) -> Result<f64, Stopped> {
+        let hold = &self.split.hold;
+        let own = Whole::of(self.problem, &model.baseline, hold, &model.fit.effects)?;
+        if !own.falls() {
+            return Ok(model.cost() - there.cost());
+        }
+        let other = Whole::of(self.problem, &there.baseline, hold, &there.fit.effects)?;
+        let left = [(own, model), (other, there)].map(|(whole, model)| {
+            let left = whole.look(&model.fit.effects);
+            left.map_or(f64::INFINITY, |left| left.norm_squared())
+        });
+        Ok(left[0] - left[1])
+    }
+
+    /// Candidates beside a model that explain most by one linear step, each simulated a hair from neutral for [`SECONDS`]; a
+    /// machine that nothing holds and that does as it was let go adds up what acts on it over the whole run.
     fn promising(&self, model: &Model) -> Result<Vec<Setting>, Stopped> {
         let own = &model.fit.effects;
+        let falls = self.falls(own)?;
+        let followed =
+            if falls { followed(self.problem, own, &self.split.on)?.pop() } else { None };
+        let seconds = followed.unwrap_or(Some(SECONDS));
         let on = self.split.on.iter();
         let first: Vec<Segment> =
-            on.map(|segment| shorter(self.problem, segment, Some(SECONDS))).collect();
+            on.map(|segment| shorter(self.problem, segment, seconds)).collect();
         let baseline = Baseline::of(self.problem, own, &[], &first)?;
-        let look = |effects: &[Setting]| {
-            baseline.simulated_white(self.problem, effects, &first).ok().flatten()
-        };
-        let Some(left) = look(own) else { return Ok(Vec::new()) };
+        let whole = Whole::of(self.problem, &baseline, &first, own)?;
+        let Some(left) = whole.look(own) else { return Ok(Vec::new()) };
+        let Some(starts) = whole.by_start(own, &left) else { return Ok(Vec::new()) };
         (self.tell)("simulating every effect for a moment");
         let fresh = |candidate: &&Setting| {
             candidate.kind.scan.is_none() && !own.iter().any(|effect| effect.is(candidate))
         };
         let candidates: Vec<&Setting> = self.candidates.iter().filter(fresh).collect();
         let stepped = |candidate: &&Setting| {
-            let with = |values: &[f64]| look(&[own.as_slice(), &[candidate.with(values)]].concat());
-            linear_step(&with, candidate, &left)
+            let with =
+                |values: &[f64]| whole.look(&[own.as_slice(), &[candidate.with(values)]].concat());
+            linear_step(&with, candidate, &starts, &left)
         };
         let mut steps: Vec<(f64, Setting)> = candidates
             .par_iter()
@@ -93,9 +116,15 @@ impl Search<'_> {
     }
 }
 
-/// Drop of the sum of squares of what is `left` by one linear step of a candidate's values, and the candidate after it;
-/// none where such a machine cannot be.
-fn linear_step(look: Look, candidate: &Setting, left: &DVector<f64>) -> Option<(f64, Setting)> {
+/// Drop of the sum of squares of what is `left` by one linear step of a candidate's values, beyond that by one of the
+/// coordinates from which a machine that nothing holds was let go, by which `starts` are the derivatives; and the candidate
+/// after it. None where such a machine cannot be.
+fn linear_step(
+    look: Look,
+    candidate: &Setting,
+    starts: &[DVector<f64>],
+    left: &DVector<f64>,
+) -> Option<(f64, Setting)> {
     let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
     // Of one with a list of starts the first value is an amplitude, and the others are its first start's.
     let own = match (candidate.kind.starts)(&names).into_iter().next() {
@@ -104,13 +133,25 @@ fn linear_step(look: Look, candidate: &Setting, left: &DVector<f64>) -> Option<(
     };
     let free = free(std::slice::from_ref(candidate));
     let moving = if (candidate.kind.starts)(&names).is_empty() { own.len() } else { 1 };
-    let columns: Vec<DVector<f64>> =
-        (0..moving).map(|i| derivative(look, &free, &own, left, i)).collect::<Option<_>>()?;
-    let columns = DMatrix::from_columns(&columns);
-    let change = step(&columns, 0, left, &own[..moving], &free[..moving])?.change;
-    let gain = left.norm_squared() - (left + &columns * &change).norm_squared();
+    let known = starts.len();
+    let mut columns = starts.to_vec();
+    for i in 0..moving {
+        columns.push(derivative(look, &free, &own, left, i)?);
+    }
+    let stepped = |columns: &[DVector<f64>], own: &[f64]| {
+        if columns.is_empty() {
+            return Some((left.norm_squared(), DVector::zeros(0)));
+        }
+        let columns = DMatrix::from_columns(columns);
+        let change = step(&columns, known, left, own, &free[..own.len()])?.change;
+        Some(((left + &columns * &change).norm_squared(), change))
+    };
+    let (alone, _) = stepped(starts, &[])?;
+    let (least, change) = stepped(&columns, &own[..moving])?;
+    let gain = alone - least;
     let mut values = own;
-    values.iter_mut().zip(change.iter()).for_each(|(value, change)| *value += change);
+    let own = change.iter().skip(known);
+    values.iter_mut().zip(own).for_each(|(value, change)| *value += change);
     gain.is_finite().then(|| (gain, candidate.with(&values)))
 }
 
