@@ -86,35 +86,11 @@ pub fn calibrate(
             (found, events) = (again, acting);
         }
     }
-    let Found { mut best, declared, mut rounds, rest } = found;
     let search = asked.search(problem);
-    let before = search.left(&declared);
-    // What no simulation bears out is nothing that the declared model lacks.
-    let against = |model: &Model, rest: Option<Rest>| {
-        let uncertain = || uncertain(problem, model, &split.on).map(Rest::Uncertain);
-        let named = search.is_noise(model) && !model.fit.effects.is_empty();
-        named.then(|| rest.or_else(uncertain)).flatten()
-    };
-    let mut speaks = against(&best, rest);
-    let mut better = None;
-    if search.is_noise(&best) && speaks.is_none() {
-        better = search.predicting(&best)?;
-    }
-    // How a machine falls shows effects that its accelerations hardly do, and imitate one another in.
-    let other = || -> Result<bool, Stopped> {
-        let found = !best.fit.effects.is_empty() && better.is_none() && search.falls(&[])?;
-        Ok(found && (speaks.is_some() || !search.is_noise(&best) || search.misses(&best)?))
-    };
-    if other()? {
-        better = search.predicting(&declared)?;
-    }
-    if let Some((predicting, round)) = better {
-        best = predicting;
-        rounds.extend(round);
-        speaks = against(&best, None);
-    }
+    let before = search.left(&found.declared);
+    let rest = borne_out(&search, &mut found)?;
+    let Found { best, declared, rounds, .. } = found;
     let after = search.left(&best);
-    let rest = speaks;
     let noise = is_noise(&after) && rest.is_none();
     let limits = if noise { limits(&search, &best) } else { Vec::new() };
     let mut described = match noise || !unnamed {
@@ -254,6 +230,32 @@ fn what_does_not_last(
     }
     let simulated = problem.simulated(&problem.starts(effects)?, problem.replicas)?;
     beside(problem, effects, &simulated)
+}
+
+/// Puts a model that predicts the recordings in the place of what was found where that leaves noise and misses them; and what
+/// speaks against it although it leaves no more than noise.
+fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped> {
+    // What no simulation bears out is nothing that the declared model lacks.
+    let against = |model: &Model, rest: Option<Rest>| {
+        let uncertain = || uncertain(search.problem, model, &search.split.on).map(Rest::Uncertain);
+        let named = search.is_noise(model) && !model.fit.effects.is_empty();
+        named.then(|| rest.or_else(uncertain)).flatten()
+    };
+    let best = &found.best;
+    let rest = against(best, found.rest.take());
+    let mut better = match search.is_noise(best) && rest.is_none() {
+        true => search.predicting(best)?,
+        false => None,
+    };
+    // How a machine falls shows effects that its accelerations hardly do, and imitate one another in.
+    if better.is_none() && !best.fit.effects.is_empty() && search.falls(&[])? {
+        let fails = rest.is_some() || !search.is_noise(best) || search.misses(best)?;
+        better = if fails { search.predicting(&found.declared)? } else { None };
+    }
+    let Some((model, round)) = better else { return Ok(rest) };
+    found.best = model;
+    found.rounds.extend(round);
+    Ok(against(&found.best, None))
 }
 
 /// Whether the errors of all runs are met: a model that misses the run that it was fitted to lacks something.

@@ -3,10 +3,10 @@
 use super::baseline::Baseline;
 use super::errors::{are_met, of_run};
 use super::fit::Fit;
-use super::hypotheses::{Round, price};
+use super::hypotheses::{Round, Tried, price};
 use super::problem::{Segment, Stopped};
 use super::search::{Search, name, names};
-use super::thresholds::GAIN_PER_VALUE;
+use super::thresholds::{GAIN_PER_VALUE, TWINS};
 use super::trajectory::{fitted, followed, predicted, shorter};
 use super::whole::Whole;
 use crate::calibrate::fit::values;
@@ -103,7 +103,7 @@ impl Search<'_> {
             let length = followed(self.problem, &fit.effects, &self.split.on)?.pop().flatten();
             let on = self.split.on.iter();
             let on: Vec<_> = on.map(|segment| shorter(self.problem, segment, length)).collect();
-            let whole = Whole::of(self.problem, baseline, &on, &fit.effects)?;
+            let whole = Whole::of(self.problem, &fit.effects, &on, || Ok(baseline.clone()))?;
             if whole.falls() || !baseline.rattles {
                 fit.told = whole.covariance(&fit.effects);
             }
@@ -143,6 +143,7 @@ impl Search<'_> {
         for found in found.into_iter().filter(|found| self.is_noise(found)) {
             if !self.misses(&found)? {
                 round.added = found.fit.effects.last().cloned();
+                round.as_good = twins(&round, TWINS[usize::from(found.baseline.rattles)]);
                 return Ok(Some((found, Some(round))));
             }
         }
@@ -201,6 +202,15 @@ impl Search<'_> {
         }
         Ok(model)
     }
+}
+
+/// What was simulated in a round and gained no less than what was added, but for `chance`.
+fn twins(round: &Round, chance: f64) -> Vec<Setting> {
+    let added = |tried: &&Tried| round.added.as_ref().is_some_and(|own| own.is(&tried.effect));
+    let simulated = || round.tried.iter().filter(|tried| tried.simulated);
+    let gain = simulated().find(added).map_or(f64::INFINITY, |tried| tried.gain);
+    let near = simulated().filter(|tried| !added(tried) && tried.gain > gain - chance);
+    near.map(|tried| tried.effect.clone()).collect()
 }
 
 /// Largest change of a value by a fit, in its standard deviations, each by itself.

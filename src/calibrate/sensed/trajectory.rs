@@ -69,8 +69,8 @@ pub fn fitted(
     for length in followed(problem, &effects, on)? {
         let part: Vec<Segment> =
             on.iter().map(|segment| shorter(problem, segment, length)).collect();
-        let baseline = Baseline::of(problem, &effects, &[], &part)?;
-        let whole = Whole::of(problem, &baseline, &part, &effects)?;
+        let baseline = || Baseline::of(problem, &effects, &[], &part);
+        let whole = Whole::of(problem, &effects, &part, baseline)?;
         effects = whole.fitted(&effects, EFFORT).unwrap_or(effects);
     }
     Ok(effects)

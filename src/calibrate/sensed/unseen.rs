@@ -36,12 +36,13 @@ impl Search<'_> {
     ) -> Result<Vec<Model>, Stopped> {
         let mut found = Vec::new();
         let own = &model.fit.effects;
+        let paid = self.paid(model)?;
         for start in self.promising(model)? {
             // What cannot be simulated is no model.
             let there = self.fitted(&[own.as_slice(), &[start]].concat()).ok().flatten();
             let Some(there) = there else { continue };
             let Some(effect) = there.fit.effects.last().cloned() else { continue };
-            let gain = self.gained(model, &there)?;
+            let gain = paid - self.paid(&there)?;
             match tried.iter_mut().find(|tried| tried.effect.is(&effect)) {
                 Some(tried) => (tried.simulated, tried.gain) = (true, gain),
                 None => tried.push(Tried::simulated(effect, gain, model)),
@@ -59,19 +60,15 @@ impl Search<'_> {
         Ok(self.problem.let_go(effects)?.iter().any(Start::is_fitted))
     }
 
-    /// What a model with one more effect takes off the cost of another one, on runs that it was not fitted to.
-    fn gained(&self, model: &Model, there: &Model) -> Result<f64, Stopped> {
-        let hold = &self.split.hold;
-        let own = Whole::of(self.problem, &model.baseline, hold, &model.fit.effects)?;
-        if !own.falls() {
-            return Ok(model.cost() - there.cost());
-        }
-        let other = Whole::of(self.problem, &there.baseline, hold, &there.fit.effects)?;
-        let left = [(own, model), (other, there)].map(|(whole, model)| {
-            let left = whole.look(&model.fit.effects);
-            left.map_or(f64::INFINITY, |left| left.norm_squared())
-        });
-        Ok(left[0] - left[1])
+    /// What a model costs on runs that it was not fitted to, where only whole simulations tell: by how it falls, if nothing
+    /// holds the machine.
+    fn paid(&self, model: &Model) -> Result<f64, Stopped> {
+        let (hold, effects) = (&self.split.hold, &model.fit.effects);
+        let whole = Whole::of(self.problem, effects, hold, || Ok(model.baseline.clone()))?;
+        Ok(match whole.falls() {
+            true => whole.look(effects).map_or(f64::INFINITY, |left| left.norm_squared()),
+            false => model.cost(),
+        })
     }
 
     /// Candidates beside a model that explain most by one linear step, each simulated a hair from neutral for [`SECONDS`]; a
@@ -85,8 +82,8 @@ impl Search<'_> {
         let on = self.split.on.iter();
         let first: Vec<Segment> =
             on.map(|segment| shorter(self.problem, segment, seconds)).collect();
-        let baseline = Baseline::of(self.problem, own, &[], &first)?;
-        let whole = Whole::of(self.problem, &baseline, &first, own)?;
+        let baseline = || Baseline::of(self.problem, own, &[], &first);
+        let whole = Whole::of(self.problem, own, &first, baseline)?;
         let Some(left) = whole.look(own) else { return Ok(Vec::new()) };
         let Some(starts) = whole.by_start(own, &left) else { return Ok(Vec::new()) };
         (self.tell)("simulating every effect for a moment");

@@ -17,32 +17,32 @@ use nalgebra::{DMatrix, DVector};
 pub(super) struct Whole<'a> {
     problem: &'a Problem,
     segments: &'a [Segment],
-    compared: Compared<'a>,
+    compared: Compared,
 }
 
 /// What is compared.
-enum Compared<'a> {
+enum Compared {
     /// Residuals, with the bias and noise of a model.
-    Looks(&'a Baseline),
+    Looks(Baseline),
     /// What sensors show: floors column by column, and coordinates in m or rad from which the machine is let go, both
     /// segment by segment.
     Columns { floors: Vec<Vec<Option<f64>>>, starts: Vec<Vec<f64>> },
 }
 
 impl<'a> Whole<'a> {
-    /// Those of a model with these effects, whose bias and noise on the segments are known.
+    /// Those of a model with these effects; bias and noise on the segments are asked for where residuals are compared.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn of(
         problem: &'a Problem,
-        baseline: &'a Baseline,
-        segments: &'a [Segment],
         effects: &[Setting],
+        segments: &'a [Segment],
+        baseline: impl FnOnce() -> Result<Baseline, Stopped>,
     ) -> Result<Self, Stopped> {
         let begins = problem.let_go(effects)?;
         if !begins.iter().any(|start| start.is_fitted()) {
-            return Ok(Self { problem, segments, compared: Compared::Looks(baseline) });
+            return Ok(Self { problem, segments, compared: Compared::Looks(baseline()?) });
         }
         let mut floors = Vec::new();
         for Segment { run, rows } in segments {
@@ -141,5 +141,38 @@ impl<'a> Whole<'a> {
         }
         // As many squares as there are values that are independent.
         Some(DVector::from_vec(all) / OVERSAMPLED.sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::Target;
+    use super::super::trajectory::shorter;
+    use super::*;
+    use crate::effects::named;
+
+    /// A pendulum that lacks nothing is not dragged, by a ten thousandth of what is tried first, and residuals, which are
+    /// accelerations, tell that less closely than the way that it falls.
+    #[test]
+    fn how_a_pendulum_falls_tells_drag_better_than_its_accelerations() {
+        let problem = Problem::planar("planar-4");
+        let on: Vec<Segment> =
+            problem.split().on.iter().map(|whole| shorter(&problem, whole, Some(1.2))).collect();
+        let mut all = named("drag").unwrap().candidates(&problem.declared).into_iter();
+        let candidate = all.find(|drag| drag.to_string() == "drag at lower").unwrap();
+        let drag = |force: f64| vec![candidate.with(&[force, 0.0])];
+        let baseline = Baseline::of(&problem, &[], &[], &on).unwrap();
+        let whole = Whole::of(&problem, &[], &on, || Ok(baseline.clone())).unwrap();
+        assert!(whole.falls());
+        let effort = Effort { steps: 4, enough: 1.0, secant: false };
+        let fitted = whole.fitted(&drag(0.01), effort).unwrap();
+        let found = values(&fitted)[0];
+        let deviation = |covariance: DMatrix<f64>| covariance[(0, 0)].sqrt();
+        let own = deviation(whole.covariance(&fitted).unwrap());
+        assert!(found.abs() < 1e-4 * 0.01, "{found} ± {own}");
+        let target = Target { problem: &problem, baseline: &baseline, on: &on };
+        let looked = target.look(&drag(0.0)).unwrap();
+        let by_looks = deviation(inverse_normal(&target.jacobian(&looked).unwrap()).unwrap());
+        assert!(own < 0.7 * by_looks, "{own} {by_looks}");
     }
 }
