@@ -347,11 +347,11 @@ fn starts_give_means_with_intervals_group_by_group() {
         let mean = of.iter().sum::<f64>() / 4.0;
         let variance = of.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / 3.0;
         // Student's t of three degrees of freedom.
-        let half = 3.182_446_3 * (variance / 4.0).sqrt();
+        let half = 3.182_446_305_284_263 * (variance / 4.0).sqrt();
         let figure = |name: &str| row[place_of(name)].parse::<f64>().unwrap();
         assert!((figure("peak_contact_force_N_mean") - mean).abs() < 1e-9 * mean);
-        assert!((figure("peak_contact_force_N_ci95_low") - mean + half).abs() < 1e-7 * mean);
-        assert!((figure("peak_contact_force_N_ci95_high") - mean - half).abs() < 1e-7 * mean);
+        assert!((figure("peak_contact_force_N_ci95_low") - mean + half).abs() < 1e-9 * mean);
+        assert!((figure("peak_contact_force_N_ci95_high") - mean - half).abs() < 1e-9 * mean);
     }
     assert!(place.read("s/index.html").contains("Means over the starts"));
     // Without starts there are no means, and the page says what that is worth.

@@ -137,8 +137,8 @@ mod tests {
             0.85, 0.92,
         ];
         let [leaning, normal] = [leaning, normal].map(|draws| squares_up_to(draws.into_iter(), 1));
-        assert!((3.5..5.0).contains(&leaning), "{leaning}");
-        assert!((1.25..1.4).contains(&normal), "{normal}");
+        assert!((4.0..5.0).contains(&leaning), "{leaning}");
+        assert!((1.3..1.4).contains(&normal), "{normal}");
         assert!(squares_up_to([0.0; 16].into_iter(), 1) < 1e-300);
     }
 

@@ -248,7 +248,7 @@ fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped
         false => None,
     };
     // How a machine falls shows effects that its accelerations hardly do, and imitate one another in.
-    if better.is_none() && !best.fit.effects.is_empty() && search.falls(&[])? {
+    if better.is_none() && !best.fit.effects.is_empty() && search.problem.falls(&[])? {
         let fails = rest.is_some() || !search.is_noise(best) || search.misses(best)?;
         better = if fails { search.predicting(&found.declared)? } else { None };
     }
@@ -303,7 +303,8 @@ impl Predicting {
 
 /// Covariance of the values: `(JᵀJ)⁻¹`, J in units of noise; larger where the fit's own residual is larger
 /// than noise, and where noise pulls values further than that of each frequency by itself does: rattle, and journals that
-/// lean under forces no larger than a sensor's noise. None where no derivatives are known.
+/// lean under forces no larger than a sensor's noise. What whole simulations tell in its place, where values come from these;
+/// none where no derivatives are known.
 fn covariance(model: &Model, on: &[Segment]) -> Option<DMatrix<f64>> {
     let Fit { jacobian, chi2, white, told, .. } = &model.fit;
     if told.is_some() {

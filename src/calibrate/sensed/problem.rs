@@ -367,6 +367,14 @@ impl Problem {
         largest
     }
 
+    /// Whether nothing holds the machine with these effects in some run.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn falls(&self, effects: &[Setting]) -> Result<bool, Stopped> {
+        Ok(self.let_go(effects)?.iter().any(Start::is_fitted))
+    }
+
     /// Residuals of a view of run `segment.run` under a mechanism.
     pub fn residuals(
         &self,

@@ -43,6 +43,10 @@ pub const PREDICTING: usize = 12;
 /// by more than sensors see: a tenth of the noise's variance.
 pub const SEEN: f64 = 0.3;
 
+/// The same up to which one replica of a machine that falls stands for the other: a fit that takes its difference for noise
+/// is then at most three times less certain than it could be.
+pub const ALIKE: f64 = 3.0;
+
 /// Drop of Σ of squares on data not used for the fit that an effect has to bring: twice the logarithm of a
 /// thousand candidates, 14, and as much again for what noise is not white. Where joints rattle bias and noise come
 /// from few replicas, and with others the same model may cost some 100 less: twice that (trials of the 3-RPR,

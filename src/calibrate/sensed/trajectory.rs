@@ -4,8 +4,9 @@
 
 use super::baseline::Baseline;
 use super::errors::{floors_of, in_floors};
-use super::problem::{Problem, Segment, Start, Stopped};
+use super::problem::{Problem, Segment, Stopped};
 use super::simulate::apart;
+use super::thresholds::ALIKE;
 use super::whole::Whole;
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::least_squares::{Effort, least_squares};
@@ -21,9 +22,6 @@ const LENGTHS: [f64; 2] = [0.5, 1.2];
 /// simulation.
 const EFFORT: Effort = Effort { steps: 4, enough: 2.0, secant: true };
 
-/// Root mean square of the difference of two replicas in units of a sensor's noise up to which one may stand for the other.
-const ALIKE: f64 = 3.0;
-
 /// The lengths of these runs, one after another, over which values of a model with these effects are fitted to one simulation
 /// of it: all where joints do not rattle. What drives hold rattles from its first moments on; what nothing holds falls for a
 /// while before its replicas part, and as far as that goes its start is known.
@@ -36,12 +34,11 @@ pub fn followed(
     on: &[Segment],
 ) -> Result<Vec<Option<f64>>, Stopped> {
     let mut lengths: Vec<Option<f64>> = LENGTHS.map(Some).into_iter().chain([None]).collect();
-    let starts = problem.let_go(effects)?;
-    if !starts.iter().any(Start::is_fitted) {
+    if !problem.falls(effects)? {
         lengths.truncate(if problem.replicas > 1 { 1 } else { lengths.len() });
         return Ok(lengths);
     }
-    let logs = problem.simulated(&starts, 2)?;
+    let logs = problem.simulated(&problem.let_go(effects)?, 2)?;
     let alike = |length: &Option<f64>| {
         on.iter().all(|segment| {
             let [first, other] = [0, 1].map(|k| {

@@ -3,7 +3,7 @@
 use super::baseline::Baseline;
 use super::hypotheses::{Tried, price};
 use super::linear::step;
-use super::problem::{Segment, Start, Stopped};
+use super::problem::{Segment, Stopped};
 use super::search::Search;
 use super::settle::Model;
 use super::trajectory::{followed, shorter};
@@ -55,11 +55,6 @@ impl Search<'_> {
         Ok(found.into_iter().map(|(_, model)| model).collect())
     }
 
-    /// Whether nothing holds the machine with these effects.
-    pub(super) fn falls(&self, effects: &[Setting]) -> Result<bool, Stopped> {
-        Ok(self.problem.let_go(effects)?.iter().any(Start::is_fitted))
-    }
-
     /// What a model costs on runs that it was not fitted to, where only whole simulations tell: by how it falls, if nothing
     /// holds the machine.
     fn paid(&self, model: &Model) -> Result<f64, Stopped> {
@@ -75,10 +70,10 @@ impl Search<'_> {
     /// machine that nothing holds and that does as it was let go adds up what acts on it over the whole run.
     fn promising(&self, model: &Model) -> Result<Vec<Setting>, Stopped> {
         let own = &model.fit.effects;
-        let falls = self.falls(own)?;
-        let followed =
-            if falls { followed(self.problem, own, &self.split.on)?.pop() } else { None };
-        let seconds = followed.unwrap_or(Some(SECONDS));
+        let seconds = match self.problem.falls(own)? {
+            true => followed(self.problem, own, &self.split.on)?.pop().flatten(),
+            false => Some(SECONDS),
+        };
         let on = self.split.on.iter();
         let first: Vec<Segment> =
             on.map(|segment| shorter(self.problem, segment, seconds)).collect();

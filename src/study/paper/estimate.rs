@@ -82,7 +82,11 @@ mod tests {
         let sem = (1f64 / 3.0).sqrt();
         assert!((mean.sem - sem).abs() < 1e-15);
         assert_eq!(mean.runs, 3);
-        assert!((mean.ci95[1] - (2.0 + 4.302653 * sem)).abs() < 1e-6);
+        // Of two degrees of freedom t = (2p − 1) √(2/α), α = 4p (1 − p), at p = 0.975.
+        let t = 0.95 * (2.0 / 0.0975f64).sqrt();
+        assert!((mean.ci95[1] - (2.0 + t * sem)).abs() < 1e-12);
+        // t(30) = 2.042, t(31) = 2.040.
+        assert!((t95(31) - 2.0395).abs() < 1e-3);
     }
 
     #[test]
@@ -92,8 +96,8 @@ mod tests {
         assert_eq!((ratio.value, ratio.ci95), (3.0, [3.0, 3.0]));
         let rough = RunMean { sem: 0.1, ..exact(1.0) };
         let [low, high] = rough.over(&rough).ci95;
-        let half = 2.364624 * 0.1 * 2f64.sqrt();
-        assert!((high.ln() - half).abs() < 1e-6 && (low * high - 1.0).abs() < 1e-12);
+        let half = 2.364_624_251_592_785 * 0.1 * 2f64.sqrt();
+        assert!((high.ln() - half).abs() < 1e-12 && (low * high - 1.0).abs() < 1e-12);
         assert_eq!(exact(1.0).over(&exact(1e-15)).value, f64::INFINITY);
     }
 
