@@ -2,7 +2,8 @@
 
 use super::build::{Built, joint_named, located};
 use super::commands::{Each, Source};
-use super::{motion, path};
+use super::motion;
+use super::path::{self, NoTable};
 use crate::mechanism::motion::Motion;
 use crate::mechanism::{Attachment, Drive, Imposed, Mechanism, TelescopicLegs, angle_near};
 use crate::scenario::{self, JointDrive, Problem, Scenario, Target};
@@ -55,13 +56,9 @@ pub(super) fn follow(
         Imposed::Target { point, angle: whole.then_some(angle), motion: Arc::clone(path) };
     let simulated = scenario.simulation.duration;
     let (table, starts) =
-        path::inverse_kinematics(mechanism, imposed, simulated).map_err(|stuck| {
-            let message = format!(
-                "carries \"{name}\" out of reach at t = {:.4} s: no pose of the machine without clearance \
-                 has it there",
-                stuck.t
-            );
-            scenario.problem("motion", message, "a smaller motion, or one elsewhere")
+        path::inverse_kinematics(mechanism, imposed, simulated).map_err(|none| {
+            let (message, help) = no_table(name, &none);
+            scenario.problem("motion", message, help)
         })?;
     let table_error = Some(table.error);
     mechanism.commands = Arc::new(table);
@@ -70,6 +67,27 @@ pub(super) fn follow(
         body.start = state;
     }
     Ok(Followed { legs: None, table_error })
+}
+
+/// Why the drives cannot be told where to carry `name`, and what would be right.
+fn no_table(name: &str, none: &NoTable) -> (String, &'static str) {
+    match none {
+        NoTable::Stuck(stuck) => (
+            format!(
+                "carries \"{name}\" out of reach at t = {:.4} s: no pose of the machine without clearance \
+                 has it there",
+                stuck.t
+            ),
+            "a smaller motion, or one elsewhere",
+        ),
+        NoTable::Turns { asked, most } => (
+            format!(
+                "carries \"{name}\" around {asked:.0} times, and a table of the inverse kinematics holds \
+                 {most:.0} turns at most"
+            ),
+            "a slower motion, or a shorter run",
+        ),
+    }
 }
 
 /// Commands joint by joint: motions, tables, forces, and the coordinate of the start for drives of which

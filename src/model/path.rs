@@ -13,9 +13,15 @@ use crate::scenario::{Problem, Scenario};
 /// looked at: a toggle of a loop is broader than this.
 const STRIDE: f64 = 0.02;
 
-/// Most poses of a small machine that are looked at: some half a minute, and an hour of a crank that turns once a
-/// second.
+/// Most poses of a small machine that are looked at: some quarter of a minute, and an hour of a crank that turns once
+/// a second.
 const MOST: f64 = 1_000_000.0;
+
+/// Most of them in a second of the motion: those of a crank that turns 19 000 times a minute.
+const MOST_A_SECOND: f64 = 1e5;
+
+/// As many as any motion gets, however short: half a second of computing.
+const ANY: f64 = 2e4;
 
 /// Bodies of a small machine. More have fewer poses and samples, for the same work: equations of all bodies are solved
 /// for each of them.
@@ -90,7 +96,8 @@ impl DrivenPath {
         let mut worst: Vec<Option<(f64, f64, f64)>> = vec![None; drives];
         let mut last = Vec::new();
         let mut reads = Reads::new(&mechanism, duration);
-        let most = ((MOST * share(&mechanism)) as usize).max(2 * FEWEST);
+        let most = (MOST_A_SECOND * duration).clamp(ANY, MOST) * share(&mechanism);
+        let most = (most as usize).max(2 * FEWEST);
         'path: while reads.advance() {
             for (i, command) in reads.commands.iter().enumerate() {
                 if mechanism.actuators[i].drive != Drive::Effort {
@@ -253,11 +260,32 @@ const FINE: f64 = 1e-11;
 /// Error below which a finer table that is no better is as good as rounding lets it be.
 const ROUNDED: f64 = 1e-8;
 
-/// Most samples of a table in a second of the motion.
+/// Samples of a table in a second of a motion that lasts long; an hour and a little more of them are the most.
 const SAMPLES: f64 = 1024.0;
+const MOST_SAMPLES: f64 = 4_194_304.0;
 
-/// Most in any case that is shorter than 1024 s, and most of all: an hour and a little more at that rate.
-const MOST_SAMPLES: [f64; 2] = [1_048_576.0, 4_194_304.0];
+/// Samples in a second of a motion that lasts for 4 to 64 s. Shorter ones have as many as those of 4 s, half a second
+/// of computing for each try; longer ones as those of 64 s, until `SAMPLES` are more.
+const DENSE: f64 = 16_384.0;
+const DENSE_FOR: [f64; 2] = [4.0, 64.0];
+
+/// Fewest samples in a turn of the target that make a table of it: the polynomials of the fifth degree between them
+/// miss a circle by (2π/16)⁶/46080 = 8e-8 of its radius.
+const SAMPLES_A_TURN: f64 = 16.0;
+
+/// Why there is no table of the inverse kinematics.
+pub(super) enum NoTable {
+    /// The target goes out of reach.
+    Stuck(Stuck),
+    /// It turns so many times, and so many times (s) are the most that a table can hold.
+    Turns { asked: f64, most: f64 },
+}
+
+impl From<Stuck> for NoTable {
+    fn from(stuck: Stuck) -> Self {
+        Self::Stuck(stuck)
+    }
+}
 
 /// Commands that carry a target along its path for `duration` s and a little longer, and the states at the
 /// start. Samples are taken ever closer until the polynomials between them miss the exact commands by less
@@ -266,13 +294,20 @@ pub(super) fn inverse_kinematics(
     mechanism: &Mechanism,
     imposed: Imposed,
     duration: f64,
-) -> Result<(Tabulated, Vec<BodyState>), Stuck> {
+) -> Result<(Tabulated, Vec<BodyState>), NoTable> {
     let ideal = mechanism.without_clearance();
     let starts: Vec<BodyState> = ideal.bodies.iter().map(|body| body.start).collect();
     // Steps look a little beyond the end of a run.
     let until = duration * 1.001 + 1e-3;
     let drives = ideal.actuators.len();
-    let most = (SAMPLES * until).max(MOST_SAMPLES[0] * share(mechanism)).min(MOST_SAMPLES[1]);
+    let dense = DENSE * until.clamp(DENSE_FOR[0], DENSE_FOR[1]) * share(mechanism);
+    let most = (SAMPLES * until).max(dense).min(MOST_SAMPLES);
+    if let Imposed::Target { motion, .. } = &imposed {
+        let turns = until / motion.fastest_turn();
+        if turns * SAMPLES_A_TURN > most {
+            return Err(NoTable::Turns { asked: turns, most: most / SAMPLES_A_TURN });
+        }
+    }
     let (mut count, mut before) = (64, f64::INFINITY);
     loop {
         let mut tracker = Tracker::new(ideal.clone(), imposed.clone(), starts.clone(), 0.0)?;

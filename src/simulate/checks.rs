@@ -4,7 +4,7 @@ use super::{oil, plausible, three_rpr};
 use crate::contact::StiffnessForm;
 use crate::engine::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism};
-use crate::model::{Machine, Singular, radial_clearance};
+use crate::model::{DrivenPath, Machine, Singular, radial_clearance};
 use crate::scenario::{self, Problem, Scenario};
 use std::fmt;
 
@@ -70,15 +70,34 @@ const LARGEST_TABLE_ERROR: f64 = 1e-9;
 
 /// Everything wrong or doubtful about a machine and its motion.
 pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {
+    let path = driven_path(scenario, machine);
+    findings_along(scenario, machine, path.as_ref())
+}
+
+/// The path that the drives take a machine along, if it has one; that of a 3-RPR is looked at by its legs.
+pub fn driven_path(scenario: &Scenario, machine: &mut Machine) -> Option<DrivenPath> {
+    match scenario.mechanism {
+        scenario::Mechanism::ThreeRpr(_) => None,
+        _ => machine.driven_path(),
+    }
+}
+
+/// Everything wrong or doubtful about a machine and its motion, whose driven path is known.
+pub fn findings_along(
+    scenario: &Scenario,
+    machine: &Machine,
+    path: Option<&DrivenPath>,
+) -> Vec<Finding> {
     let mut found: Vec<Finding> = scenario.unused().into_iter().map(Finding::warning).collect();
     found.extend(plausible::findings(scenario, machine));
     match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(kind) => {
             three_rpr::findings(scenario, kind, &*machine.motion, &mut found);
         }
-        _ => match overdriven(scenario, machine) {
-            Some(finding) => found.push(finding),
-            None => driven_path(scenario, machine, &mut found),
+        _ => match (overdriven(scenario, machine), path) {
+            (Some(finding), _) => found.push(finding),
+            (None, Some(path)) => along(scenario, machine, path, &mut found),
+            (None, None) => {}
         },
     }
     found.extend(floating(scenario));
@@ -142,8 +161,7 @@ fn drive_key(scenario: &Scenario, name: &str) -> String {
 }
 
 /// Drives that leave their range, toggles, singular poses, loops that turn over.
-fn driven_path(scenario: &Scenario, machine: &mut Machine, found: &mut Vec<Finding>) {
-    let Some(path) = machine.driven_path() else { return };
+fn along(scenario: &Scenario, machine: &Machine, path: &DrivenPath, found: &mut Vec<Finding>) {
     let mechanism = &machine.mechanism;
     let unit = |drive: usize| match mechanism.actuators[drive].joint {
         JointIndex::Revolute(_) => "rad",
@@ -176,7 +194,7 @@ fn driven_path(scenario: &Scenario, machine: &mut Machine, found: &mut Vec<Findi
     }
     if let Some(t) = path.unseen {
         let message = format!(
-            "is looked at up to t = {t:.4} s: its drives go too far for more, and what is wrong later goes unseen"
+            "is looked at up to t = {t:.3e} s: its drives go too far for more, and what is wrong later goes unseen"
         );
         let help = "make sure that the motion only repeats itself from there on";
         found.push(Finding::warning(scenario.problem("motion", message, help)));

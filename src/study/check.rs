@@ -6,7 +6,9 @@ use crate::mechanism::motion::looks;
 use crate::mechanism::{Actuator, BodyState, Drive, JointIndex, Loop, Mechanism};
 use crate::model::DrivenPath;
 use crate::scenario::{self, Law, Problem, Scenario};
-use crate::simulate::{Finding, Machine, OwnError, Severity, findings, leg_use, radial_clearance};
+use crate::simulate::{
+    Finding, Machine, OwnError, Severity, driven_path, findings_along, leg_use, radial_clearance,
+};
 use serde::Serialize;
 
 /// Fewest instants at which the ideal machine's forces are looked at.
@@ -242,13 +244,13 @@ fn found(finding: Finding) -> Found {
 
 /// Looks at a machine from all sides.
 pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
-    let findings = findings(scenario, machine);
+    let path = driven_path(scenario, machine);
+    let findings = findings_along(scenario, machine, path.as_ref());
     let ok = findings.iter().all(|finding| finding.severity != Severity::Error);
     let kind = match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(kind) => Some(kind),
         _ => None,
     };
-    let path = if kind.is_none() { machine.driven_path() } else { None };
     let reach = kind.map(|kind| leg_use(scenario, kind, &*machine.motion));
     let regular = reach.as_ref().is_none_or(|reach| reach.singularity_distance > NO_DISTANCE)
         && path.as_ref().is_none_or(|path| path.stuck.is_none())

@@ -139,7 +139,15 @@ fn a_motion_of_too_many_turns_is_told() {
                  [motion]\njoint = \"O\"\nkind = \"line\"\nvelocity = 2e6\n";
     place.write("fast.toml", &bar(drive));
     let done = place.freeplay("check fast.toml");
-    // A million poses 0.02 rad apart, at 2e6 rad/s.
-    let told = "motion: is looked at up to t = 0.0100 s";
+    // Twenty thousand poses 0.02 rad apart, at 2e6 rad/s.
+    let told = "motion: is looked at up to t = 1.999e-4 s";
     assert!(done.code == 0 && done.err.contains(told), "{}", done.err);
+
+    // A point that circles faster than any table of its drives' commands could say.
+    let five_bar = include_str!("../../assets/mechanisms/five-bar.toml");
+    place.write("circles.toml", five_bar);
+    let done = place.freeplay("check circles.toml --set motion.period=1e-7");
+    let told = "circles.toml:21: motion: carries \"left rod.E\" around 10020000 times, and a table of the \
+                inverse kinematics holds 1728 turns at most; a slower motion, or a shorter run";
+    assert!(done.code == 2 && done.err.contains(told), "{} {}", done.code, done.err);
 }
