@@ -63,6 +63,10 @@ fn doubtful_scenarios_are_warned_about() {
             "grows without bound",
         ),
         ("--set environment.gravity=[0,-9810]", "environment.gravity: is 9810 m/s²"),
+        ("--set contact.youngs_modulus=206", "contact.youngs_modulus: is 2.06e2 Pa"),
+        ("--set joints.friction=10", "joints.friction: is 10, more than rubber has"),
+        ("--set joints.bearing_radius=10", "is 10 m, in a machine of 0.660 m"),
+        ("--set legs.density=7.8", "7.8 g/cm³ are 7800"),
         ("--set mechanism.platform_mass=200", "mechanism.platform_mass: makes \"platform\""),
         ("--set motion.phi=44.9", "44.9 degrees are 0.7837"),
         (
@@ -82,6 +86,16 @@ fn doubtful_scenarios_are_warned_about() {
     }
     let plain = place.freeplay("check");
     assert_eq!((plain.code, plain.err.as_str()), (0, ""));
+
+    // The likely cause before what follows from it; the same of commands that take their motion from a log.
+    let done = place.freeplay("check --set mechanism.base_side=350");
+    let told = "warning: --set mechanism.base_side: makes a machine of 350 m; expected m: 350 mm are 0.35\nerror: ";
+    assert!(done.code == 2 && done.err.starts_with(told), "{}", done.err);
+    let rig = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs/rig-1");
+    let done = place.freeplay(&format!(
+        "predict {rig}/rig.toml --data {rig}/run-a.csv --set contact.youngs_modulus=206 --quiet"
+    ));
+    assert!(done.err.contains("contact.youngs_modulus: is 2.06e2 Pa"), "{}", done.err);
 }
 
 /// A motion is looked at as finely as it turns, however long it lasts: a circle of 20 ms was seen at one point

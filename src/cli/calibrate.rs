@@ -1,6 +1,6 @@
 //! `freeplay calibrate`: close the loop with measured data.
 
-use super::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_unused};
+use super::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_doubts};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::parts::PartOptions;
 use super::progress::Spinner;
@@ -123,7 +123,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     }
     let without = without(&arguments.without)?;
     let rig = Scenario::load(Some(rig), &arguments.sets.all())?;
-    warn_of_unused(&rig);
+    warn_of_doubts(&rig);
     let paths: Vec<&Path> =
         arguments.data.iter().chain(&arguments.validate).map(PathBuf::as_path).collect();
     say_how_written(paths.iter().copied());

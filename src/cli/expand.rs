@@ -1,6 +1,6 @@
 //! `freeplay expand`: the mechanism file that a template stands for.
 
-use super::failure::{Failure, warn_of_unused};
+use super::failure::{Failure, warn_of_doubts};
 use super::options::ScenarioOptions;
 use super::output;
 use crate::model::expand;
@@ -27,7 +27,7 @@ Examples:
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.load()?;
-    warn_of_unused(&scenario);
+    warn_of_doubts(&scenario);
     output::print(&expand(&scenario)?.to_toml())?;
     Ok(())
 }

@@ -4,7 +4,7 @@ use super::output;
 use crate::calibrate::recording::Recording;
 use crate::measure::dialect;
 use crate::scenario::{Location, Problem, Problems, Scenario};
-use crate::simulate::{Finding, Severity};
+use crate::simulate::{Finding, Severity, doubts};
 use crate::study::sweep::SweepError;
 use crate::study::{FolderError, RunError};
 use std::path::Path;
@@ -130,10 +130,10 @@ pub(super) fn say_what_is_ignored<'a>(recordings: impl IntoIterator<Item = &'a R
     }
 }
 
-/// Says which sections of a scenario mean nothing to its machine.
-pub(super) fn warn_of_unused(scenario: &Scenario) {
-    for problem in scenario.unused() {
-        output::complain(&Finding::warning(problem).to_string());
+/// Says what a scenario holds that means nothing to its machine, or is hardly meant.
+pub(super) fn warn_of_doubts(scenario: &Scenario) {
+    for finding in doubts(scenario) {
+        output::complain(&finding.to_string());
     }
 }
 

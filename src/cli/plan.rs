@@ -1,6 +1,6 @@
 //! `freeplay plan`: what to record next.
 
-use super::failure::{Failure, say_how_written, warn_of_unused};
+use super::failure::{Failure, say_how_written, warn_of_doubts};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::table::{paragraph, table};
@@ -90,7 +90,7 @@ Examples:
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let rig = Scenario::load(Some(&arguments.rig), &arguments.sets.all())?;
-    warn_of_unused(&rig);
+    warn_of_doubts(&rig);
     say_how_written(arguments.data.iter().map(PathBuf::as_path));
     let request = Request {
         data: arguments.data.clone(),

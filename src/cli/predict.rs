@@ -1,6 +1,6 @@
 //! `freeplay predict`: hold a model against a recording.
 
-use super::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_unused};
+use super::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_doubts};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::table::{paragraph, table};
@@ -64,7 +64,7 @@ Examples:
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let model = Scenario::load(Some(&arguments.model), &arguments.sets.all())?;
-    warn_of_unused(&model);
+    warn_of_doubts(&model);
     say_how_written([arguments.data.as_path()]);
     if model.mechanism.has_sensors() {
         let asked = Asked { window: arguments.window, fit: arguments.fit, from: arguments.from };

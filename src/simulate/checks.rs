@@ -4,7 +4,7 @@ use super::{oil, plausible, three_rpr};
 use crate::contact::StiffnessForm;
 use crate::engine::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism};
-use crate::model::{DrivenPath, Machine, Singular, radial_clearance};
+use crate::model::{DrivenPath, Machine, Singular, assemble, radial_clearance};
 use crate::scenario::{self, Problem, Scenario};
 use std::fmt;
 
@@ -67,6 +67,15 @@ const LARGEST_GYRATION: f64 = 5.0;
 /// Error in m or rad of a table of the inverse kinematics beyond which it is told: a thousandth of the smallest
 /// clearance that is common.
 const LARGEST_TABLE_ERROR: f64 = 1e-9;
+
+/// What is doubtful about a scenario as it is written, for commands that take the motion from elsewhere.
+pub fn doubts(scenario: &Scenario) -> Vec<Finding> {
+    let mut found: Vec<Finding> = scenario.unused().into_iter().map(Finding::warning).collect();
+    if let Ok(machine) = assemble(scenario) {
+        found.extend(plausible::findings(scenario, &machine));
+    }
+    found
+}
 
 /// Everything wrong or doubtful about a machine and its motion.
 pub fn findings(scenario: &Scenario, machine: &mut Machine) -> Vec<Finding> {

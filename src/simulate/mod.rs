@@ -19,7 +19,7 @@ pub use crate::model::{
     FIT_SPEED, Ideal, IdealInstant, Machine, assemble, close, drive, driven, leg_use,
     radial_clearance,
 };
-pub use checks::{Finding, Severity, driven_path, findings, findings_along};
+pub use checks::{Finding, Severity, doubts, driven_path, findings, findings_along};
 pub use measured::{measured, measured_until};
 pub use provenance::Provenance;
 pub use summary::{JointSummary, Recorder, Summary};

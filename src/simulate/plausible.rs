@@ -5,7 +5,7 @@ use super::three_rpr::angle_key;
 use crate::effects::Setting;
 use crate::mechanism::{Attachment, Mechanism};
 use crate::model::Machine;
-use crate::scenario::{self, Scenario};
+use crate::scenario::{self, Joint, Revolute, Scenario, Shape};
 use std::f64::consts::TAU;
 
 /// Gravity in m/s² beyond which no machine stands on: ten times the earth's, four times Jupiter's.
@@ -13,6 +13,18 @@ const LARGEST_GRAVITY: f64 = 100.0;
 
 /// Density in kg/m³ that no body has: ten times that of lead, for bodies reach farther than their joints.
 const LARGEST_DENSITY: f64 = 1.1e5;
+
+/// Young's moduli in Pa: of a soft rubber, and more than that of diamond, 1.2e12.
+const MODULI: [f64; 2] = [1e5, 2e12];
+
+/// Friction coefficient beyond those of rubber, and of clean metals in vacuum.
+const LARGEST_FRICTION: f64 = 2.0;
+
+/// Density in kg/m³ of the lightest foams that machines are made of.
+const SMALLEST_DENSITY: f64 = 10.0;
+
+/// Length in m that no machine of rigid links has; the longest booms of cranes do.
+const LARGEST_MACHINE: f64 = 100.0;
 
 /// What is hardly meant.
 pub(super) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
@@ -22,7 +34,91 @@ pub(super) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
     found.extend(starts(scenario, &machine.mechanism));
     found.extend(masses(scenario, &machine.mechanism));
     found.extend(idle(scenario, machine.ideal.mechanism()));
+    found.extend(written(scenario, machine.mechanism.size()));
     found
+}
+
+/// What is written in another unit than SI; `size` is the machine's, m.
+fn written(scenario: &Scenario, size: f64) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let mut doubt = |key: String, message: String, help: &str| {
+        found.push(Finding::warning(scenario.problem(&key, message, help)));
+    };
+    let modulus = scenario.contact.youngs_modulus;
+    if !(MODULI[0]..=MODULI[1]).contains(&modulus) {
+        let message = format!("is {modulus:e} Pa, and no solid has that");
+        doubt("contact.youngs_modulus".to_owned(), message, "expected Pa: 206 GPa are 206e9");
+    }
+    for (key, friction) in frictions(scenario).filter(|(_, value)| *value > LARGEST_FRICTION) {
+        let message = format!("is {friction}, more than rubber has");
+        doubt(key, message, "expected a coefficient, such as 0.1; 10 % are 0.1");
+    }
+    for (key, length) in lengths(scenario).filter(|(_, length)| *length > LARGEST_MACHINE) {
+        let help = format!("expected m: {length} mm are {}", length / 1e3);
+        doubt(key, format!("makes a machine of {length} m"), &help);
+    }
+    for (key, radius) in rings(scenario).filter(|(_, radius)| *radius > size) {
+        let message = format!("is {radius} m, in a machine of {size:.3} m");
+        doubt(key, message, &format!("expected m: {radius} mm are {}", radius / 1e3));
+    }
+    for (key, density) in densities(scenario).filter(|(_, density)| *density < SMALLEST_DENSITY) {
+        let message = format!("is {density} kg/m³, lighter than foam");
+        doubt(key, message, &format!("expected kg/m³: {density} g/cm³ are {}", density * 1e3));
+    }
+    found
+}
+
+/// Keys of what is one for each joint of a described machine, and its value where it is written.
+fn of_revolutes(
+    scenario: &Scenario,
+    key: &'static str,
+    value: fn(&Revolute) -> Option<f64>,
+) -> impl Iterator<Item = (String, f64)> {
+    let joints = scenario.mechanism.described().map_or(&[][..], |described| &described.joints);
+    joints.iter().enumerate().filter_map(move |(i, joint)| match joint {
+        Joint::Revolute(joint) => Some((format!("joint.{i}.{key}"), value(joint)?)),
+        Joint::Prismatic(_) | Joint::Fixed(_) => None,
+    })
+}
+
+fn frictions(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
+    let all = scenario.joints.friction.values().iter().copied().fold(0.0, f64::max);
+    let own = of_revolutes(scenario, "friction", |joint| joint.friction);
+    [("joints.friction".to_owned(), all)].into_iter().chain(own)
+}
+
+fn rings(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
+    let own = of_revolutes(scenario, "bearing_radius", |joint| joint.bearing_radius);
+    [("joints.bearing_radius".to_owned(), scenario.joints.bearing_radius)].into_iter().chain(own)
+}
+
+fn lengths(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
+    let template: Vec<(String, f64)> = match &scenario.mechanism {
+        scenario::Mechanism::ThreeRpr(kind) => {
+            let keys = [("base_side", kind.base_side), ("platform_side", kind.platform_side)];
+            keys.map(|(key, side)| (format!("mechanism.{key}"), side)).into()
+        }
+        _ => Vec::new(),
+    };
+    let bodies = scenario.mechanism.described().map_or(&[][..], |described| &described.bodies);
+    let bodies = bodies.iter().enumerate().map(|(i, body)| {
+        let far = body.points.values().flatten().fold(0.0f64, |far, x| far.max(x.abs()));
+        (format!("body.{i}.points"), far)
+    });
+    template.into_iter().chain(bodies)
+}
+
+fn densities(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
+    let legs = matches!(scenario.mechanism, scenario::Mechanism::ThreeRpr(_))
+        .then(|| ("legs.density".to_owned(), scenario.legs.density));
+    let bodies = scenario.mechanism.described().map_or(&[][..], |described| &described.bodies);
+    let bodies = bodies.iter().enumerate().filter_map(|(i, body)| {
+        let (Shape::Bar { density, .. }
+        | Shape::Disc { density, .. }
+        | Shape::Polygon { density, .. }) = body.shape.as_ref()?;
+        Some((format!("body.{i}.shape.density"), *density))
+    });
+    legs.into_iter().chain(bodies)
 }
 
 /// Effects without values, whose defaults change nothing on the machine as declared: a payload of no mass. (Who

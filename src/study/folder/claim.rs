@@ -17,6 +17,9 @@ const MARK: &str = ".freeplay-unfinished";
 const MARK_TEXT: &str = "freeplay is writing a result here. If none is at work, one was killed: the next that writes a \
      result of this name clears this folder, and so may you.\n";
 
+/// What is added to the name of a result in the making.
+const PARTIAL: &str = ".partial";
+
 /// How often a folder may vanish between finding and locking it.
 const ATTEMPTS: usize = 100;
 
@@ -30,7 +33,7 @@ pub(super) struct Claim {
 
 /// Where the result called `absolute` is made.
 pub(super) fn place(absolute: &Path) -> PathBuf {
-    beside(absolute, ".partial")
+    beside(absolute, PARTIAL)
 }
 
 /// The same path with something added to its name.
@@ -42,7 +45,7 @@ pub(super) fn beside(absolute: &Path, ending: &str) -> PathBuf {
 
 impl Claim {
     /// Claims the place of the result `absolute`, which the user calls `target`, for this process. What
-    /// a dead one left there is removed.
+    /// a dead one left there, or beside it, is removed.
     ///
     /// # Errors
     /// [`FolderError`] if another process holds it, if it holds files that are not ours, or if the file
@@ -75,9 +78,25 @@ impl Claim {
             fs::write(claim.path.join(MARK), MARK_TEXT)
                 .and_then(|()| clear(&claim.path))
                 .map_err(FolderError::io(target))?;
+            claim.clear_beside();
             return Ok(claim);
         }
         Err(FolderError::Busy(target.to_owned()))
+    }
+
+    /// Removes what dead processes left beside this place, under whatever names: hundreds of MB each. What cannot be
+    /// removed is left; it is not what was asked for.
+    fn clear_beside(&self) {
+        let Some(Ok(beside)) = self.path.parent().map(fs::read_dir) else { return };
+        for path in beside.flatten().map(|entry| entry.path()) {
+            let partial = path.extension().is_some_and(|ending| ending == &PARTIAL[1..]);
+            if partial && path != self.path && path.join(MARK).is_file() {
+                // A living one holds its lock before it writes its mark.
+                if let Lock::Ours(_held) = lock(&path) {
+                    let _ = remove(&path);
+                }
+            }
+        }
     }
 
     pub fn path(&self) -> &Path {
@@ -226,6 +245,24 @@ mod tests {
         assert!(!path.join("rows.csv").exists());
         drop(next);
         assert_eq!(fs::read_dir(dir.path()).expect("read").count(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_dead_processes_left_under_other_names_is_removed_too() {
+        let dir = tempfile::tempdir().expect("folder");
+        let claim = |name: &str| {
+            let target = dir.path().join(name);
+            Claim::new(&target, &target, MARKER).expect("free")
+        };
+        let [living, mut dead] = ["living", "dead"].map(claim);
+        let left = std::mem::take(&mut dead.path);
+        drop(dead);
+        let mine = dir.path().join("mine.partial");
+        fs::create_dir(&mine).expect("make");
+        assert!(left.is_dir());
+        let _next = claim("next");
+        assert!(!left.exists() && living.path().is_dir() && mine.is_dir());
     }
 
     #[test]

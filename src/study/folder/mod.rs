@@ -4,8 +4,8 @@
 //! OUT.partial  (claimed: locked by one process) ── finish ──► OUT   exchanged in one step
 //! OUT.replaced (the old result for an instant, only where the system cannot exchange)
 //! ```
-//! A process that is killed leaves its `OUT.partial` behind, unlocked. The next start that uses the same
-//! `OUT` finds it so, and clears it; a live one's is locked, and the second process is told.
+//! A process that is killed leaves its `OUT.partial` behind, unlocked. The next start in the same place finds it so, and
+//! clears it; a live one's is locked, and a second process that uses the same `OUT` is told.
 
 mod claim;
 mod making;
