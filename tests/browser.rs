@@ -196,9 +196,14 @@ const FLAWS: &str = r#"
 
 /// Every kind of page, as a user makes it, in a folder of its own.
 fn every_kind_of_page(place: &Place) -> Vec<&'static str> {
-    let rig = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs-planar/planar-1");
+    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/assets");
+    let (rig, three_legs) =
+        (format!("{assets}/rigs-planar/planar-1"), format!("{assets}/rigs/rig-2"));
+    let four_bar = format!("{assets}/mechanisms/four-bar.toml");
     let lines = [
         ("run", "run --duration 0.1".to_owned()),
+        ("four-bar", format!("run {four_bar} --duration 0.1")),
+        ("stage", format!("run {assets}/drive-stage.toml --duration 0.1")),
         ("ideal", "run --set contact.law=ideal --duration 0.1".to_owned()),
         (
             "sweep",
@@ -216,6 +221,16 @@ fn every_kind_of_page(place: &Place) -> Vec<&'static str> {
         (
             "calibrate",
             "calibrate --rig record/rig.toml --data record/run-a.csv --validate record/run-b.csv".to_owned(),
+        ),
+        (
+            "three-legs",
+            format!("calibrate --rig {three_legs}/rig.toml --data {three_legs}/run-a.csv"),
+        ),
+        ("swings", format!("record {assets}/double-pendulum-declared.toml --duration 3")),
+        ("windows", "predict swings/rig.toml --data swings/run-a.csv".to_owned()),
+        (
+            "wear",
+            format!("wear {four_bar} --set contact.wear_coefficient=1e-12 --set joints.friction=0.1 --cycles 1e4"),
         ),
         ("diff", "diff run ideal".to_owned()),
         ("models", "diff run/scenario.toml ideal/scenario.toml --starts 2".to_owned()),
