@@ -138,6 +138,19 @@ fn laws_of_conformal_contact_say_where_they_end() {
     let fragment =
         "holds down to 4.0e-7 m in the joint A1, and a hit at 0.2 m/s goes 9.4e-7 m deep";
     assert!(words.contains(fragment), "{all}");
+
+    // At radii that differ by a fifth nothing conforms; Liu's law knows that, and the default law has no such end.
+    let told = |line: &str| {
+        let done =
+            place.freeplay(&format!("check --set joints.clearance=2e-3 --set contact.law={line}"));
+        (done.out + &done.err)
+            .matches("up to a clearance of 0.1 of the ring's radius, and that of A1 is 0.20")
+            .count()
+    };
+    assert_eq!(
+        [told("johnson"), told("esdu-78035"), told("liu"), told("hertz-step")],
+        [1, 1, 0, 0]
+    );
 }
 
 /// Options that do nothing are told by their own names.

@@ -71,6 +71,12 @@ pub trait ForceLaw: std::fmt::Debug + Send + Sync {
         None
     }
 
+    /// Largest ratio of the radial clearance to the ring's radius up to which the law's assumptions hold, where it has
+    /// such an end.
+    fn valid_clearance(&self) -> Option<f64> {
+        None
+    }
+
     /// Penetration in m at which a contact at rest bears `force` N.
     fn resting_penetration(&self, force: f64) -> f64;
 

@@ -116,6 +116,7 @@ pub fn findings_along(
     found.extend(step(scenario, machine));
     found.extend(rows(scenario));
     found.extend(conformal(scenario, machine));
+    found.extend(too_loose(scenario, machine));
     found.extend(too_deep(scenario, machine));
     found.extend(oil::findings(scenario, machine));
     found.extend(table_end(scenario, machine));
@@ -405,6 +406,24 @@ fn conformal(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
         );
         let help = "give contact.stiffness, or use \"printed\"";
         Finding::warning(scenario.problem("contact.stiffness_form", message, help))
+    })
+}
+
+/// A clearance larger than a law of conforming surfaces is meant for.
+fn too_loose(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
+    machine.mechanism.revolutes.iter().find_map(|joint| {
+        let Bearing::Clearance(clearance) = &joint.bearing else { return None };
+        let ratio = clearance.radial() / clearance.bearing_radius;
+        let valid = clearance.law.valid_clearance()?;
+        (ratio > valid).then(|| {
+            let message = format!(
+                "is of surfaces that conform, up to a clearance of {valid} of the ring's radius, and that of {} is \
+                 {ratio:.2}",
+                joint.name
+            );
+            let help = "take the law \"liu\", which holds for any clearance, or a smaller clearance";
+            Finding::warning(scenario.problem("contact.law", message, help))
+        })
     })
 }
 

@@ -76,6 +76,10 @@ impl<S: Spring> ForceLaw for Damped<S> {
         self.spring.stiffness()
     }
 
+    fn valid_clearance(&self) -> Option<f64> {
+        self.spring.valid_clearance()
+    }
+
     fn valid_depth(&self) -> Option<f64> {
         self.spring.valid_depth()
     }

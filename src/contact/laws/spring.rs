@@ -34,6 +34,11 @@ pub trait Spring: Debug + Clone + Send + Sync + 'static {
         None
     }
 
+    /// Largest ratio of clearance to ring radius for which the formula is meant, where it has such an end.
+    fn valid_clearance(&self) -> Option<f64> {
+        None
+    }
+
     /// Work in J that it takes to get `penetration` m deep: `∫ F dδ`, by Gauss' rule over √δ, in which forces
     /// after Hertz are polynomials.
     fn energy(&self, penetration: f64) -> f64 {
@@ -131,6 +136,10 @@ pub struct Logarithmic {
 /// u = ln(D/F) where the formula ends.
 const END: f64 = 2.0;
 
+/// Ratio of clearance to ring radius beyond which surfaces no longer conform: radii that differ by a tenth. Plain bearings
+/// have a thousandth, the paper's worn ones a twentieth.
+const CONFORMING: f64 = 0.1;
+
 /// Most steps of Newton's method for u; four are enough.
 const NEWTON: usize = 12;
 
@@ -153,6 +162,10 @@ impl Spring for Logarithmic {
             }
         }
         penetration / (self.compliance * u)
+    }
+
+    fn valid_clearance(&self) -> Option<f64> {
+        Some(CONFORMING)
     }
 
     fn valid_depth(&self) -> Option<f64> {
