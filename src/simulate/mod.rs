@@ -6,6 +6,7 @@
 //! by one and in constant memory.
 
 mod checks;
+mod conformal;
 mod measured;
 mod oil;
 mod plausible;
