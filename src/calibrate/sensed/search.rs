@@ -9,7 +9,7 @@ use super::problem::{Problem, Split, Stopped};
 use super::residual::Name;
 use super::rivals::Rest;
 use super::settle::Model;
-use super::thresholds::{BUDGET, EFFECTS, HYPOTHESES, TWINS};
+use super::thresholds::{BUDGET, EFFECTS, HYPOTHESES, NEAR, TWINS};
 use crate::effects::Setting;
 
 /// What a search found.
@@ -124,7 +124,7 @@ impl<'a> Search<'a> {
                 next[0] = best.clone();
             }
             // Of what explains nearly as much something else may come out in the end.
-            next.retain(|model| before - model.cost() > 0.7 * (before - cost));
+            next.retain(|model| before - model.cost() > NEAR * (before - cost));
             next.truncate(HYPOTHESES);
             hypotheses = next;
             lacks = !self.is_noise(&best);
@@ -164,10 +164,10 @@ impl<'a> Search<'a> {
             best = self.simplified(best)?;
             best = self.needed(best)?;
             if !self.is_noise(&best) {
-                best = match best.baseline.rattles {
-                    true => self.foretold(&best)?.unwrap_or(best),
-                    false => self.refined(best)?,
-                };
+                best = self.refined(best)?;
+            }
+            if !self.is_noise(&best) && best.baseline.rattles {
+                best = self.foretold(&best)?.unwrap_or(best);
             }
         }
         credited(rounds, &best.fit.effects);

@@ -7,7 +7,7 @@ use super::hypotheses::{Round, Tried, price};
 use super::problem::{Segment, Stopped};
 use super::search::{Search, name, names};
 use super::thresholds::{GAIN_PER_VALUE, TWINS};
-use super::trajectory::{fitted, followed, predicted, shorter};
+use super::trajectory::{Far, fitted, followed, predicted, shorter};
 use super::whole::Whole;
 use crate::calibrate::fit::values;
 use crate::effects::Setting;
@@ -85,20 +85,25 @@ impl Search<'_> {
         if self.problem.replicas > 1 { baseline.log_determinant(segments) } else { 0.0 }
     }
 
-    /// The model with values from whole simulations, where joints do not rattle and that is better.
+    /// The model with values from whole simulations, where these can be followed to their end and that is better.
     pub(super) fn refined(&self, model: Model) -> Result<Model, Stopped> {
-        if model.baseline.rattles || model.fit.effects.is_empty() {
+        let effects = &model.fit.effects;
+        if effects.is_empty() {
+            return Ok(model);
+        }
+        let lengths = followed(self.problem, effects, &self.split.on)?;
+        if model.baseline.rattles && lengths.last() != Some(&None) {
             return Ok(model);
         }
         (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
-        let refined = self.fitted(&model.fit.effects)?;
+        let refined = self.fitted(&model.fit.effects, Far::All)?;
         Ok(refined.filter(|refined| refined.misfit < model.misfit).unwrap_or(model))
     }
 
     /// A model with values from whole simulations, from these on; none where it cannot be. Simulations say how well they are
     /// known, too: looks may hardly depend on them.
-    pub(super) fn fitted(&self, effects: &[Setting]) -> Result<Option<Model>, Stopped> {
-        let mut model = self.at(&fitted(self.problem, effects, &self.split.on)?, &[])?;
+    pub(super) fn fitted(&self, effects: &[Setting], far: Far) -> Result<Option<Model>, Stopped> {
+        let mut model = self.at(&fitted(self.problem, effects, &self.split.on, far)?, &[])?;
         if let Some(Model { fit, baseline, .. }) = &mut model {
             let length = followed(self.problem, &fit.effects, &self.split.on)?.pop().flatten();
             let on = self.split.on.iter();
@@ -131,7 +136,7 @@ impl Search<'_> {
             self.foretold(model)?
         } else {
             (self.tell)(&format!("fitting whole simulations with {}", names(effects)));
-            self.fitted(effects).ok().flatten().filter(|closer| self.is_noise(closer))
+            self.fitted(effects, Far::All).ok().flatten().filter(|closer| self.is_noise(closer))
         };
         if let Some(closer) = &closer
             && !self.misses(closer)?

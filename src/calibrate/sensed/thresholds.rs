@@ -70,6 +70,10 @@ pub const RIVALS: usize = 3;
 /// See [`RIVALS`].
 pub const RIVAL: f64 = 0.67;
 
+/// Share of the best gain from which on a rival stays one: the first of two effects is often taken for another that also takes
+/// up a part of the second.
+pub const NEAR: f64 = 0.7;
+
 /// Hypotheses that are followed at once; candidates of each that are fitted by more than one linear step, and of
 /// these that are simulated.
 pub const HYPOTHESES: usize = 4;

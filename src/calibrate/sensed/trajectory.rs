@@ -23,8 +23,8 @@ const LENGTHS: [f64; 2] = [0.5, 1.2];
 const EFFORT: Effort = Effort { steps: 4, enough: 2.0, secant: true };
 
 /// The lengths of these runs, one after another, over which values of a model with these effects are fitted to one simulation
-/// of it: all where joints do not rattle. What drives hold rattles from its first moments on; what nothing holds falls for a
-/// while before its replicas part, and as far as that goes its start is known.
+/// of it: as long as its replicas keep together, at least the first. What nothing holds falls for a while before they part,
+/// and as far as that goes its start is known: the longest is all there.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
@@ -34,8 +34,8 @@ pub fn followed(
     on: &[Segment],
 ) -> Result<Vec<Option<f64>>, Stopped> {
     let mut lengths: Vec<Option<f64>> = LENGTHS.map(Some).into_iter().chain([None]).collect();
-    if !problem.falls(effects)? {
-        lengths.truncate(if problem.replicas > 1 { 1 } else { lengths.len() });
+    let falls = problem.falls(effects)?;
+    if problem.replicas == 1 && !falls {
         return Ok(lengths);
     }
     let logs = problem.simulated(&problem.let_go(effects)?, 2)?;
@@ -48,12 +48,21 @@ pub fn followed(
             apart(&problem.declared.sensors, &first, &other) < ALIKE
         })
     };
-    let longest = lengths.iter().rev().find(|length| alike(length));
-    Ok(vec![*longest.unwrap_or(&lengths[0])])
+    let last = lengths.iter().rposition(alike).unwrap_or(0);
+    lengths.truncate(last + 1);
+    Ok(if falls { lengths.split_off(last) } else { lengths })
 }
 
-/// The effects at values that simulations of these runs agree with, from values near them on, as long as these can be
-/// [followed].
+/// How far values are fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Far {
+    /// Over the first of the lengths that can be [followed].
+    First,
+    /// Over all of them.
+    All,
+}
+
+/// The effects at values that simulations of these runs agree with, from values near them on.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
@@ -61,9 +70,14 @@ pub fn fitted(
     problem: &Problem,
     effects: &[Setting],
     on: &[Segment],
+    far: Far,
 ) -> Result<Vec<Setting>, Stopped> {
     let mut effects = effects.to_vec();
-    for length in followed(problem, &effects, on)? {
+    let mut lengths = followed(problem, &effects, on)?;
+    if far == Far::First {
+        lengths.truncate(1);
+    }
+    for length in lengths {
         let part: Vec<Segment> =
             on.iter().map(|segment| shorter(problem, segment, length)).collect();
         let baseline = || Baseline::of(problem, &effects, &[], &part);

@@ -6,7 +6,8 @@ use super::linear::step;
 use super::problem::{Segment, Stopped};
 use super::search::Search;
 use super::settle::Model;
-use super::trajectory::{followed, shorter};
+use super::thresholds::NEAR;
+use super::trajectory::{Far, followed, shorter};
 use super::whole::Whole;
 use crate::calibrate::fit::free;
 use crate::calibrate::least_squares::{Look, derivative};
@@ -34,23 +35,34 @@ impl Search<'_> {
         model: &Model,
         tried: &mut Vec<Tried>,
     ) -> Result<Vec<Model>, Stopped> {
-        let mut found = Vec::new();
         let own = &model.fit.effects;
         let paid = self.paid(model)?;
+        // What cannot be simulated is no model.
+        let fitted = |effects: &[Setting], far| -> Result<Option<(f64, Model)>, Stopped> {
+            let Some(there) = self.fitted(effects, far).ok().flatten() else { return Ok(None) };
+            Ok(Some((paid - self.paid(&there)?, there)))
+        };
+        let mut found = Vec::new();
         for start in self.promising(model)? {
-            // What cannot be simulated is no model.
-            let there = self.fitted(&[own.as_slice(), &[start]].concat()).ok().flatten();
-            let Some(there) = there else { continue };
-            let Some(effect) = there.fit.effects.last().cloned() else { continue };
-            let gain = paid - self.paid(&there)?;
-            match tried.iter_mut().find(|tried| tried.effect.is(&effect)) {
-                Some(tried) => (tried.simulated, tried.gain) = (true, gain),
-                None => tried.push(Tried::simulated(effect, gain, model)),
-            }
-            if gain > price(model) {
-                found.push((gain, there));
+            found.extend(fitted(&[own.as_slice(), &[start]].concat(), Far::First)?);
+        }
+        let most = found.iter().map(|(gain, _)| *gain).fold(0.0, f64::max);
+        for (gain, there) in &mut found {
+            if *gain >= NEAR * most
+                && let Some(closer) = fitted(&there.fit.effects, Far::All)?
+                && closer.0 > *gain
+            {
+                (*gain, *there) = closer;
             }
         }
+        for (gain, there) in &found {
+            let Some(effect) = there.fit.effects.last().cloned() else { continue };
+            match tried.iter_mut().find(|tried| tried.effect.is(&effect)) {
+                Some(tried) => (tried.simulated, tried.gain) = (true, *gain),
+                None => tried.push(Tried::simulated(effect, *gain, model)),
+            }
+        }
+        found.retain(|(gain, _)| *gain > price(model));
         found.sort_by(|(a, _), (b, _)| b.total_cmp(a));
         Ok(found.into_iter().map(|(_, model)| model).collect())
     }
