@@ -15,3 +15,15 @@ fn right(seed: u64) -> Tried {
 fn a_large_slider_crank_that_lacks_nothing_lacks_nothing() {
     right(1_000_007);
 }
+
+/// A pendulum that falls through the play of an oval bearing: no acceleration shows that, and simulations of the whole fall do,
+/// from where it was let go on, which is fitted with them.
+#[test]
+fn an_oval_bearing_of_a_pendulum_shows_in_how_it_falls() {
+    let tried = right(141_000_003);
+    let answer = tried.answer.unwrap();
+    assert!(!answer.values.is_empty(), "{answer:#?}");
+    for value in &answer.values {
+        assert!(value.covered, "{answer:#?}");
+    }
+}

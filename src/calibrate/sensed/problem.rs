@@ -5,7 +5,7 @@ use super::estimate::View;
 use super::motions::Motions;
 use super::recording::Recording;
 use super::residual::{Residuals, residuals};
-use super::start::{Released, StartError, let_go_at, machine, released, still};
+use super::start::{Released, StartError, let_go_at, machine, released, released_near, still};
 use super::{simulate, thresholds};
 use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::spectrum::transform;
@@ -196,7 +196,7 @@ impl Problem {
 
     /// The machine with these effects as it was let go in run `index`.
     fn released(&self, effects: &[Setting], index: usize) -> Result<Released, Stopped> {
-        let key = format!("{index} {:?} {effects:?}", self.rig.effects);
+        let key = self.key(effects, index);
         let kept = || self.released.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(machine) = kept().get(&key) {
             return Ok(machine.clone());
@@ -204,6 +204,29 @@ impl Problem {
         let machine = released(&self.rig, effects, &self.runs[index].recording, self.control)?;
         kept().put(key, machine.clone());
         Ok(machine)
+    }
+
+    /// Knows from now on where the machine with these effects was let go in run `index`: near `coordinates`, where that does
+    /// more of what was recorded.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn let_go_near(
+        &self,
+        effects: &[Setting],
+        index: usize,
+        coordinates: &[f64],
+    ) -> Result<(), Stopped> {
+        let known = (self.released(effects, index)?, coordinates);
+        let recording = &self.runs[index].recording;
+        let near = released_near(&self.rig, effects, recording, known, self.control)?;
+        let key = self.key(effects, index);
+        self.released.lock().unwrap_or_else(PoisonError::into_inner).put(key, near);
+        Ok(())
+    }
+
+    fn key(&self, effects: &[Setting], index: usize) -> String {
+        format!("{index} {:?} {effects:?}", self.rig.effects)
     }
 
     /// The machine with the `drawn` effects about where the model that begins at `start` was let go in run `index`, as

@@ -3,7 +3,7 @@
 use super::estimate::position_sensor;
 use super::recording::Recording;
 use super::simulate::{deviation, record};
-use crate::calibrate::least_squares::{Effort, Free, least_squares};
+use crate::calibrate::least_squares::{Best, Effort, Free, least_squares};
 use crate::calibrate::outcome::inverse_normal;
 use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};
@@ -338,23 +338,12 @@ pub fn released(
         }
         return Ok(Released { machine: mechanism, coordinates: Vec::new(), covariance: None });
     }
-    let let_go = |values: &[f64]| let_go_at(rig, effects, recording, values, control);
-    let missed = |values: &[f64], seconds: f64| -> Option<DVector<f64>> {
-        let part = recording.first(seconds);
-        let machine = let_go(values).ok()?;
-        let simulated = record(&machine, control, &part, 0).ok()?;
-        let mut left = Vec::new();
-        for (joint, _) in &held {
-            let sensor = position_sensor(&machine, *joint);
-            let pair = sensor.and_then(|i| Some((i, part.get(i).zip(simulated.get(i))?)));
-            let Some((i, (measured, simulated))) = pair else { continue };
-            let unit = deviation(&machine.sensors[i], measured);
-            left.extend(measured.iter().zip(simulated).map(|(a, b)| (a - b) / unit));
-        }
-        Some(DVector::from_vec(left))
+    let joints: Vec<JointIndex> = held.iter().map(|(joint, _)| *joint).collect();
+    let missed = |values: &[f64], seconds: f64| {
+        missed(rig, effects, recording, &joints, values, seconds, control)
     };
     let mut values: Vec<f64> = held.iter().map(|(_, value)| *value).collect();
-    let free = vec![Free { step: SMALL, bounds: [-f64::MAX, f64::MAX] }; values.len()];
+    let free = unbounded(values.len());
     let mut seconds = SEEN;
     let mut covariance = None;
     loop {
@@ -363,8 +352,7 @@ pub fn released(
         // What a model does not show is no reason to have started elsewhere.
         let shown = mean_square(&best.residual) <= KEPT;
         if shown || seconds == SEEN {
-            let inverse = best.jacobian.as_ref().and_then(inverse_normal);
-            covariance = inverse.map(|inverse| inverse * mean_square(&best.residual).max(1.0));
+            covariance = uncertainty(&best);
             values = best.values;
         }
         if !shown || seconds >= recording.duration() {
@@ -372,7 +360,69 @@ pub fn released(
         }
         seconds *= 2.0;
     }
-    Ok(Released { machine: let_go(&values)?, coordinates: values, covariance })
+    let machine = let_go_at(rig, effects, recording, &values, control)?;
+    Ok(Released { machine, coordinates: values, covariance })
+}
+
+/// The same machine from near `coordinates`, which something else than its start told, where from there it does more of what
+/// was recorded than `known`.
+///
+/// # Errors
+/// As of [`released`].
+pub fn released_near(
+    rig: &Scenario,
+    effects: &[Setting],
+    recording: &Recording,
+    (known, coordinates): (Released, &[f64]),
+    control: StepControl,
+) -> Result<Released, StartError> {
+    let joints: Vec<JointIndex> =
+        closed(rig, effects, recording, None)?.held.iter().map(|(joint, _)| *joint).collect();
+    let seconds = recording.duration();
+    let look = |values: &[f64]| missed(rig, effects, recording, &joints, values, seconds, control);
+    let free = unbounded(coordinates.len());
+    let best = least_squares(&look, &free, coordinates.to_vec(), EFFORT, None);
+    let (Some(best), Some(before)) = (best, look(&known.coordinates)) else { return Ok(known) };
+    if best.residual.norm_squared() >= before.norm_squared() {
+        return Ok(known);
+    }
+    let machine = let_go_at(rig, effects, recording, &best.values, control)?;
+    Ok(Released { machine, covariance: uncertainty(&best), coordinates: best.values })
+}
+
+/// By how much the first `seconds` of a recording miss the coordinates of the joints that held a machine with these effects
+/// where it was let go at these `values`, in units of noise; none where there is no such machine.
+fn missed(
+    rig: &Scenario,
+    effects: &[Setting],
+    recording: &Recording,
+    joints: &[JointIndex],
+    values: &[f64],
+    seconds: f64,
+    control: StepControl,
+) -> Option<DVector<f64>> {
+    let part = recording.first(seconds);
+    let machine = let_go_at(rig, effects, recording, values, control).ok()?;
+    let simulated = record(&machine, control, &part, 0).ok()?;
+    let mut left = Vec::new();
+    for joint in joints {
+        let sensor = position_sensor(&machine, *joint);
+        let pair = sensor.and_then(|i| Some((i, part.get(i).zip(simulated.get(i))?)));
+        let Some((i, (measured, simulated))) = pair else { continue };
+        let unit = deviation(&machine.sensors[i], measured);
+        left.extend(measured.iter().zip(simulated).map(|(a, b)| (a - b) / unit));
+    }
+    Some(DVector::from_vec(left))
+}
+
+fn unbounded(count: usize) -> Vec<Free> {
+    vec![Free { step: SMALL, bounds: [-f64::MAX, f64::MAX] }; count]
+}
+
+/// The covariance of coordinates that were fitted.
+fn uncertainty(best: &Best) -> Option<DMatrix<f64>> {
+    let inverse = best.jacobian.as_ref().and_then(inverse_normal);
+    inverse.map(|inverse| inverse * mean_square(&best.residual).max(1.0))
 }
 
 /// The machine of a rig with these effects, let go at its first row with these coordinates (m or rad) of the joints that

@@ -20,7 +20,7 @@ const LENGTHS: [f64; 2] = [0.5, 1.2];
 
 /// Steps of Gauss and Newton on each length, and the drop of Σ of squares that is none: a look costs a
 /// simulation.
-const EFFORT: Effort = Effort { steps: 4, enough: 2.0, secant: true };
+const EFFORT: Effort = Effort { steps: 10, enough: 2.0, secant: true };
 
 /// The lengths of these runs, one after another, over which values of a model with these effects are fitted to one simulation
 /// of it: as long as its replicas keep together, at least the first. What nothing holds falls for a while before they part,
@@ -73,18 +73,25 @@ pub fn fitted(
     far: Far,
 ) -> Result<Vec<Setting>, Stopped> {
     let mut effects = effects.to_vec();
-    let mut lengths = followed(problem, &effects, on)?;
-    if far == Far::First {
-        lengths.truncate(1);
+    let mut reached = 0.0;
+    loop {
+        // Better values are followed further.
+        let beyond = |length: &Option<f64>| length.unwrap_or(f64::INFINITY) > reached;
+        let lengths: Vec<Option<f64>> =
+            followed(problem, &effects, on)?.into_iter().filter(beyond).collect();
+        let Some(last) = lengths.last() else { return Ok(effects) };
+        reached = last.unwrap_or(f64::INFINITY);
+        for length in lengths {
+            let part: Vec<Segment> =
+                on.iter().map(|segment| shorter(problem, segment, length)).collect();
+            let baseline = || Baseline::of(problem, &effects, &[], &part);
+            let whole = Whole::of(problem, &effects, &part, baseline)?;
+            effects = whole.fitted(&effects, EFFORT).unwrap_or(effects);
+            if far == Far::First {
+                return Ok(effects);
+            }
+        }
     }
-    for length in lengths {
-        let part: Vec<Segment> =
-            on.iter().map(|segment| shorter(problem, segment, length)).collect();
-        let baseline = || Baseline::of(problem, &effects, &[], &part);
-        let whole = Whole::of(problem, &effects, &part, baseline)?;
-        effects = whole.fitted(&effects, EFFORT).unwrap_or(effects);
-    }
-    Ok(effects)
 }
 
 /// The effects at values whose predictions of these runs, means of replicas that rattle, miss them least, from values

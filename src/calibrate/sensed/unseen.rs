@@ -10,10 +10,11 @@ use super::thresholds::NEAR;
 use super::trajectory::{Far, followed, shorter};
 use super::whole::Whole;
 use crate::calibrate::fit::free;
-use crate::calibrate::least_squares::{Look, derivative};
+use crate::calibrate::least_squares::{Free, Look, derivative};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::f64::consts::TAU;
 
 /// How far from its neutral value an effect that only simulations show is tried, in steps of its parameters: a
 /// joint's clearance of 0.05 mm more.
@@ -130,33 +131,61 @@ fn linear_step(
     left: &DVector<f64>,
 ) -> Option<(f64, Setting)> {
     let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
-    // Of one with a list of starts the first value is an amplitude, and the others are its first start's.
-    let own = match (candidate.kind.starts)(&names).into_iter().next() {
-        Some(start) => [&[candidate.values().next()?.1], &start[1..]].concat(),
-        None => candidate.values().map(|(_, value)| value).collect(),
-    };
+    let neutral: Vec<f64> = candidate.values().map(|(_, value)| value).collect();
     let free = free(std::slice::from_ref(candidate));
-    let moving = if (candidate.kind.starts)(&names).is_empty() { own.len() } else { 1 };
-    let known = starts.len();
-    let mut columns = starts.to_vec();
-    for i in 0..moving {
-        columns.push(derivative(look, &free, &own, left, i)?);
-    }
-    let stepped = |columns: &[DVector<f64>], own: &[f64]| {
-        if columns.is_empty() {
-            return Some((left.norm_squared(), DVector::zeros(0)));
-        }
-        let columns = DMatrix::from_columns(columns);
-        let change = step(&columns, known, left, own, &free[..own.len()])?.change;
-        Some(((left + &columns * &change).norm_squared(), change))
+    let alone = stepped(starts, starts.len(), left, &[], &[])?.0;
+    let stepped = |columns: &[DVector<f64>], own: &[f64], free: &[Free]| {
+        let all = [starts, columns].concat();
+        let (least, change) = stepped(&all, starts.len(), left, own, free)?;
+        let gain = alone - least;
+        let change: Vec<f64> = change.iter().skip(starts.len()).copied().collect();
+        gain.is_finite().then_some((gain, change))
     };
-    let (alone, _) = stepped(starts, &[])?;
-    let (least, change) = stepped(&columns, &own[..moving])?;
-    let gain = alone - least;
-    let mut values = own;
-    let own = change.iter().skip(known);
-    values.iter_mut().zip(own).for_each(|(value, change)| *value += change);
-    gain.is_finite().then(|| (gain, candidate.with(&values)))
+    // Of one with a list of starts the first value is an amplitude, which begins at nothing; the others are a start's.
+    let listed = (candidate.kind.starts)(&names);
+    let begun = |start: &Vec<f64>| [&neutral[..1], &start[1..]].concat();
+    let slope = |values: &[f64], i: usize| derivative(look, &free, values, left, i);
+    if let (true, [begin, next, ..]) = (turns_round(&names, &listed), listed.as_slice()) {
+        let across = &listed[listed.len() / 4];
+        let columns = [begin, across].map(|start| slope(&begun(start), 0));
+        let [Some(first), Some(across)] = columns else { return None };
+        let wide = Free { bounds: [-f64::MAX, f64::MAX], ..free[0] };
+        let (gain, change) = stepped(&[first, across], &[0.0; 2], &[wide; 2])?;
+        let turn = change[1].atan2(change[0]).rem_euclid(TAU) / TAU;
+        let angle = begin[1] + turn * listed.len() as f64 * (next[1] - begin[1]);
+        let amplitude = neutral[0] + change[0].hypot(change[1]);
+        return Some((gain, candidate.with(&[amplitude, angle])));
+    }
+    let mut values = listed.first().map_or_else(|| neutral.clone(), begun);
+    let moving = if listed.is_empty() { values.len() } else { 1 };
+    let columns: Vec<_> = (0..moving).map(|i| slope(&values, i)).collect::<Option<_>>()?;
+    let (gain, change) = stepped(&columns, &values[..moving], &free[..moving])?;
+    values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
+    Some((gain, candidate.with(&values)))
+}
+
+/// Whether a list of starts goes once round the period of an angle, their last value, in equal steps: what a quarter of them
+/// apart is then is the cosine and the sine of one wave, in which a response is linear.
+fn turns_round(names: &[&str], listed: &[Vec<f64>]) -> bool {
+    let angle = names.last().is_some_and(|name| name.ends_with("_rad"));
+    angle && names.len() == 2 && listed.len() >= 4 && listed.len().is_multiple_of(4)
+}
+
+/// The sum of squares that is left after one step along these columns, the first `known` of which are not bounded, and the
+/// step.
+fn stepped(
+    columns: &[DVector<f64>],
+    known: usize,
+    left: &DVector<f64>,
+    own: &[f64],
+    free: &[Free],
+) -> Option<(f64, DVector<f64>)> {
+    if columns.is_empty() {
+        return Some((left.norm_squared(), DVector::zeros(0)));
+    }
+    let columns = DMatrix::from_columns(columns);
+    let change = step(&columns, known, left, own, free)?.change;
+    Some(((left + &columns * &change).norm_squared(), change))
 }
 
 /// An effect some way from its values, for what only simulations show.

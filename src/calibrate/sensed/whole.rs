@@ -73,7 +73,8 @@ impl<'a> Whole<'a> {
         (0..own.len()).map(|i| derivative(&look, &free, &own, left, i)).collect()
     }
 
-    /// The effects at the values that leave the least, from these on; none where there is no such machine.
+    /// The effects at the values that leave the least, from these on; none where there is no such machine. Where it was let
+    /// go with them is known from then on.
     pub fn fitted(&self, effects: &[Setting], effort: Effort) -> Option<Vec<Setting>> {
         let count = values(effects).len();
         let look = |all: &[f64]| {
@@ -83,7 +84,14 @@ impl<'a> Whole<'a> {
         let free = [free(effects), self.free()].concat();
         let start = [values(effects), self.coordinates()].concat();
         let best = least_squares(&look, &free, start, effort, None)?;
-        Some(with_values(effects, &best.values[..count]))
+        let (own, mut coordinates) = best.values.split_at(count);
+        let fitted = with_values(effects, own);
+        for (segment, start) in self.segments.iter().zip(self.starts()) {
+            let (own, others) = coordinates.split_at(start.len());
+            coordinates = others;
+            self.problem.let_go_near(&fitted, segment.run, own).ok()?;
+        }
+        Some(fitted)
     }
 
     /// The covariance of the values of a model's effects, whatever the starts: `(JᵀJ)⁻¹`, J in units of noise and without what
@@ -109,12 +117,17 @@ impl<'a> Whole<'a> {
         Some(inverse_normal(&own)? * factor)
     }
 
+    /// The coordinates from which the machine is let go, segment by segment.
+    fn starts(&self) -> &[Vec<f64>] {
+        match &self.compared {
+            Compared::Looks(_) => &[],
+            Compared::Columns { starts, .. } => starts,
+        }
+    }
+
     /// The coordinates of all runs, in a row.
     fn coordinates(&self) -> Vec<f64> {
-        match &self.compared {
-            Compared::Looks(_) => Vec::new(),
-            Compared::Columns { starts, .. } => starts.concat(),
-        }
+        self.starts().concat()
     }
 
     fn free(&self) -> Vec<Free> {
@@ -151,7 +164,7 @@ mod tests {
     use super::*;
     use crate::effects::named;
 
-    /// A pendulum that lacks nothing is not dragged, by a ten thousandth of what is tried first, and residuals, which are
+    /// A pendulum that lacks nothing is not dragged, by two ten thousandths of what is tried first as the standard deviation, and residuals, which are
     /// accelerations, tell that less closely than the way that it falls.
     #[test]
     fn how_a_pendulum_falls_tells_drag_better_than_its_accelerations() {
@@ -169,7 +182,7 @@ mod tests {
         let found = values(&fitted)[0];
         let deviation = |covariance: DMatrix<f64>| covariance[(0, 0)].sqrt();
         let own = deviation(whole.covariance(&fitted).unwrap());
-        assert!(found.abs() < 1e-4 * 0.01, "{found} ± {own}");
+        assert!(found.abs() < 3.0 * own && own < 2e-4 * 0.01, "{found} ± {own}");
         let target = Target { problem: &problem, baseline: &baseline, on: &on };
         let looked = target.look(&drag(0.0)).unwrap();
         let by_looks = deviation(inverse_normal(&target.jacobian(&looked).unwrap()).unwrap());
