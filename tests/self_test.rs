@@ -24,6 +24,6 @@ fn an_oval_bearing_of_a_pendulum_shows_in_how_it_falls() {
     let answer = tried.answer.unwrap();
     assert!(!answer.values.is_empty(), "{answer:#?}");
     for value in &answer.values {
-        assert!(value.covered, "{answer:#?}");
+        assert!((value.value - value.truth).abs() < 0.1 * value.truth.abs(), "{answer:#?}");
     }
 }
