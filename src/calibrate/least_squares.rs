@@ -39,7 +39,7 @@ pub fn jacobian(
 }
 
 /// Derivative of the residual by value `i`, by a forward difference over its step, away from the nearest bound; over a
-/// [part](reduced) of it where the whole one does [more than counts](too_far), unless that is [steeper](STEEPER): what is a
+/// [part](reduced) of it where the whole one does [more than counts](too_far), unless that is twice as steep: what is a
 /// hair to one machine is everything to another.
 pub fn derivative(
     look: Look,
