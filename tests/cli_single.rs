@@ -4,7 +4,7 @@
 mod cli_common;
 
 use cli_common::Place;
-use freeplay::calibrate::sensed::{recording::Recording, simulate::record, start::released};
+use freeplay::calibrate::sensed::{recording::Recording, released::released, simulate::record};
 use freeplay::engine::{Schedule, StepControl, run};
 use freeplay::mechanism::Drive;
 use freeplay::model::assemble;

@@ -5,8 +5,9 @@
 use freeplay::calibrate::sensed::events::{Event, events, search::beside};
 use freeplay::calibrate::sensed::problem::Problem;
 use freeplay::calibrate::sensed::recording::Recording;
+use freeplay::calibrate::sensed::released::released;
 use freeplay::calibrate::sensed::simulate::{record, with_noise};
-use freeplay::calibrate::sensed::start::{machine, released};
+use freeplay::calibrate::sensed::start::machine;
 use freeplay::calibrate::sensed::windows::bench::Bench;
 use freeplay::effects::{Setting, Target, named};
 use freeplay::engine::StepControl;

@@ -39,8 +39,8 @@ pub fn jacobian(
 }
 
 /// Derivative of the residual by value `i`, by a forward difference over its step, away from the nearest bound; over a
-/// [part](reduced) of it where the whole one does [more than counts](too_far), unless that is twice as steep: what is a
-/// hair to one machine is everything to another.
+/// [part](REDUCED) of it where the whole one does [more than counts](too_far): what is a hair to one machine is
+/// everything to another.
 pub fn derivative(
     look: Look,
     free: &[Free],
@@ -50,31 +50,18 @@ pub fn derivative(
 ) -> Option<DVector<f64>> {
     let Free { step, bounds } = free[i];
     let mut step = if values[i] + step > bounds[1] { -step } else { step };
-    let mut longer: Option<DVector<f64>> = None;
     for last in (0..=REDUCTIONS).map(|k| k == REDUCTIONS) {
         let mut beside = values.to_vec();
         beside[i] += step;
         let change = look(&beside).map(|there| there - residual);
-        let slope = change.as_ref().map(|change| change / step);
-        let steeper = |longer: &DVector<f64>| {
-            slope.as_ref().is_some_and(|slope| slope.norm() > STEEPER * longer.norm())
-        };
-        if longer.as_ref().is_some_and(steeper) {
-            return longer;
-        }
-        match &change {
-            Some(change) if last || !too_far(change, residual) => return slope,
+        match change {
+            Some(change) if last || !too_far(&change, residual) => return Some(change / step),
             None if last => return None,
-            change => step *= reduced(change.as_ref(), residual),
+            _ => step *= REDUCED,
         }
-        longer = slope.or(longer);
     }
     None
 }
-
-/// How much steeper a residual is over a shorter step where it is not smooth: what bends is flatter there, and errors of
-/// simulations, as of journals that lift off, are as large over any step.
-const STEEPER: f64 = 2.0;
 
 /// Whether a step that is to tell a direction was too long: it changed a residual in units of noise by more than all that
 /// there is of it, and by more than a unit.
@@ -82,14 +69,9 @@ pub fn too_far(change: &DVector<f64>, residual: &DVector<f64>) -> bool {
     change.norm() > residual.norm().max(1.0)
 }
 
-/// What is left of a step that was [too long](too_far): what would change a third of the residual if all were linear, for
-/// shorter ones drown in the errors of simulations; a half at most, and a hundredth at least.
-pub fn reduced(change: Option<&DVector<f64>>, residual: &DVector<f64>) -> f64 {
-    let linear = |change: &DVector<f64>| residual.norm().max(1.0) / (3.0 * change.norm());
-    change.map_or(0.0, linear).clamp(0.01, 0.5)
-}
-
-/// How often a step is shortened: down to a millionth.
+/// What is left of a step that was [too long](too_far), and how often: down to a millionth.
+pub const REDUCED: f64 = 0.01;
+/// See [`REDUCED`].
 pub const REDUCTIONS: usize = 3;
 
 /// When a fit ends, and how it comes by derivatives.
@@ -239,12 +221,6 @@ mod tests {
         assert!((slope(&bounded) - 3.0).abs() < 1e-9);
         // Over 1 it would be 3003; over a hundredth of that the residual changes by a third of itself.
         assert!((slope(&bent) - 33.0).abs() < 1e-9, "{}", slope(&bent));
-        // Errors as large over any step hide the slope over short ones.
-        let rough = |v: &[f64]| {
-            let error = if v[0] == 0.0 { 0.0 } else { 2.0 };
-            Some(DVector::from_vec(vec![1.0 + 3.0 * v[0] + error]))
-        };
-        assert!((slope(&rough) - 5.0).abs() < 1e-9, "{}", slope(&rough));
         let nowhere = |_: &[f64]| None;
         assert!(derivative(&nowhere, &free, &[0.0], &left, 0).is_none());
     }

@@ -3,7 +3,7 @@
 use crate::FOUR_BAR;
 use crate::cli_common::Place;
 use freeplay::calibrate::sensed::recording::Recording;
-use freeplay::calibrate::sensed::{simulate, start};
+use freeplay::calibrate::sensed::{released, simulate};
 use freeplay::engine::StepControl;
 use freeplay::model::parts_of;
 use freeplay::scenario::Scenario;
@@ -28,7 +28,7 @@ fn recorded(place: &Place, name: &str, effects: &str, waves: [[f64; 2]; 2], seed
     let like = Recording::read(&place.path("commands.csv"), &sensors, false).unwrap();
     let control = StepControl::Tolerance(1e-5);
     // The joints close at the first commands, whatever the columns that were not measured yet hold.
-    let machine = start::released(&declared, &truth.effects, &like, control).unwrap().machine;
+    let machine = released::released(&declared, &truth.effects, &like, control).unwrap().machine;
     let clean = simulate::record(&machine, control, &like, 7).unwrap();
     place.write(name, &simulate::with_noise(&clean, &sensors, seed).to_csv(&sensors));
 }

@@ -3,8 +3,8 @@
 use super::pace::passed;
 use crate::calibrate::sensed::problem::Stopped;
 use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::released::released;
 use crate::calibrate::sensed::simulate::record;
-use crate::calibrate::sensed::start::released;
 use crate::effects::Setting;
 use crate::engine::StepControl;
 use crate::mechanism::{Command, Mechanism, Reads};

@@ -2,7 +2,7 @@
 
 use super::fit::{Fit, Target};
 use super::periodic::frequencies;
-use crate::calibrate::least_squares::{REDUCTIONS, reduced, too_far};
+use crate::calibrate::least_squares::{REDUCED, REDUCTIONS, too_far};
 use crate::effects::{ALL, CONTAINS, Kind, Range, Scan, Setting};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
@@ -81,10 +81,7 @@ pub(super) fn within(
     for _ in 0..REDUCTIONS {
         match change(values) {
             Some(column) if !too_far(&column, residual) => return Some(column),
-            column => {
-                let part = reduced(column.as_ref(), residual);
-                values[place] = neutral + part * (values[place] - neutral);
-            }
+            _ => values[place] = neutral + REDUCED * (values[place] - neutral),
         }
     }
     change(values)

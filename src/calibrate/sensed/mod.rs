@@ -34,6 +34,7 @@ pub mod predict;
 pub(in crate::calibrate) mod prepare;
 pub mod problem;
 pub mod recording;
+pub mod released;
 pub mod report;
 pub mod residual;
 mod rivals;

@@ -88,11 +88,11 @@ impl Search<'_> {
     /// The model with values from whole simulations, where these can be followed to their end and that is better.
     pub(super) fn refined(&self, model: Model) -> Result<Model, Stopped> {
         let effects = &model.fit.effects;
-        if effects.is_empty() {
-            return Ok(model);
-        }
-        let lengths = followed(self.problem, effects, &self.split.on)?;
-        if model.baseline.rattles && lengths.last() != Some(&None) {
+        let lost = || -> Result<bool, Stopped> {
+            let lengths = followed(self.problem, effects, &self.split.on)?;
+            Ok(lengths.last() != Some(&None))
+        };
+        if effects.is_empty() || model.baseline.rattles && lost()? {
             return Ok(model);
         }
         (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));

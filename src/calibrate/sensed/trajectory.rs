@@ -18,8 +18,8 @@ use rayon::prelude::*;
 /// keeps its phase for so long at first. The whole follows.
 const LENGTHS: [f64; 2] = [0.5, 1.2];
 
-/// Steps of Gauss and Newton on each length, and the drop of Σ of squares that is none: a look costs a
-/// simulation.
+/// Steps of Gauss and Newton on each length, at most: where journals lift off a residual is rough, and
+/// four end on its way down. And the drop of Σ of squares that is none: a look costs a simulation.
 const EFFORT: Effort = Effort { steps: 10, enough: 2.0, secant: true };
 
 /// The lengths of these runs, one after another, over which values of a model with these effects are fitted to one simulation

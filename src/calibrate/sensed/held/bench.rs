@@ -244,8 +244,12 @@ impl Bench {
     pub fn simulated(&self, run: usize, effects: &[Setting]) -> Result<Recording, Broken> {
         let recording = &self.runs[run].recording;
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        let released =
-            crate::calibrate::sensed::start::released(&self.rig, effects, recording, self.control)?;
+        let released = crate::calibrate::sensed::released::released(
+            &self.rig,
+            effects,
+            recording,
+            self.control,
+        )?;
         Ok(simulate::record(&released.machine, self.control, recording, 0)?)
     }
 
@@ -317,7 +321,7 @@ impl Run {
 pub enum Broken {
     /// Its start.
     #[error(transparent)]
-    Start(#[from] crate::calibrate::sensed::start::StartError),
+    Start(#[from] crate::calibrate::sensed::released::StartError),
     /// What follows.
     #[error(transparent)]
     Halted(#[from] Halt),
