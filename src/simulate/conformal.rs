@@ -1,6 +1,7 @@
 //! Where laws and stiffnesses of conforming surfaces end.
 
 use super::checks::Finding;
+use super::plausible::own_key;
 use crate::contact::StiffnessForm;
 use crate::engine::TYPICAL_IMPACT_SPEED;
 use crate::mechanism::Bearing;
@@ -49,7 +50,7 @@ fn too_loose(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
                 joint.name
             );
             let help = "take the law \"liu\", which holds for any clearance, or a smaller clearance";
-            Finding::warning(scenario.problem("contact.law", message, help))
+            Finding::warning(scenario.problem(&law_key(scenario, &joint.name), message, help))
         })
     })
 }
@@ -69,7 +70,13 @@ fn too_deep(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
                 joint.name
             );
             let help = "take the law \"liu\", which holds for small clearances, or a larger clearance";
-            Finding::warning(scenario.problem("contact.law", message, help))
+            Finding::warning(scenario.problem(&law_key(scenario, &joint.name), message, help))
         })
     })
+}
+
+/// Where the law of a joint is written.
+fn law_key(scenario: &Scenario, joint: &str) -> String {
+    own_key(scenario, joint, "law", |joint| joint.law.is_some())
+        .unwrap_or_else(|| "contact.law".to_owned())
 }

@@ -2,8 +2,9 @@
 
 use super::checks::Finding;
 use super::three_rpr::angle_key;
+use crate::contact::Clearance;
 use crate::effects::Setting;
-use crate::mechanism::{Attachment, Mechanism};
+use crate::mechanism::{Attachment, Bearing, Mechanism};
 use crate::model::Machine;
 use crate::scenario::{self, Joint, Revolute, Scenario, Shape};
 use std::f64::consts::TAU;
@@ -23,7 +24,7 @@ const LARGEST_FRICTION: f64 = 2.0;
 /// Density in kg/m³ of the lightest foams that machines are made of.
 const SMALLEST_DENSITY: f64 = 10.0;
 
-/// Length in m that no machine of rigid links has; the longest booms of cranes do.
+/// Length in m of the longest booms of cranes.
 const LARGEST_MACHINE: f64 = 100.0;
 
 /// What is hardly meant.
@@ -34,12 +35,13 @@ pub(super) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
     found.extend(starts(scenario, &machine.mechanism));
     found.extend(masses(scenario, &machine.mechanism));
     found.extend(idle(scenario, machine.ideal.mechanism()));
-    found.extend(written(scenario, machine.mechanism.size()));
+    found.extend(written(scenario));
+    found.extend(rings(scenario, &machine.mechanism));
     found
 }
 
-/// What is written in another unit than SI; `size` is the machine's, m.
-fn written(scenario: &Scenario, size: f64) -> Vec<Finding> {
+/// What is written in another unit than SI.
+fn written(scenario: &Scenario) -> Vec<Finding> {
     let mut found = Vec::new();
     let mut doubt = |key: String, message: String, help: &str| {
         found.push(Finding::warning(scenario.problem(&key, message, help)));
@@ -57,10 +59,6 @@ fn written(scenario: &Scenario, size: f64) -> Vec<Finding> {
         let help = format!("expected m: {length} mm are {}", length / 1e3);
         doubt(key, format!("makes a machine of {length} m"), &help);
     }
-    for (key, radius) in rings(scenario).filter(|(_, radius)| *radius > size) {
-        let message = format!("is {radius} m, in a machine of {size:.3} m");
-        doubt(key, message, &format!("expected m: {radius} mm are {}", radius / 1e3));
-    }
     for (key, density) in densities(scenario).filter(|(_, density)| *density < SMALLEST_DENSITY) {
         let message = format!("is {density} kg/m³, lighter than foam");
         doubt(key, message, &format!("expected kg/m³: {density} g/cm³ are {}", density * 1e3));
@@ -68,28 +66,53 @@ fn written(scenario: &Scenario, size: f64) -> Vec<Finding> {
     found
 }
 
-/// Keys of what is one for each joint of a described machine, and its value where it is written.
-fn of_revolutes(
-    scenario: &Scenario,
-    key: &'static str,
-    value: fn(&Revolute) -> Option<f64>,
-) -> impl Iterator<Item = (String, f64)> {
-    let joints = scenario.mechanism.described().map_or(&[][..], |described| &described.joints);
-    joints.iter().enumerate().filter_map(move |(i, joint)| match joint {
-        Joint::Revolute(joint) => Some((format!("joint.{i}.{key}"), value(joint)?)),
-        Joint::Prismatic(_) | Joint::Fixed(_) => None,
-    })
-}
-
 fn frictions(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
     let all = scenario.joints.friction.values().iter().copied().fold(0.0, f64::max);
-    let own = of_revolutes(scenario, "friction", |joint| joint.friction);
+    let joints = scenario.mechanism.described().map_or(&[][..], |described| &described.joints);
+    let own = joints.iter().enumerate().filter_map(|(i, joint)| {
+        let friction = match joint {
+            Joint::Revolute(joint) => joint.friction,
+            Joint::Prismatic(joint) => joint.friction,
+            Joint::Fixed(_) => None,
+        };
+        Some((format!("joint.{i}.friction"), friction?))
+    });
     [("joints.friction".to_owned(), all)].into_iter().chain(own)
 }
 
-fn rings(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
-    let own = of_revolutes(scenario, "bearing_radius", |joint| joint.bearing_radius);
-    [("joints.bearing_radius".to_owned(), scenario.joints.bearing_radius)].into_iter().chain(own)
+/// Rings larger than the whole machine; those of ideal joints are none.
+fn rings(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
+    let size = mechanism.size();
+    let large = mechanism.revolutes.iter().filter_map(|joint| match &joint.bearing {
+        Bearing::Clearance(Clearance { bearing_radius, .. })
+        | Bearing::Native { bearing_radius, .. } => Some((&joint.name, *bearing_radius)),
+        Bearing::Ideal => None,
+    });
+    let mut told = Vec::new();
+    for (name, radius) in large.filter(|(_, radius)| *radius > size) {
+        let key = own_key(scenario, name, "bearing_radius", |joint| joint.bearing_radius.is_some())
+            .unwrap_or_else(|| "joints.bearing_radius".to_owned());
+        let message = format!("is {radius} m, in a machine of {size:.3} m");
+        let help = format!("expected m: {radius} mm are {}", radius / 1e3);
+        told.push((key.clone(), Finding::warning(scenario.problem(&key, message, &help))));
+    }
+    told.dedup_by(|a, b| a.0 == b.0);
+    told.into_iter().map(|(_, finding)| finding).collect()
+}
+
+/// The key of what a described revolute joint says for itself, where it does.
+pub(super) fn own_key(
+    scenario: &Scenario,
+    name: &str,
+    key: &str,
+    says: fn(&Revolute) -> bool,
+) -> Option<String> {
+    let joints = &scenario.mechanism.described()?.joints;
+    let place = joints.iter().position(|joint| joint.name() == name)?;
+    match &joints[place] {
+        Joint::Revolute(joint) if says(joint) => Some(format!("joint.{place}.{key}")),
+        _ => None,
+    }
 }
 
 fn lengths(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {

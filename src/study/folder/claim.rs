@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 const MARK: &str = ".freeplay-unfinished";
 
 const MARK_TEXT: &str = "freeplay is writing a result here. If none is at work, one was killed: the next that writes a \
-     result of this name clears this folder, and so may you.\n";
+     result beside this folder clears it, and so may you.\n";
 
 /// What is added to the name of a result in the making.
 const PARTIAL: &str = ".partial";
