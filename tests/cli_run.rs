@@ -263,6 +263,25 @@ fn what_takes_days_or_fills_the_disk_is_asked_for() {
     place.good("run --duration 0.02 --yes --out r --quiet");
 }
 
+/// What makes many runs is judged by the first seconds of them, those that break down at once left out.
+#[test]
+fn many_runs_that_take_days_are_asked_for() {
+    let place = Place::new();
+    place.write("a.toml", "mechanism.kind = \"3rpr\"\nsimulation.duration = 8e4\n");
+    let wear = "wear --cycles 1e6 --set contact.wear_coefficient=1e-14 --duration 8e4";
+    for line in [
+        "compare --duration 8e4",
+        "compare --laws hertz,liu --duration 8e4",
+        "paper --duration 8e4",
+        "diff a.toml a.toml --set joints.clearance=1e-4",
+        wear,
+    ] {
+        place.refused(&format!("{line} --out r"), &["of computing", "--yes"]);
+        assert!(!place.path("r").exists(), "{line}");
+    }
+    place.good(&wear.replace("8e4", "1.2 --yes --out r --quiet"));
+}
+
 #[test]
 fn a_table_that_ends_early_is_warned_about() {
     let place = Place::new();

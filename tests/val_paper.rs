@@ -6,6 +6,7 @@ mod common;
 
 use common::Curve;
 use freeplay::scenario::Source;
+use freeplay::study::Watch;
 use freeplay::study::paper::{CLEARANCES, Item, case, scenarios};
 
 const PHASES: usize = 32;
@@ -31,7 +32,7 @@ fn statistics_of_the_study_are_those_of_the_independent_solver() {
         let row = (0..clearances.len())
             .find(|&i| gravity[i] == 0.0 && clearances[i] == clearance)
             .expect("every clearance of the study is in the table");
-        let case = case(&assumed, clearance, PHASES, &|_| {}).unwrap();
+        let case = case(&assumed, clearance, PHASES, &Watch::new(1.0, true, &mut |_| {})).unwrap();
         assert_eq!(case.halted, 0);
         for (name, item) in COLUMNS {
             let (expected, expected_sem) =

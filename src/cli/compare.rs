@@ -2,7 +2,7 @@
 
 use super::compare_laws::{self, figure};
 use super::failure::{Failure, refuse_errors, refuse_faults, warn_of_seed};
-use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
+use super::options::{CostOptions, FolderOptions, PrintOptions, ScenarioOptions};
 use super::output;
 use super::progress::Progress;
 use super::table::{paragraph, table};
@@ -34,7 +34,7 @@ use std::fmt::Write as _;
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    scenario: ScenarioOptions,
+    pub(super) scenario: ScenarioOptions,
     /// Fixed steps in seconds, separated by commas; at most 8, each from 1e-7 to 1e-4
     #[arg(
         long,
@@ -45,14 +45,16 @@ pub(super) struct Arguments {
     steps: String,
     /// Starts over which statistics are taken: points around a circle, otherwise tiny displacements
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(2..=1000))]
-    starts: u16,
+    pub(super) starts: u16,
     /// Compare contact laws with each other instead: `all`, or names separated by commas
     #[arg(long, value_name = "LAW,…", conflicts_with = "steps")]
     laws: Option<String>,
     #[command(flatten)]
-    folder: FolderOptions,
+    pub(super) cost: CostOptions,
     #[command(flatten)]
-    print: PrintOptions,
+    pub(super) folder: FolderOptions,
+    #[command(flatten)]
+    pub(super) print: PrintOptions,
 }
 
 const EXAMPLES: &str = "\
@@ -73,8 +75,7 @@ const SHORTEST_STEP: f64 = 1e-7;
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(list) = &arguments.laws {
-        let Arguments { scenario, starts, folder, print, .. } = arguments;
-        return compare_laws::main(list, scenario, usize::from(*starts), folder, print);
+        return compare_laws::main(list, arguments);
     }
     let steps = steps(&arguments.steps).map_err(|problem| Failure::Input(vec![problem]))?;
     let options = Options { steps, starts: arguments.starts.into() };
@@ -88,10 +89,10 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     warn_of_step(&scenario, "--steps says which fixed steps are compared");
     let folder = arguments.folder.prepare("compare", &scenario.name, COMPARE_FILE)?;
 
-    let mut progress = Progress::new(simulated, arguments.print.quiet);
-    let compared = compare(&scenario, &options, folder, &mut |t| progress.reached(t));
-    progress.clear();
-    let compared = compared?;
+    let (yes, quiet) = (arguments.cost.yes, arguments.print.quiet);
+    let compared = Progress::during(simulated, yes, quiet, |watch| {
+        compare(&scenario, &options, folder, watch)
+    })?;
     arguments.print.result(&compared.json, || text(&compared))?;
     refuse_faults(&compared.comparison.faults())
 }

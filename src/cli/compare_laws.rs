@@ -1,8 +1,7 @@
 //! `freeplay compare --laws`: one motion under several contact laws.
 
-use super::compare::warn_of_step;
+use super::compare::{Arguments, warn_of_step};
 use super::failure::{Failure, refuse_errors, warn_of_seed};
-use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
 use super::progress::Progress;
 use super::table::{paragraph, table};
 use crate::contact::laws::{ALL, Kind, named};
@@ -13,25 +12,20 @@ use crate::study::compare::by_law::{Done, LAWS_COMPARED_FILE, compare_laws, simu
 use crate::study::compare::{Mean, QUANTITIES, in_words};
 
 /// The comparison of laws with each other.
-pub(super) fn main(
-    list: &str,
-    scenario: &ScenarioOptions,
-    starts: usize,
-    folder: &FolderOptions,
-    print: &PrintOptions,
-) -> Result<(), Failure> {
+pub(super) fn main(list: &str, arguments: &Arguments) -> Result<(), Failure> {
+    let starts = usize::from(arguments.starts);
     let kinds = kinds(list).map_err(|problem| Failure::Input(vec![problem]))?;
-    let scenario = scenario.load()?;
+    let scenario = arguments.scenario.load()?;
     warn_of_seed(&scenario);
     warn_of_step(&scenario, "laws are compared at simulation.tolerance");
     refuse_errors(findings(&scenario, &mut assemble(&scenario)?))?;
     let simulated = simulated_time(&scenario, &kinds, starts)?;
-    let folder = folder.prepare("compare-laws", &scenario.name, LAWS_COMPARED_FILE)?;
-    let mut progress = Progress::new(simulated, print.quiet);
-    let done = compare_laws(&scenario, &kinds, starts, folder, &mut |t| progress.reached(t));
-    progress.clear();
-    let done = done?;
-    print.result(&done.json, || text(&done))?;
+    let folder = arguments.folder.prepare("compare-laws", &scenario.name, LAWS_COMPARED_FILE)?;
+    let (yes, quiet) = (arguments.cost.yes, arguments.print.quiet);
+    let done = Progress::during(simulated, yes, quiet, |watch| {
+        compare_laws(&scenario, &kinds, starts, folder, watch)
+    })?;
+    arguments.print.result(&done.json, || text(&done))?;
     Ok(())
 }
 

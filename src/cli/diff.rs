@@ -1,7 +1,7 @@
 //! `freeplay diff`: what differs between two models, or two results.
 
 use super::failure::{Failure, refuse_errors};
-use super::options::{FolderOptions, PrintOptions, Sets};
+use super::options::{CostOptions, FolderOptions, PrintOptions, Sets};
 use super::output;
 use super::progress::Progress;
 use super::table::{paragraph, table};
@@ -35,6 +35,8 @@ pub(super) struct Arguments {
     starts: u16,
     #[command(flatten)]
     sets: Sets,
+    #[command(flatten)]
+    cost: CostOptions,
     #[command(flatten)]
     folder: FolderOptions,
     #[command(flatten)]
@@ -75,11 +77,10 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
             }
             let starts = usize::from(arguments.starts);
             let folder = prepare()?;
-            let mut progress = Progress::new(simulated_time(&sides, starts), arguments.print.quiet);
-            let done =
-                diff_models(&sides, names.clone(), starts, folder, &mut |t| progress.reached(t));
-            progress.clear();
-            done?
+            let (yes, quiet) = (arguments.cost.yes, arguments.print.quiet);
+            Progress::during(simulated_time(&sides, starts), yes, quiet, |watch| {
+                diff_models(&sides, names.clone(), starts, folder, watch)
+            })?
         }
     };
     arguments.print.result(&done.json, || text(&done))?;

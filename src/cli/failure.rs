@@ -86,7 +86,7 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
             RunError::Folder(error) => error.into(),
-            RunError::TooMuch(_) => Failure::Input(vec![error.to_string()]),
+            RunError::TooMuch(_) | RunError::TooLong(_) => Failure::Input(vec![error.to_string()]),
             error => Failure::Other(error.to_string()),
         }
     }

@@ -157,6 +157,15 @@ pub(super) struct FolderOptions {
     pub force: bool,
 }
 
+/// Whether it matters how long it takes.
+#[derive(Debug, Args)]
+pub(super) struct CostOptions {
+    /// Go on although it will take more than 10 min, as judged by its first minute; without this it
+    /// ends there, with exit code 2
+    #[arg(long)]
+    pub yes: bool,
+}
+
 /// What is printed.
 #[derive(Debug, Args)]
 pub(super) struct PrintOptions {

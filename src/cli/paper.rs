@@ -1,7 +1,7 @@
 //! `freeplay paper`: the paper's study.
 
 use super::failure::{Failure, refuse_faults};
-use super::options::{FolderOptions, Overrides, PrintOptions};
+use super::options::{CostOptions, FolderOptions, Overrides, PrintOptions};
 use super::progress::Progress;
 use super::table::{paragraph, table};
 use crate::report::number;
@@ -27,6 +27,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(2..=1000))]
     phases: u16,
     #[command(flatten)]
+    cost: CostOptions,
+    #[command(flatten)]
     folder: FolderOptions,
     #[command(flatten)]
     print: PrintOptions,
@@ -45,10 +47,9 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.folder.prepare("paper", &scenarios[0].1.name, PAPER_FILE)?;
 
     let simulated = simulated_time(&scenarios, phases);
-    let mut progress = Progress::new(simulated, arguments.print.quiet);
-    let studied = paper(&scenarios, phases, folder, &mut |t| progress.reached(t));
-    progress.clear();
-    let studied = studied?;
+    let (yes, quiet) = (arguments.cost.yes, arguments.print.quiet);
+    let studied =
+        Progress::during(simulated, yes, quiet, |watch| paper(&scenarios, phases, folder, watch))?;
     arguments.print.result(&studied.json, || text(&studied))?;
     refuse_faults(&studied.paper.faults())
 }

@@ -1,6 +1,7 @@
 //! The progress bars: how far a command has come, and how long the rest will take.
 
 use crate::measure::shown::shown;
+use crate::study::Watch;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::sync::Once;
@@ -41,6 +42,20 @@ impl Progress {
     pub fn counted(duration: f64, unit: &'static str, quiet: bool) -> Self {
         let bar = bar(TICKS as u64, "{bar:40} {msg}, {eta} left", quiet);
         Self { bar, duration, unit, ticks: 0 }
+    }
+
+    /// Does work of so many seconds of simulated time and shows how far it has come; what would take too long is ended
+    /// where nobody said yes.
+    pub fn during<T>(duration: f64, yes: bool, quiet: bool, work: impl FnOnce(&Watch) -> T) -> T {
+        Self::new(duration, quiet).watched(yes, work)
+    }
+
+    /// Does work that counts to what the bar counts to.
+    pub fn watched<T>(&mut self, yes: bool, work: impl FnOnce(&Watch) -> T) -> T {
+        let duration = self.duration;
+        let result = work(&Watch::new(duration, yes, &mut |come| self.reached(come)));
+        self.clear();
+        result
     }
 
     /// The run has reached `t` s.

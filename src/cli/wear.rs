@@ -1,7 +1,7 @@
 //! `freeplay wear`: bearing rings over many cycles.
 
 use super::failure::{Failure, refuse_errors};
-use super::options::{FolderOptions, PrintOptions, ScenarioOptions};
+use super::options::{CostOptions, FolderOptions, PrintOptions, ScenarioOptions};
 use super::output;
 use super::progress::Progress;
 use super::table::table;
@@ -10,7 +10,6 @@ use crate::simulate::{assemble, findings};
 use crate::study::wear::{Predicted, Request, WEAR_PREDICTED_FILE, WearError, period_of, wear};
 use clap::Args;
 use std::fmt::Write as _;
-use std::sync::atomic::AtomicBool;
 
 /// Predict how bearing rings wear over many cycles
 ///
@@ -39,6 +38,8 @@ pub(super) struct Arguments {
     /// Largest error of a jump over cycles, as a share of a joint's clearance
     #[arg(long, value_name = "SHARE", default_value_t = 0.01)]
     tolerance: f64,
+    #[command(flatten)]
+    cost: CostOptions,
     #[command(flatten)]
     folder: FolderOptions,
     #[command(flatten)]
@@ -105,11 +106,8 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.folder.prepare("wear", &scenario.name, WEAR_PREDICTED_FILE)?;
     let request = Request { cycles, period, tolerance };
     let mut progress = Progress::counted(cycles, "cycles", arguments.print.quiet);
-    // A signal ends the process: half a prediction is none.
-    let never = AtomicBool::new(false);
-    let predicted = wear(&scenario, request, folder, &never, &mut |n| progress.reached(n));
-    progress.clear();
-    let predicted = predicted?;
+    let predicted =
+        progress.watched(arguments.cost.yes, |watch| wear(&scenario, request, folder, watch))?;
     arguments.print.result(&predicted.json, || text(&predicted))?;
     Ok(())
 }

@@ -22,6 +22,6 @@ pub use check::{
     Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Engines, Found, Ideal, check,
 };
 pub use folder::{Folder, FolderError, abandon, default_name};
-pub use forecast::Forecast;
+pub use forecast::{Forecast, Watch};
 pub use run::{Outcome, Recorded, RunError, SUMMARY_FILE, Terms, recorded, run};
 pub(crate) use run::{PAGE_FILE, refused};

@@ -62,6 +62,12 @@ pub enum RunError {
          simulation.output_interval (rows) or simulation.tolerance (steps)"
     )]
     TooMuch(Forecast),
+    /// Many runs would take long, and nobody said that this is meant.
+    #[error(
+        "this would {0}, judged by its beginning; say --yes if that is meant, or take fewer or shorter runs, or a larger \
+         simulation.tolerance"
+    )]
+    TooLong(Forecast),
     /// A picture cannot be drawn.
     #[error(transparent)]
     Picture(#[from] ReportError),

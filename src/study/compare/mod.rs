@@ -24,6 +24,7 @@ pub use verdict::{Use, Verdict, in_words};
 
 use super::chaos::{self, Chaos, Look};
 use super::folder::Folder;
+use super::forecast::Watch;
 use super::run::{PAGE_FILE, RunError, keep_scenario, refused, scenario_files};
 use crate::engine;
 use crate::scenario::{Law, Problem, Scenario};
@@ -32,7 +33,6 @@ use plan::{Plan, plan};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::fs;
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant as Clock;
 
 /// Time in s between two looks at a run: fine enough for the forces of a hit, which lasts 3e-4 s, to
@@ -76,8 +76,8 @@ pub fn simulated_time(scenario: &Scenario, options: &Options) -> Result<f64, Pro
     Ok(plan.runs().len() as f64 * scenario.simulation.duration)
 }
 
-/// Compares the contact models on a scenario and writes everything about it into `folder`. `progress`
-/// is told the time simulated so far, in s.
+/// Compares the contact models on a scenario and writes everything about it into `folder`. `watch`
+/// sees the time simulated so far, in s.
 ///
 /// # Errors
 /// [`CompareError`]; the folder is left as it was.
@@ -85,24 +85,20 @@ pub fn compare(
     scenario: &Scenario,
     options: &Options,
     folder: Folder,
-    progress: &mut (dyn FnMut(f64) + Send),
+    watch: &Watch,
 ) -> Result<Compared, CompareError> {
     let started = Clock::now();
     let plan = plan(scenario, options)?;
     let jobs = plan.runs();
-    let told = Mutex::new((0.0, progress));
     let results = jobs
         .par_iter()
         .map(|&(start, row)| {
             let row = plan.rows[row];
             let mut machine = machine(scenario, row.law, row.control, start, plan.starts)?;
-            Ok(measure(scenario, &mut machine, &mut |part| {
-                let (done, progress) = &mut *told.lock().unwrap_or_else(PoisonError::into_inner);
-                *done += part;
-                progress(*done);
-            }))
+            Ok(measure(scenario, &mut machine, watch))
         })
         .collect::<Result<Vec<Measured>, Problem>>()?;
+    watch.ended()?;
     let looks = looks(scenario, &plan)?;
 
     // By row, then by start.

@@ -5,7 +5,8 @@ use super::quantities::COUNT;
 use crate::engine::Instant;
 use crate::mechanism::JointIndex;
 use crate::scenario::Scenario;
-use crate::simulate::{Machine, Summary, measured};
+use crate::simulate::{Machine, Summary, measured_until};
+use crate::study::Watch;
 use nalgebra::Vector2;
 
 /// Rows in a mean of the acceleration: 10 ms, long against a hit and short against a motion.
@@ -28,27 +29,28 @@ pub struct Measured {
     pub forces: Vec<f64>,
 }
 
-/// Runs a machine and measures it; `progress` is told how much time was simulated since it was told
-/// last, in s.
-pub fn measure(
-    scenario: &Scenario,
-    machine: &mut Machine,
-    progress: &mut dyn FnMut(f64),
-) -> Measured {
+/// Runs a machine and measures it; `watch` sees how much time was simulated, in s, and may end it.
+pub fn measure(scenario: &Scenario, machine: &mut Machine, watch: &Watch) -> Measured {
     let settle = scenario.simulation.settle();
     let mut probe = Probe::default();
     let mut told = 0.0;
-    let summary = measured(scenario, machine, &mut |mechanism, instant, ideal| {
-        if instant.t >= settle {
-            let platform = mechanism.output_state(instant.states).twist.xy();
-            probe.row(instant, platform - ideal.velocity);
-        }
-        if instant.t - told > 0.01 {
-            progress(instant.t - told);
-            told = instant.t;
-        }
-    });
-    progress(machine.schedule.duration - told);
+    let summary =
+        measured_until(scenario, machine, watch.stop(), &mut |mechanism, instant, ideal| {
+            if instant.t >= settle {
+                let platform = mechanism.output_state(instant.states).twist.xy();
+                probe.row(instant, platform - ideal.velocity);
+            }
+            if instant.t - told > 0.01 {
+                watch.come(instant.t - told);
+                told = instant.t;
+            }
+        });
+    let left = machine.schedule.duration - told;
+    if summary.halted.is_some() {
+        watch.spared(left)
+    } else {
+        watch.come(left)
+    }
     probe.finish(summary, machine)
 }
 

@@ -8,11 +8,11 @@ use crate::measure::student::t95;
 use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
 use crate::scenario::{Problem, Scenario};
 use crate::simulate::{Provenance, measured};
+use crate::study::Watch;
 use crate::study::compare::{Mean, Measured, QUANTITIES, machine, measure, tolerance};
 use crate::study::folder::Folder;
 use crate::study::run::RunError;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant as Clock;
 
 /// Half widths of a 95 % interval by which means must differ: a third of a per cent of differences by chance exceed it
@@ -28,7 +28,7 @@ pub fn simulated_time(sides: &[Side; 2], starts: usize) -> f64 {
     sides.iter().map(|side| side.scenario().simulation.duration).sum::<f64>() * (starts + 1) as f64
 }
 
-/// Simulates both from several starts and writes what differs into `folder`. `progress` is told the time simulated so
+/// Simulates both from several starts and writes what differs into `folder`. `watch` sees the time simulated so
 /// far, in s.
 ///
 /// # Errors
@@ -38,11 +38,11 @@ pub fn diff_models(
     names: [String; 2],
     starts: usize,
     folder: Folder,
-    progress: &mut (dyn FnMut(f64) + Send),
+    watch: &Watch,
 ) -> Result<Done, DiffError> {
     let started = Clock::now();
     let both = [0, 1].map(|i| sides[i].scenario());
-    let runs = simulate(both, starts, progress)?;
+    let runs = simulate(both, starts, watch)?;
     let rows = rows(&runs, starts);
     let of = |i: usize| Provenance::of(both[i]);
     let mut diff = Diff {
@@ -71,24 +71,20 @@ pub fn diff_models(
 fn simulate(
     both: [&Scenario; 2],
     starts: usize,
-    progress: &mut (dyn FnMut(f64) + Send),
-) -> Result<[Vec<Measured>; 2], Problem> {
+    watch: &Watch,
+) -> Result<[Vec<Measured>; 2], DiffError> {
     let jobs: Vec<(usize, usize)> =
         (0..starts).flat_map(|start| [(0, start), (1, start)]).collect();
-    let told = Mutex::new((0.0, progress));
     let results = jobs
         .into_par_iter()
         .map(|(side, start)| {
             let scenario = both[side];
             let control = tolerance(scenario);
             let mut machine = machine(scenario, scenario.contact.law, control, start, starts)?;
-            Ok(measure(scenario, &mut machine, &mut |part| {
-                let (done, progress) = &mut *told.lock().unwrap_or_else(PoisonError::into_inner);
-                *done += part;
-                progress(*done);
-            }))
+            Ok(measure(scenario, &mut machine, watch))
         })
         .collect::<Result<Vec<Measured>, Problem>>()?;
+    watch.ended()?;
     let of = |side: usize| results.iter().skip(side).step_by(2).cloned().collect();
     Ok([of(0), of(1)])
 }

@@ -21,6 +21,7 @@ pub use variants::{CLEARANCES, Variant, scenarios};
 
 use super::chaos;
 use super::folder::Folder;
+use super::forecast::Watch;
 use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused, to_json};
 use crate::scenario::{Problem, Problems, Scenario};
 use crate::simulate::Provenance;
@@ -29,7 +30,6 @@ use judgement::judge;
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::fs;
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant as Clock;
 use variants::{LARGE, machine};
 
@@ -71,7 +71,7 @@ pub fn simulated_time(scenarios: &[(Variant, Scenario)], phases: usize) -> f64 {
 }
 
 /// Simulates all variants and writes everything about them into `folder`. `scenarios` are those of
-/// [`scenarios`], the scenario as it stands first. `progress` is told the time simulated so far, in s.
+/// [`scenarios`], the scenario as it stands first. `watch` sees the time simulated so far, in s.
 ///
 /// # Errors
 /// [`PaperError`]; the folder is left as it was.
@@ -79,19 +79,14 @@ pub fn paper(
     scenarios: &[(Variant, Scenario)],
     phases: usize,
     folder: Folder,
-    progress: &mut (dyn FnMut(f64) + Send),
+    watch: &Watch,
 ) -> Result<Studied, PaperError> {
     let started = Clock::now();
-    let told = Mutex::new((0.0, progress));
-    let told = |part: f64| {
-        let (done, progress) = &mut *told.lock().unwrap_or_else(PoisonError::into_inner);
-        *done += part;
-        progress(*done);
-    };
     let variants = scenarios
         .par_iter()
-        .map(|(variant, scenario)| variant_result(variant, scenario, phases, &told))
+        .map(|(variant, scenario)| variant_result(variant, scenario, phases, watch))
         .collect::<Result<Vec<_>, Problem>>()?;
+    watch.ended()?;
     let base = &scenarios[0].1;
     let claims = CLAIMS.iter().enumerate().map(|(i, claim)| ClaimResult {
         label: claim.label,
@@ -136,11 +131,11 @@ fn variant_result(
     variant: &Variant,
     scenario: &Scenario,
     phases: usize,
-    progress: &(dyn Fn(f64) + Sync),
+    watch: &Watch,
 ) -> Result<VariantResult, Problem> {
     let cases = CLEARANCES
         .par_iter()
-        .map(|&clearance| case(scenario, clearance, phases, progress))
+        .map(|&clearance| case(scenario, clearance, phases, watch))
         .collect::<Result<Vec<_>, Problem>>()?;
     Ok(VariantResult {
         key: variant.key,
@@ -152,8 +147,7 @@ fn variant_result(
     })
 }
 
-/// All starts of a scenario at one clearance in m. `progress` is told how much time was simulated
-/// since it was told last, in s.
+/// All starts of a scenario at one clearance in m. `watch` sees how much time was simulated, in s.
 ///
 /// # Errors
 /// A motion table that cannot be read.
@@ -161,13 +155,13 @@ pub fn case(
     scenario: &Scenario,
     clearance: f64,
     phases: usize,
-    progress: &(dyn Fn(f64) + Sync),
+    watch: &Watch,
 ) -> Result<CaseResult, Problem> {
     let runs = (0..phases)
         .into_par_iter()
         .map(|start| {
             let mut machine = machine(scenario, clearance, start, phases)?;
-            let mut measured = probe::measure(scenario, &mut machine, progress);
+            let mut measured = probe::measure(scenario, &mut machine, watch);
             // Chaos is claimed of the paper's machine.
             if clearance == LARGE
                 && let Some(run) = &mut measured

@@ -3,7 +3,8 @@
 use super::items::{COUNT, Item, JUMP};
 use crate::engine::Instant;
 use crate::scenario::Scenario;
-use crate::simulate::{IdealInstant, Machine, measured};
+use crate::simulate::{IdealInstant, Machine, measured_until};
+use crate::study::Watch;
 use crate::study::compare::{Forces, SAMPLE_INTERVAL, quantile};
 use nalgebra::Vector3;
 use std::collections::VecDeque;
@@ -29,27 +30,28 @@ pub struct Measured {
     pub faults: Vec<String>,
 }
 
-/// Runs a machine and measures it. `progress` is told how much time was simulated since it was told
-/// last, in s. `None` if the run broke down.
-pub fn measure(
-    scenario: &Scenario,
-    machine: &mut Machine,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Option<Measured> {
+/// Runs a machine and measures it. `watch` sees how much time was simulated, in s, and may
+/// end it. `None` if the run broke down or was ended.
+pub fn measure(scenario: &Scenario, machine: &mut Machine, watch: &Watch) -> Option<Measured> {
     let settle = scenario.simulation.settle();
     let mut probe = Probe::default();
     let mut told = 0.0;
-    let s = measured(scenario, machine, &mut |mechanism, instant, ideal| {
+    let s = measured_until(scenario, machine, watch.stop(), &mut |mechanism, instant, ideal| {
         if instant.t >= settle {
             probe.row(instant, mechanism.output, ideal);
         }
         if instant.t - told > 0.02 {
-            progress(instant.t - told);
+            watch.come(instant.t - told);
             told = instant.t;
         }
     });
-    progress(machine.schedule.duration - told);
+    let left = machine.schedule.duration - told;
     if s.halted.is_some() {
+        watch.spared(left)
+    } else {
+        watch.come(left)
+    }
+    if s.halted.is_some() || s.interrupted {
         return None;
     }
 

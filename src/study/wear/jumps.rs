@@ -45,7 +45,7 @@ pub(super) fn predict(
     start: Vec<Play>,
     request: Request,
     rub: &mut Rub,
-    progress: &mut dyn FnMut(f64),
+    come: &dyn Fn(f64),
 ) -> Result<Vec<Stage>, WearError> {
     let Request { cycles, tolerance, .. } = request;
     let errors = vec![0.0; rings.len()];
@@ -72,13 +72,14 @@ pub(super) fn predict(
             }
             continue;
         }
+        let jumped = jump;
         let cycles = if last { cycles } else { now.cycles + jump };
         let errors = now.errors.iter().zip(apart).map(|(sum, apart)| sum + apart).collect();
         jump *= factor;
         // The last stage is the end: nothing starts from it, and the run before says what is rubbed there.
         let rubbed = if last { rubbed } else { rub(&plays, cycles)? };
         now = Stage { cycles, plays, rubbed, errors };
-        progress(now.cycles);
+        come(jumped);
         stages.push(now.clone());
     }
     Ok(stages)
@@ -134,7 +135,7 @@ mod tests {
             Ok(vec![vec![per_direction * grown; WEAR_DIRECTIONS]])
         };
         let start = vec![Play::of(ring.clearance, None, WEAR_DIRECTIONS)];
-        let stages = predict(&[ring], start, request(tolerance), rub, &mut |_| {}).unwrap();
+        let stages = predict(&[ring], start, request(tolerance), rub, &|_| {}).unwrap();
         let exact = 1e-4 * (rate * CYCLES).exp();
         (exact, stages.last().unwrap().clone(), stages.len())
     }
@@ -164,7 +165,7 @@ mod tests {
             Ok(vec![rubbed])
         };
         let start = vec![Play::of(1e-4, None, WEAR_DIRECTIONS)];
-        let ended = predict(&[ring()], start, request(1e-4), rub, &mut |_| {});
+        let ended = predict(&[ring()], start, request(1e-4), rub, &|_| {});
         assert!(matches!(ended, Err(WearError::TooShort { .. })), "{ended:?}");
     }
 }

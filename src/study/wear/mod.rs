@@ -17,6 +17,7 @@ pub use result::{JointWear, RingWear, WearSummary};
 pub(super) use around::{WEAR_FILE, wear_csv, wear_picture, wearing};
 
 use super::folder::Folder;
+use super::forecast::Watch;
 use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused, to_json};
 use crate::contact::Play;
 use crate::engine;
@@ -27,7 +28,6 @@ use rings::Ring;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant as Clock;
 
 /// The JSON file of a prediction of wear, by which its folder is known.
@@ -88,9 +88,6 @@ pub enum WearError {
         /// Length of the jump that was tried.
         jump: f64,
     },
-    /// It was told to stop.
-    #[error("interrupted")]
-    Interrupted,
 }
 
 impl From<ReportError> for WearError {
@@ -105,7 +102,7 @@ pub fn period_of(scenario: &Scenario) -> Option<f64> {
     rings::period(scenario)
 }
 
-/// Predicts wear and writes everything about it into `folder`. `progress` is told the cycles reached.
+/// Predicts wear and writes everything about it into `folder`. `watch` sees the cycles reached.
 ///
 /// # Errors
 /// [`WearError`]; the folder is left as it was.
@@ -113,8 +110,7 @@ pub fn wear(
     scenario: &Scenario,
     request: Request,
     folder: Folder,
-    stop: &AtomicBool,
-    progress: &mut dyn FnMut(f64),
+    watch: &Watch,
 ) -> Result<Predicted, WearError> {
     let started = Clock::now();
     let expanded = expand(scenario)?;
@@ -122,11 +118,11 @@ pub fn wear(
     let rings = rings::of(scenario, &expanded, &machine)?;
     let start = rings.iter().map(|ring| ring.play(&machine.mechanism)).collect();
     let mut rub = |plays: &[Play], cycles: f64| {
-        rubbed(scenario, &machine, &rings, plays, request.period, stop)
-            .map_err(|reason| WearError::Halted { cycles, reason })?
-            .ok_or(WearError::Interrupted)
+        let rubbed = rubbed(scenario, &machine, &rings, plays, request.period, watch);
+        watch.ended()?;
+        rubbed.map_err(|reason| WearError::Halted { cycles, reason })
     };
-    let stages = jumps::predict(&rings, start, request, &mut rub, progress)?;
+    let stages = jumps::predict(&rings, start, request, &mut rub, &|cycles| watch.come(cycles))?;
     let mut summary = result::summary(scenario, &rings, request, &stages);
     let pictures = page::pictures(&rings, &stages)?;
     let texts =
@@ -149,16 +145,15 @@ pub fn wear(
     Ok(Predicted { summary, json, folder })
 }
 
-/// Force times sliding of each ring in J per cycle, in a run with rings that leave these rooms; none where it was told
-/// to stop. The start that is left out of a run's figures is left out here, too.
+/// Force times sliding of each ring in J per cycle, in a run with rings that leave these rooms. The start that is left out of a run's figures is left out here, too.
 fn rubbed(
     scenario: &Scenario,
     machine: &Machine,
     rings: &[Ring],
     plays: &[Play],
     period: f64,
-    stop: &AtomicBool,
-) -> Result<Option<Vec<Vec<f64>>>, String> {
+    watch: &Watch,
+) -> Result<Vec<Vec<f64>>, String> {
     let mut mechanism = machine.mechanism.clone();
     for (ring, play) in rings.iter().zip(plays) {
         mechanism.revolutes[ring.joint].out_of_round = play.shape(ring.clearance);
@@ -166,21 +161,22 @@ fn rubbed(
     let settle = scenario.simulation.settle() * (1.0 - 1e-9);
     let mut before: Option<(f64, Vec<Vec<f64>>)> = None;
     let (control, schedule) = (machine.control, machine.schedule);
-    let work = engine::run_balanced(&mechanism, control, schedule, stop, &mut |instant| {
+    let begun = Clock::now();
+    let work = engine::run_balanced(&mechanism, control, schedule, watch.stop(), &mut |instant| {
+        watch.come_in_one_run(begun, instant.t / schedule.duration);
         if before.is_none() && instant.t >= settle {
             before = instant.rubbed.map(|rubbed| (instant.t, rubbed.to_vec()));
         }
         ControlFlow::Continue(())
     })
     .map_err(|halt| halt.to_string())?;
-    if work.stopped {
-        return Ok(None);
-    }
-    let (Some(after), Some((begun, before))) = (work.rubbed, before) else { return Ok(None) };
-    let per_cycle = period / (work.reached - begun);
+    let (Some(after), Some((from, before))) = (work.rubbed, before) else {
+        return Err("the run ended before a cycle was counted".to_owned());
+    };
+    let per_cycle = period / (work.reached - from);
     let of = |ring: &Ring| {
         let pairs = after[ring.joint].iter().zip(&before[ring.joint]);
         pairs.map(|(after, before)| (after - before) * per_cycle).collect()
     };
-    Ok(Some(rings.iter().map(of).collect()))
+    Ok(rings.iter().map(of).collect())
 }

@@ -16,13 +16,13 @@ use crate::contact::laws::Kind;
 use crate::measure::student::t95;
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
+use crate::study::Watch;
 use crate::study::folder::Folder;
 use crate::study::run::{PAGE_FILE, keep_scenario, refused, scenario_files, to_json};
 use matching::{Matched, own, under};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::fs;
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant as Clock;
 
 /// The JSON file of a comparison of laws, by which its folder is known.
@@ -48,8 +48,8 @@ pub struct Done {
     pub folder: PathBuf,
 }
 
-/// Compares laws on a scenario, its own law first, and writes everything about it into `folder`. `progress` is
-/// told the time simulated so far, in s.
+/// Compares laws on a scenario, its own law first, and writes everything about it into `folder`. `watch`
+/// sees the time simulated so far, in s.
 ///
 /// # Errors
 /// [`CompareError`]; the folder is left as it was.
@@ -58,7 +58,7 @@ pub fn compare_laws(
     kinds: &[&'static Kind],
     starts: usize,
     folder: Folder,
-    progress: &mut (dyn FnMut(f64) + Send),
+    watch: &Watch,
 ) -> Result<Done, CompareError> {
     let started = Clock::now();
     let base = own(scenario)?;
@@ -68,7 +68,7 @@ pub fn compare_laws(
         .collect::<Result<Vec<Matched>, Problem>>()?;
     let asked = base.returned;
     let laws: Vec<Matched> = [base].into_iter().chain(others).collect();
-    let runs = simulate(&laws, starts, progress)?;
+    let runs = simulate(&laws, starts, watch)?;
     let rows: Vec<LawRow> = laws.iter().zip(&runs).map(|(law, runs)| row(law, runs)).collect();
     let mut compared = LawsCompared {
         provenance: Provenance::of(scenario),
@@ -125,24 +125,20 @@ fn others(kinds: &[&'static Kind], first: &Kind) -> Vec<&'static Kind> {
 fn simulate(
     laws: &[Matched],
     starts: usize,
-    progress: &mut (dyn FnMut(f64) + Send),
-) -> Result<Vec<Vec<Measured>>, Problem> {
+    watch: &Watch,
+) -> Result<Vec<Vec<Measured>>, CompareError> {
     let jobs: Vec<(usize, usize)> =
         (0..laws.len()).flat_map(|law| (0..starts).map(move |start| (law, start))).collect();
-    let told = Mutex::new((0.0, progress));
     let results = jobs
         .par_iter()
         .map(|&(law, start)| {
             let law = &laws[law];
             let control = tolerance(&law.scenario);
             let mut machine = machine(&law.scenario, Law::of(law.kind), control, start, starts)?;
-            Ok(measure(&law.scenario, &mut machine, &mut |part| {
-                let (done, progress) = &mut *told.lock().unwrap_or_else(PoisonError::into_inner);
-                *done += part;
-                progress(*done);
-            }))
+            Ok(measure(&law.scenario, &mut machine, watch))
         })
         .collect::<Result<Vec<Measured>, Problem>>()?;
+    watch.ended()?;
     Ok(results.chunks(starts).map(<[Measured]>::to_vec).collect())
 }
 
