@@ -25,8 +25,19 @@ fn report(name: &str) -> Value {
         assert!(!place.read(&format!("found/{written}")).is_empty(), "{written}");
     }
     // What was found is a scenario like any other.
-    place.good("check found/calibrated.toml --quiet --set motion.joint=O --set motion.kind=line");
+    let joint = driven(&std::fs::read_to_string(file("rig.toml")).unwrap());
+    let moves = format!("--set motion.joint={joint} --set motion.kind=line");
+    place.good(&format!("check found/calibrated.toml --quiet {moves}"));
     serde_json::from_str(&text).unwrap()
+}
+
+/// A joint whose commands a rig records; its first joint where nothing drives it.
+fn driven(rig: &str) -> String {
+    let after = |mark: &str| rig.split_once(mark).map(|(_, rest)| rest);
+    let commanded = after("quantity = \"command\"").and_then(|rest| rest.split_once("of = \""));
+    let first = || after("[[joint]]").and_then(|rest| rest.split_once("name = \""));
+    let (_, name) = commanded.or_else(first).unwrap();
+    name.split_once('"').unwrap().0.to_owned()
 }
 
 /// Largest error on the run that was not fitted, in floors.
