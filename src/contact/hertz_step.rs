@@ -1,5 +1,6 @@
 //! The Hertz spring with STEP damping: ADAMS' IMPACT function, equations 4–6 of the source paper.
 
+use super::laws::{Damped, Loss, Power};
 use super::{ForceLaw, power_force};
 use std::sync::Arc;
 
@@ -79,6 +80,11 @@ impl ForceLaw for HertzStep {
 
     fn damped(&self, factor: f64) -> Option<Arc<dyn ForceLaw>> {
         Some(Arc::new(HertzStep { c_max: self.c_max * factor, ..*self }))
+    }
+
+    fn losing(&self, loss: Loss) -> Option<Arc<dyn ForceLaw>> {
+        let spring = Power { stiffness: self.stiffness, exponent: self.exponent };
+        Some(Arc::new(Damped { spring, loss }))
     }
 }
 

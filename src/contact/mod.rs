@@ -16,6 +16,7 @@ mod stiffness;
 mod touch;
 mod worn;
 
+use laws::Loss;
 use std::sync::Arc;
 
 pub use film::{Extent, Film};
@@ -86,6 +87,11 @@ pub trait ForceLaw: std::fmt::Debug + Send + Sync {
 
     /// The same law with its damping times `factor`, or `None` for a law whose damping does not scale.
     fn damped(&self, _factor: f64) -> Option<Arc<dyn ForceLaw>> {
+        None
+    }
+
+    /// The law with the same elastic force and another loss, or `None` for a law without an elastic force of its own.
+    fn losing(&self, _loss: Loss) -> Option<Arc<dyn ForceLaw>> {
         None
     }
 }

@@ -12,6 +12,7 @@ mod base_vibration;
 mod bristle_friction;
 mod command_delay;
 mod contact_damping;
+mod contact_law;
 mod drag;
 mod drive_backlash;
 mod drive_compliance;
@@ -109,6 +110,7 @@ pub const ALL: &[&Kind] = &[
     &mass_properties::KIND,
     &rotor_inertia::KIND,
     &drive_lag::KIND,
+    &contact_law::KIND,
 ];
 
 /// Effects of machines that a search is for which imitate a commoner one: an encoder's wrong zero looks
@@ -119,6 +121,7 @@ pub const SELDOM: &[&Kind] = &[
     &out_of_round::KIND,
     &lubricant_film::KIND,
     &contact_damping::KIND,
+    &contact_law::KIND,
     &servo_gain::KIND,
     &drive_backlash::KIND,
     &drive_compliance::KIND,

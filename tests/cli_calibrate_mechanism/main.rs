@@ -3,6 +3,7 @@
 #[path = "../cli_common/mod.rs"]
 mod cli_common;
 mod hidden;
+mod laws;
 mod refusals;
 mod rigs;
 

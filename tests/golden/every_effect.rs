@@ -5,7 +5,7 @@ use crate::{asset, figures, json, series};
 use serde_json::{Map, Value};
 
 /// On a machine that a servo carries against gravity, in equal steps.
-const OF_THE_3RPR: [&str; 27] = [
+const OF_THE_3RPR: [&str; 28] = [
     "payload mass_kg=0.1 com_x_m=0.01 com_y_m=-0.02",
     "leg-density relative=0.1",
     "gravity gx_m_s2=0.2 gy_m_s2=-9.6",
@@ -20,6 +20,7 @@ const OF_THE_3RPR: [&str; 27] = [
     "out-of-round joint=C1 amplitude_m=5e-5 direction_rad=0.7",
     "lubricant-film joint=C2 damping_Ns_m=2",
     "contact-damping relative=0.3",
+    "contact-law restitution=0.5",
     "command-delay delay_s=1e-3",
     "servo-lag time_constant_s=1e-3",
     "servo-gain joint=P1 stiffness_relative=0.1",

@@ -138,8 +138,10 @@ pub(super) fn history(mechanism: &Mechanism, control: StepControl, duration: f64
 pub(super) fn same_run(kind: &str, keys: &str, common: &[&str], declared: &[&str]) {
     let with = assembled(&format!("{LIVELY}{}", effect(kind, keys)), common);
     let mut other = assembled(LIVELY, &[common, declared].concat());
-    let plain = assembled(LIVELY, common);
-    other.mechanism.close(0.0).unwrap();
+    let mut plain = assembled(LIVELY, common);
+    for machine in [&mut other, &mut plain] {
+        machine.mechanism.close(0.0).unwrap();
+    }
     let runs = [with, other, plain].map(|m| history(&m.mechanism, m.control, 0.03));
     let apart =
         |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));

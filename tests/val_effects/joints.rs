@@ -28,6 +28,19 @@ fn damping_of_hits_is_that_of_the_law() {
     same_run("contact-damping", "relative = -0.5", &[], &["contact.c_max=250"]);
 }
 
+/// On the spring of the declared law; laws that a scenario names have the same, Hertz' for the radii.
+#[test]
+fn another_law_of_contact_is_that_law() {
+    let flores = ["contact.law=flores", "contact.restitution=0.6"];
+    same_run("contact-law", "restitution = 0.6", &[], &flores);
+    let hunt = ["contact.law=hunt-crossley", "contact.damping=3"];
+    same_run("contact-law", "hysteresis_s_m = 3.0", &[], &hunt);
+    same_run("contact-law", "c_max_Ns_m = 250.0", &[], &["contact.c_max=250"]);
+    // The other way round.
+    let elastic = ["contact.law=hertz", "contact.exponent=1.5"];
+    same_run("contact-law", "restitution = 1.0", &[], &elastic);
+}
+
 /// The force of an elastic contact on an uneven ring against the slope of its energy `K δ^2.5/2.5`, by
 /// place of the journal and by turn of the ring.
 #[test]

@@ -27,6 +27,7 @@ pub mod limits;
 mod linear;
 mod motions;
 pub mod noise;
+mod other_laws;
 pub mod outcome;
 mod page;
 mod periodic;

@@ -241,6 +241,7 @@ fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped
         let named = search.is_noise(model) && !model.fit.effects.is_empty();
         named.then(|| rest.or_else(uncertain)).flatten()
     };
+    found.best = search.certain(found.best.clone())?;
     let best = &found.best;
     let rest = against(best, found.rest.take());
     let mut better = match search.is_noise(best) && rest.is_none() {
@@ -253,7 +254,7 @@ fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped
         better = if fails { search.predicting(&found.declared)? } else { None };
     }
     let Some((model, round)) = better else { return Ok(rest) };
-    found.best = model;
+    found.best = search.certain(model)?;
     found.rounds.extend(round);
     Ok(against(&found.best, None))
 }
@@ -319,17 +320,22 @@ fn covariance(model: &Model, on: &[Segment]) -> Option<DMatrix<f64>> {
 }
 
 /// An effect of a model of which nobody knows that there is any, if there is one.
-fn uncertain(problem: &Problem, model: &Model, on: &[Segment]) -> Option<Setting> {
+pub(super) fn uncertain(problem: &Problem, model: &Model, on: &[Segment]) -> Option<Setting> {
     let effects = &model.fit.effects;
-    let away = |effect: &Setting| -> Option<Vec<f64>> {
+    let away = |effect: &Setting| -> Vec<f64> {
         let names: Vec<&'static str> = effect.values().map(|(name, _)| name).collect();
         let neutral =
-            Setting::neutral(effect.kind, effect.target.clone(), &names, &problem.declared)?;
-        Some(
-            effect.values().zip(neutral.values()).map(|((_, own), (_, none))| own - none).collect(),
-        )
+            Setting::neutral(effect.kind, effect.target.clone(), &names, &problem.declared);
+        match neutral {
+            Some(neutral) => {
+                let pairs = effect.values().zip(neutral.values());
+                pairs.map(|((_, own), (_, none))| own - none).collect()
+            }
+            // Another law of contact is there, however large.
+            None => vec![f64::INFINITY; names.len()],
+        }
     };
-    let away: Vec<Vec<f64>> = effects.iter().map(away).collect::<Option<_>>()?;
+    let away: Vec<Vec<f64>> = effects.iter().map(away).collect();
     within_chance(&away, &covariance(model, on)?).map(|place| effects[place].clone())
 }
 
@@ -347,7 +353,8 @@ fn within_chance(away: &[Vec<f64>], covariance: &DMatrix<f64>) -> Option<usize> 
         });
         let apart = DVector::from_fn(told.len(), |k, _| away[told[k]]);
         first += away.len();
-        part.cholesky().is_some_and(|part| apart.dot(&part.solve(&apart)) < SURE * SURE)
+        let some = away.iter().any(|away| away.is_infinite());
+        !some && part.cholesky().is_some_and(|part| apart.dot(&part.solve(&apart)) < SURE * SURE)
     })
 }
 

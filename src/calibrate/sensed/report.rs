@@ -260,6 +260,9 @@ fn effects(outcome: &Outcome) -> Vec<EffectReport> {
             params: params.clone(),
             evidence: match (&outcome.described, gain) {
                 (Some(described), _) => described.evidence(),
+                (None, Some(gain)) if gain <= 0.0 => {
+                    "shows in how the machine goes on, in whole simulations of it; residuals hardly tell".to_owned()
+                }
                 (None, Some(gain)) => format!(
                     "takes {gain:.0} off the sum of squares, in units of noise, on data that it was not \
                      fitted to"

@@ -200,7 +200,9 @@ impl Search<'_> {
             let mut fewer = model.fit.effects.clone();
             let dropped = fewer.remove(i);
             (self.tell)(&format!("simulating without {}", name(&dropped)));
-            match self.settle(&fewer, 2)? {
+            // Looks move values that only simulations tell away from where these have put them.
+            let simpler = [self.settle(&fewer, 2)?, self.at(&fewer, &[])?].into_iter().flatten();
+            match simpler.min_by(|a, b| a.cost().total_cmp(&b.cost())) {
                 Some(simpler) if simpler.cost() < model.cost() + price(&model) => model = simpler,
                 _ => i += 1,
             }

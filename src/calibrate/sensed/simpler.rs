@@ -1,10 +1,12 @@
 //! Simpler variants of the effects that were found, and effects that they contain: values that bring no more than chance does are not given.
 
 use super::fit::Fit;
+use super::outcome::uncertain;
 use super::problem::Stopped;
 use super::search::{Search, name};
 use super::settle::Model;
 use super::thresholds::{GAIN_PER_VALUE, TWINS};
+use super::trajectory::Far;
 use crate::effects::{CONTAINS, Kind, Setting};
 
 impl Search<'_> {
@@ -40,6 +42,29 @@ impl Search<'_> {
             });
         }
         Ok(best)
+    }
+
+    /// The model without effects of which nobody knows that there is any, where it leaves no more than noise without them.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub(super) fn certain(&self, mut model: Model) -> Result<Model, Stopped> {
+        while model.fit.effects.len() > 1
+            && self.is_noise(&model)
+            && let Some(none) = uncertain(self.problem, &model, &self.split.on)
+        {
+            let mut fewer = model.fit.effects.clone();
+            fewer.retain(|effect| !effect.is(&none));
+            let simpler = match model.fit.told {
+                Some(_) => self.fitted(&fewer, Far::All)?,
+                None => self.at(&fewer, &[])?,
+            };
+            match simpler.filter(|simpler| self.is_noise(simpler)) {
+                Some(simpler) => model = simpler,
+                None => break,
+            }
+        }
+        Ok(model)
     }
 
     /// The variants of an effect, and of those that it contains, with fewer values than it has, those with the

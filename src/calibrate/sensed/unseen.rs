@@ -3,6 +3,7 @@
 use super::baseline::Baseline;
 use super::hypotheses::{Tried, price};
 use super::linear::step;
+use super::other_laws::other_laws;
 use super::problem::{Segment, Stopped};
 use super::search::Search;
 use super::settle::Model;
@@ -83,10 +84,11 @@ impl Search<'_> {
     /// machine that nothing holds and that does as it was let go adds up what acts on it over the whole run.
     fn promising(&self, model: &Model) -> Result<Vec<Setting>, Stopped> {
         let own = &model.fit.effects;
-        let seconds = match self.problem.falls(own)? {
-            true => followed(self.problem, own, &self.split.on)?.pop().flatten(),
-            false => Some(SECONDS),
-        };
+        let falls = self.problem.falls(own)?;
+        let far = followed(self.problem, own, &self.split.on)?.pop().flatten();
+        let seconds = if falls { far } else { Some(SECONDS) };
+        // What hits lose shows where the motion after them can be followed.
+        let follows = falls || far.is_none();
         let on = self.split.on.iter();
         let first: Vec<Segment> =
             on.map(|segment| shorter(self.problem, segment, seconds)).collect();
@@ -117,6 +119,15 @@ impl Search<'_> {
                 kept.push(start);
             }
         }
+        if follows {
+            kept.extend(other_laws(
+                &whole,
+                &self.problem.declared,
+                own,
+                (&starts, &left),
+                price(model),
+            ));
+        }
         Ok(kept)
     }
 }
@@ -133,10 +144,10 @@ fn linear_step(
     let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
     let neutral: Vec<f64> = candidate.values().map(|(_, value)| value).collect();
     let free = free(std::slice::from_ref(candidate));
-    let alone = stepped(starts, starts.len(), left, &[], &[])?.0;
+    let alone = stepped_along(starts, starts.len(), left, &[], &[])?.0;
     let stepped = |columns: &[DVector<f64>], own: &[f64], free: &[Free]| {
         let all = [starts, columns].concat();
-        let (least, change) = stepped(&all, starts.len(), left, own, free)?;
+        let (least, change) = stepped_along(&all, starts.len(), left, own, free)?;
         let gain = alone - least;
         let change: Vec<f64> = change.iter().skip(starts.len()).copied().collect();
         gain.is_finite().then_some((gain, change))
@@ -173,7 +184,7 @@ fn turns_round(names: &[&str], listed: &[Vec<f64>]) -> bool {
 
 /// The sum of squares that is left after one step along these columns, the first `known` of which are not bounded, and the
 /// step.
-fn stepped(
+pub(super) fn stepped_along(
     columns: &[DVector<f64>],
     known: usize,
     left: &DVector<f64>,

@@ -1,7 +1,7 @@
 //! A spring and what it loses: the one form of the laws of this room.
 
 use super::spring::Spring;
-use crate::contact::ForceLaw;
+use crate::contact::{ForceLaw, step};
 use std::sync::Arc;
 
 /// What a contact adds to its elastic force S(δ).
@@ -15,6 +15,13 @@ pub enum Loss {
     Hysteresis(f64),
     /// `h S δ̇/δ̇⁻`, h without unit, δ̇⁻ the impact speed: what is returned does not depend on it.
     Restitution(f64),
+    /// `STEP(δ, 0, 0, d_max, c_max) δ̇`: what [`HertzStep`](crate::contact::HertzStep) has, which is kept from pulling.
+    Step {
+        /// Damping in N·s/m, reached at `d_max`.
+        c_max: f64,
+        /// Penetration in m.
+        d_max: f64,
+    },
 }
 
 /// `F = S(δ) + loss`, never below zero: surfaces do not pull.
@@ -43,6 +50,7 @@ impl<S: Spring> ForceLaw for Damped<S> {
         let force = match self.loss {
             Loss::None => elastic,
             Loss::Viscous(c) => elastic + c * rate,
+            Loss::Step { c_max, d_max } => elastic + step(penetration, d_max, c_max) * rate,
             Loss::Hysteresis(alpha) => elastic * (1.0 + alpha * rate),
             // A rate of zero has no damping, whatever the impact speed.
             Loss::Restitution(_) if rate == 0.0 => elastic,
@@ -59,6 +67,7 @@ impl<S: Spring> ForceLaw for Damped<S> {
         match self.loss {
             Loss::None => 0.0,
             Loss::Viscous(c) => c,
+            Loss::Step { c_max, d_max } => step(penetration, d_max, c_max),
             Loss::Hysteresis(alpha) => alpha * self.spring.force(penetration),
             Loss::Restitution(h) => h * self.spring.force(penetration) / impact_speed,
         }
@@ -96,9 +105,14 @@ impl<S: Spring> ForceLaw for Damped<S> {
         let loss = match self.loss {
             Loss::None => return None,
             Loss::Viscous(c) => Loss::Viscous(c * factor),
+            Loss::Step { c_max, d_max } => Loss::Step { c_max: c_max * factor, d_max },
             Loss::Hysteresis(alpha) => Loss::Hysteresis(alpha * factor),
             Loss::Restitution(h) => Loss::Restitution(h * factor),
         };
+        self.losing(loss)
+    }
+
+    fn losing(&self, loss: Loss) -> Option<Arc<dyn ForceLaw>> {
         Some(Arc::new(Damped { spring: self.spring.clone(), loss }))
     }
 }

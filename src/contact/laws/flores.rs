@@ -15,7 +15,7 @@ pub(super) static KIND: Kind = Kind {
     build: |given| given.power(Loss::Restitution(factor(given.restitution()))),
 };
 
-/// h of the paper.
-fn factor(e: f64) -> f64 {
+/// The factor h of the damping for a coefficient of restitution e, without unit: `8 (1 − e)/(5 e)`.
+pub fn factor(e: f64) -> f64 {
     1.6 * (1.0 - e) / e
 }

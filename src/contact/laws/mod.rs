@@ -27,6 +27,7 @@ mod spring;
 mod zhiying_qishao;
 
 pub use damped::{Damped, Loss};
+pub use flores::factor as dissipation;
 pub use hertz_step::HERTZ_STEP;
 pub use kind::{Given, Kind, Losses, Parameter, RESTITUTION, Range};
 pub use spring::{Logarithmic, Power, Spring};
