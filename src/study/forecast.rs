@@ -117,7 +117,7 @@ impl fmt::Debug for Watch<'_> {
 
 impl<'a> Watch<'a> {
     /// A watch on work that is done when it has come to `all` (s simulated, or cycles); `progress` is told how far it has
-    /// come. It goes on `at_any_cost`, or ends where it would take more than [`MOST_SECONDS`].
+    /// come. It goes on `at_any_cost`, or ends where it would take more than ten minutes.
     pub fn new(all: f64, at_any_cost: bool, progress: &'a mut (dyn FnMut(f64) + Send)) -> Self {
         Self {
             started: Clock::now(),
