@@ -13,7 +13,7 @@ use freeplay::scenario::Law;
 use freeplay::simulate::{assemble, findings};
 use freeplay::study::compare::by_law::{LAWS_COMPARED_FILE, compare_laws};
 use freeplay::study::compare::{COMPARE_FILE, Options};
-use freeplay::study::{self, Check, Folder};
+use freeplay::study::{self, Check, Folder, Watch};
 use freeplay::{contact, effects as catalogue};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
@@ -46,7 +46,9 @@ fn compare(
     let mut warnings = Vec::new();
     let json = detached(py, &stop, || {
         let mut scenario = scenario.scenario.clone();
-        let tell = &mut |_: f64| end_if(&stop);
+        // A program that calls this knows what it asks for; Ctrl-C ends it.
+        let mut tell = |_: f64| end_if(&stop);
+        let watch = Watch::new(1.0, true, &mut tell);
         if !(2..=1000).contains(&starts) {
             return Err(Failure::Input(format!("starts: is {starts}; expected 2 to 1000")));
         }
@@ -54,14 +56,14 @@ fn compare(
             let kinds = laws_to_compare(laws).map_err(Failure::Input)?;
             refuse(findings(&scenario, &mut assemble(&scenario)?), &mut warnings)?;
             let folder = Folder::prepare(&out, LAWS_COMPARED_FILE, force)?;
-            return Ok(compare_laws(&scenario, &kinds, starts, folder, tell)?.json);
+            return Ok(compare_laws(&scenario, &kinds, starts, folder, &watch)?.json);
         }
         let steps = compare_steps(steps).map_err(Failure::Input)?;
         scenario.contact.law = Law::HertzStep;
         refuse(findings(&scenario, &mut assemble(&scenario)?), &mut warnings)?;
         let folder = Folder::prepare(&out, COMPARE_FILE, force)?;
         let options = Options { steps, starts };
-        Ok(study::compare::compare(&scenario, &options, folder, tell)?.json)
+        Ok(study::compare::compare(&scenario, &options, folder, &watch)?.json)
     })?;
     for warning in &warnings {
         warn(py, warning)?;

@@ -142,7 +142,7 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
             RunError::Folder(error) => error.into(),
-            RunError::TooMuch(_) => Failure::Input(error.to_string()),
+            RunError::TooMuch(_) | RunError::TooLong(_) => Failure::Input(error.to_string()),
             error => Failure::Run(error.to_string()),
         }
     }
