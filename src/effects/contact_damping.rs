@@ -1,8 +1,9 @@
 //! Hits that lose more or less than declared.
 
+use super::contact_law::change;
 use super::kind::{defaults, linear};
 use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
-use crate::mechanism::{Bearing, Mechanism};
+use crate::mechanism::Mechanism;
 
 pub(super) const KIND: Kind = Kind {
     name: "contact-damping",
@@ -28,31 +29,10 @@ pub(super) const KIND: Kind = Kind {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let relative = setting.number("relative");
-    let wrong = |message: &str, help: &str| {
-        Err(Wrong { key: "kind".to_owned(), message: message.to_owned(), help: help.to_owned() })
-    };
-    for index in setting.revolutes(mechanism)? {
-        if relative == 0.0 {
-            continue;
-        }
-        match &mut mechanism.revolutes[index].bearing {
-            Bearing::Ideal => {}
-            Bearing::Native { .. } => {
-                return wrong(
-                    "is not possible under contact.law = \"native\"",
-                    "the physics engine's own contacts have native.damping_ratio",
-                );
-            }
-            Bearing::Clearance(clearance) => match clearance.law.damped(1.0 + relative) {
-                Some(law) => clearance.law = law,
-                None => {
-                    return wrong(
-                        "is not possible under this contact.law",
-                        "take a law whose damping is a number of its own",
-                    );
-                }
-            },
-        }
+    // Of a law without damping nothing is asked where nothing is changed.
+    if relative == 0.0 {
+        return setting.revolutes(mechanism).map(|_| ());
     }
-    Ok(())
+    let help = "take a law whose damping is a number of its own";
+    change(setting, mechanism, help, |law| law.damped(1.0 + relative))
 }

@@ -1,8 +1,10 @@
 //! Hits that lose speed by another law than declared.
 
 use super::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::contact::ForceLaw;
 use crate::contact::laws::{Loss, dissipation};
 use crate::mechanism::{Bearing, Mechanism};
+use std::sync::Arc;
 
 /// The forms of a law's damping, one for each set of values.
 const RESTITUTION: &str = "restitution";
@@ -118,27 +120,35 @@ fn loss(setting: &Setting) -> Result<Loss, Wrong> {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let loss = loss(setting)?;
-    let wrong = |message: &str, help: &str| {
-        Err(Wrong { key: "kind".to_owned(), message: message.to_owned(), help: help.to_owned() })
+    let help = "take one of the laws that `freeplay laws` lists";
+    change(setting, mechanism, help, |law| law.losing(loss))
+}
+
+/// Changes the laws of the joints with clearance that an effect is given; `help` is for a law that cannot be changed so.
+pub(super) fn change(
+    setting: &Setting,
+    mechanism: &mut Mechanism,
+    help: &str,
+    changed: impl Fn(&dyn ForceLaw) -> Option<Arc<dyn ForceLaw>>,
+) -> Result<(), Wrong> {
+    let wrong = |message: &str, help: &str| Wrong {
+        key: "kind".to_owned(),
+        message: message.to_owned(),
+        help: help.to_owned(),
     };
     for index in setting.revolutes(mechanism)? {
         match &mut mechanism.revolutes[index].bearing {
             Bearing::Ideal => {}
             Bearing::Native { .. } => {
-                return wrong(
+                return Err(wrong(
                     "is not possible under contact.law = \"native\"",
                     "the physics engine's own contacts have native.damping_ratio",
-                );
+                ));
             }
-            Bearing::Clearance(clearance) => match clearance.law.losing(loss) {
-                Some(law) => clearance.law = law,
-                None => {
-                    return wrong(
-                        "is not possible under this contact.law",
-                        "take one of the laws that `freeplay laws` lists",
-                    );
-                }
-            },
+            Bearing::Clearance(clearance) => {
+                clearance.law = changed(clearance.law.as_ref())
+                    .ok_or_else(|| wrong("is not possible under this contact.law", help))?;
+            }
         }
     }
     Ok(())
