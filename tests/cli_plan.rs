@@ -284,7 +284,8 @@ fn half_of_what_could_be_seen_becomes_visible() {
     let rig = format!("{RIGS}/planar-1");
     with_present_motion(&place, "planar-1");
     place.good(&format!(
-        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv {rig}/run-b.csv --detect payload:piston --out planned --quiet"
+        "plan --rig {rig}/rig.toml --data {rig}/run-a.csv {rig}/run-b.csv --detect payload:piston --speed 40 \
+         --acceleration 600 --drive-force 5 --out planned --quiet"
     ));
     let question = &json(&place, "planned/plan.json")["questions"][0];
     let [before, after] = ["before", "after"].map(|motion| number(&question[motion]["smallest"]));

@@ -1,7 +1,24 @@
-//! From a recorded run to the effect that the model lacks: [`outcome::calibrate`] is the method. Around it:
-//! [`recording`] and [`plausibility`] take files and refuse what cannot be right, [`rattle`] decides how often
-//! to simulate, [`result`] and [`predict`] write folders of results; [`record`] makes the recordings that a rig
-//! would show; [`plan`] says what to record next.
+//! From recordings of a machine to the effects that its declared model lacks.
+//!
+//! * [`sensed`]: any mechanism with the sensors that it has; [`record`]: the recordings that a rig would show;
+//!   [`plan`]: what to record next; [`hardware`]: the studies of measured machines.
+//! * The files beside them are for a 3-RPR whose twelve columns are all there; [`outcome::calibrate`] is the whole way, and
+//!   data pass in this order:
+//!   * [`recording`], [`plausibility`], `mistaken`: files in, and everything that speaks against them; nothing is repaired.
+//!   * [`rattle`]: two simulations a hair apart say whether the machine is chaotic, and how many replicas are averaged.
+//!   * [`commands`], [`replica`]: the commands of a recording drive a model, and its sensors look at it.
+//!   * [`lens`]: the residuals (servo, closure, dynamics) of measured data under a model; [`model`] and [`baseline`]
+//!     measure their bias on simulated recordings, [`spectrum`] their noise by frequency.
+//!   * [`start`]: the swing with which a recording begins.
+//!   * [`candidates`], [`screen`], [`fit`], [`least_squares`], [`instrument`]: every effect at every joint, fitted to one
+//!     run's residuals and judged on another's.
+//!   * [`settle`], [`whole`], [`axes`]: values that agree with whole simulations.
+//!   * [`search`], [`way`], [`beside`], [`left`]: one effect after another, several hypotheses at once, until the
+//!     residuals are white.
+//!   * [`needed`], [`evidence`], [`unnamed`]: effects that the model can do without, rivals that explain as much, and a table
+//!     of forces for what no effect explains.
+//!   * [`errors`], [`report`], `charts`, `page`, [`result`], [`predict`]: the folder of results, and that of a prediction.
+//!   * [`self_test`]: how often all of it is right.
 
 pub mod axes;
 pub mod baseline;

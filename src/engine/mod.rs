@@ -1,9 +1,20 @@
 //! The engine room: the only place that knows rapier and parry.
 //!
-//! * [`BearingRing`], [`RingDispatcher`]: a parry shape for the inside of a bearing, with exact
-//!   circle-in-ring queries, so that rapier's own contacts and our law see the same geometry.
-//! * [`ClearanceJoints`]: clearance joints for anybody's rapier world.
-//! * [`run`]: a whole [`Mechanism`](crate::mechanism::Mechanism) from start to end.
+//! * `ring`, `dispatcher`: [`BearingRing`], the inside of a bearing as a parry shape, and [`RingDispatcher`], its
+//!   circle-in-ring queries in closed form, so that rapier's contacts and the laws see one geometry.
+//! * `colliders`: rings and journals as colliders, and the physics hook that takes their pairs away from rapier's
+//!   solver where a law computes the force.
+//! * `clearance_joints`: [`ClearanceJoints`] for anybody's rapier world. `leapfrog` reads that world's velocities: rapier's
+//!   velocity after a step is that of the half step.
+//! * `world`: a [`Mechanism`](crate::mechanism::Mechanism) as rapier bodies, joints, motors.
+//! * `run`: the driver of a whole run: rows, account of impacts and peaks (`watch`), wear (`wear`). It knows a `Stepper` by its
+//!   functions:
+//!   * `fixed`: fixed steps, second order (velocity Verlet), on a grid of its own;
+//!   * `adaptive`: error control, fourth order where forces are smooth: rapier is handed the average of the forces
+//!     along a path predicted by the equations of motion;
+//!   * `direct`: no engine, the equations of motion integrated under error control;
+//!   * `native`: rapier's own contacts, as rapier steps them.
+//! * `between`: rows between the ends of steps. `energy`: the balance of a run. `halt`: what ends one.
 
 mod adaptive;
 mod between;
