@@ -17,6 +17,7 @@ pub mod instrument;
 pub mod least_squares;
 pub mod left;
 pub mod lens;
+mod measured_dynamics;
 mod mistaken;
 pub mod model;
 pub mod needed;
