@@ -70,22 +70,15 @@ fn main() {
         let [f1, f2] = contacts.map(|contact| contact.normal_force);
         peak = peak.max(f1).max(f2);
 
-        // Where the slider would be without play, at this angle of the crank.
         let angle = crank.rotation.angle();
-        let (sin, cos) = (CRANK / ROD * angle.sin(), angle.cos());
-        let slope = (1.0 - sin * sin).sqrt();
-        let off = slider.position.x - (CRANK * cos + ROD * slope);
+        let (without_play, slope) = tight(angle);
+        let off = slider.position.x - without_play;
         let play: f64 = contacts.iter().map(|contact| contact.eccentricity.norm()).sum();
         largest = largest.max(off.abs() / (play / slope + 1e-6));
 
         if step % 4000 == 0 {
-            // Kinetic energy; the contacts' springs hold up to 0.05 mJ more.
-            let states = [crank, rod, slider];
-            let kinetic = |([mass, inertia], state): (&[f64; 2], &BodyState)| {
-                let (v, spin) = (state.twist.xy(), state.twist.z);
-                0.5 * (mass * v.norm_squared() + inertia * spin * spin)
-            };
-            let energy: f64 = INERTIAS.iter().zip(states).map(kinetic).sum();
+            // The contacts' springs hold up to 0.05 mJ more.
+            let energy = kinetic_energy([crank, rod, slider]);
             energies.push(energy);
             println!(
                 "{:7.1} {:10.1} {:8.2} {:9.1} {:11.1} {f1:9.2} {f2:9.2} {:9.3}",
@@ -101,6 +94,22 @@ fn main() {
     println!("largest force {peak:.1} N; Δx at most {largest:.3} of the play");
     assert!(largest <= 1.0, "the slider left the play of its pins");
     assert!(energies.windows(2).all(|pair| pair[1] < pair[0] + 1e-4), "energy out of nothing");
+}
+
+/// Where the slider would be without play at this angle (rad) of the crank, m, and the cosine of the rod's slope.
+fn tight(angle: f64) -> (f64, f64) {
+    let (sin, cos) = (CRANK / ROD * angle.sin(), angle.cos());
+    let slope = (1.0 - sin * sin).sqrt();
+    (CRANK * cos + ROD * slope, slope)
+}
+
+/// Kinetic energy of crank, rod and slider in J.
+fn kinetic_energy(states: [&BodyState; 3]) -> f64 {
+    let kinetic = |([mass, inertia], state): (&[f64; 2], &BodyState)| {
+        let (v, spin) = (state.twist.xy(), state.twist.z);
+        0.5 * (mass * v.norm_squared() + inertia * spin * spin)
+    };
+    INERTIAS.iter().zip(states).map(kinetic).sum()
 }
 
 /// Body `i` with its centre on the x axis, its velocity across it (m/s) and its spin (rad/s).

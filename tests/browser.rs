@@ -40,6 +40,74 @@ fn differing(a: &Value, b: &Value) -> usize {
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
+/// At the start: seven bodies, six journals in the middle of their rings.
+fn it_plays_and_pauses(browser: &Browser) {
+    let start = browser.run(DRAWING);
+    assert_eq!(start.as_array().unwrap().len(), 7 + 6, "{start}");
+    let centred = |place: &Value| {
+        place.as_str().unwrap().split(' ').all(|v| v.parse::<f64>().unwrap().abs() < 1e-6)
+    };
+    assert!((7..13).all(|i| centred(&start[i])), "{start}");
+    assert_eq!(clock(browser), 0.0);
+
+    // Playing moves everything, pausing stops it.
+    browser.click("#play");
+    wait(browser, "now > 0.005");
+    browser.click("#play");
+    let (paused, later) = (clock(browser), browser.run(DRAWING));
+    assert_eq!(differing(&start, &later), 13, "{later}");
+    std::thread::sleep(Duration::from_millis(200));
+    assert_eq!((clock(browser), browser.run(DRAWING)), (paused, later));
+}
+
+/// The slider is dragged to the middle by a click there; keys step and jump.
+fn it_goes_where_it_is_told(browser: &Browser) {
+    browser.click("#time");
+    let middle = clock(browser);
+    assert!((middle - 0.05).abs() < 0.002, "{middle}");
+    let there = browser.run(DRAWING);
+    browser.press(RIGHT);
+    assert!((clock(browser) - middle - 5e-4).abs() < 1e-6);
+    assert!(differing(&there, &browser.run(DRAWING)) > 0);
+    browser.press(END);
+    assert_eq!(clock(browser), 0.1);
+}
+
+/// What is drawn is what the time series says: places in the ring, peaks since the row before.
+fn it_draws_the_time_series(browser: &Browser, csv: &str) {
+    let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|c| *c == name).unwrap();
+    let last = |name: &str| rows[rows.len() - 1][column(name)].parse::<f64>().unwrap();
+    let journal = "document.querySelectorAll('.journal')[3]";
+    let [x, y] =
+        ["cx", "cy"].map(|name| number(browser, &format!("{journal}.getAttribute('{name}')")));
+    assert!((x.hypot(y) - last("ecc_C1") / 5e-4).abs() < 1e-5, "{x} {y}");
+    let peak = |name: &str| {
+        let values = rows[1..].iter().map(|row| row[column(name)].parse::<f64>().unwrap());
+        values.fold(0.0, f64::max)
+    };
+    let strongest = ["A1", "A2", "A3", "C1", "C2", "C3"]
+        .map(|joint| peak(&format!("force_{joint}_max")))
+        .into_iter()
+        .fold(0.0, f64::max);
+    assert!((number(browser, "strongest") / strongest - 1.0).abs() < 1e-6);
+}
+
+/// Every choice of curves draws them, each as wide as the plot but for its margins.
+fn it_draws_every_choice_of_curves(browser: &Browser) {
+    for (chart, curves) in [6, 6, 2, 1].into_iter().enumerate() {
+        browser.run(&format!(
+            "const s = document.querySelector('#chart'); s.value = {chart}; \
+             s.dispatchEvent(new Event('change'))"
+        ));
+        let drawn = "[...document.querySelectorAll('#plot .curve')].filter(c => \
+                     c.getBBox().width > 0.8 * document.querySelector('#plot').clientWidth).length";
+        assert_eq!(number(browser, drawn), f64::from(curves), "curves {chart}");
+    }
+    browser.click("#legend input");
+    assert_eq!(number(browser, "document.querySelectorAll('#plot .curve').length"), 0.0);
+}
+
 #[test]
 fn the_pages_of_a_run_work_in_a_browser() {
     let Some(browser) = Browser::start() else {
@@ -57,66 +125,10 @@ fn the_pages_of_a_run_work_in_a_browser() {
         "location.pathname.endsWith('player.html') && document.readyState == 'complete'",
     );
 
-    // At the start: seven bodies, six journals in the middle of their rings.
-    let start = browser.run(DRAWING);
-    assert_eq!(start.as_array().unwrap().len(), 7 + 6, "{start}");
-    let centred = |place: &Value| {
-        place.as_str().unwrap().split(' ').all(|v| v.parse::<f64>().unwrap().abs() < 1e-6)
-    };
-    assert!((7..13).all(|i| centred(&start[i])), "{start}");
-    assert_eq!(clock(&browser), 0.0);
-
-    // Playing moves everything, pausing stops it.
-    browser.click("#play");
-    wait(&browser, "now > 0.005");
-    browser.click("#play");
-    let (paused, later) = (clock(&browser), browser.run(DRAWING));
-    assert_eq!(differing(&start, &later), 13, "{later}");
-    std::thread::sleep(Duration::from_millis(200));
-    assert_eq!((clock(&browser), browser.run(DRAWING)), (paused, later));
-
-    // The slider is dragged to the middle by a click there; keys step and jump.
-    browser.click("#time");
-    let middle = clock(&browser);
-    assert!((middle - 0.05).abs() < 0.002, "{middle}");
-    let there = browser.run(DRAWING);
-    browser.press(RIGHT);
-    assert!((clock(&browser) - middle - 5e-4).abs() < 1e-6);
-    assert!(differing(&there, &browser.run(DRAWING)) > 0);
-    browser.press(END);
-    assert_eq!(clock(&browser), 0.1);
-
-    // What is drawn is what the time series says: places in the ring, peaks since the row before.
-    let csv = place.read("r/timeseries.csv");
-    let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
-    let column = |name: &str| rows[0].iter().position(|c| *c == name).unwrap();
-    let last = |name: &str| rows[rows.len() - 1][column(name)].parse::<f64>().unwrap();
-    let journal = "document.querySelectorAll('.journal')[3]";
-    let [x, y] =
-        ["cx", "cy"].map(|name| number(&browser, &format!("{journal}.getAttribute('{name}')")));
-    assert!((x.hypot(y) - last("ecc_C1") / 5e-4).abs() < 1e-5, "{x} {y}");
-    let peak = |name: &str| {
-        let values = rows[1..].iter().map(|row| row[column(name)].parse::<f64>().unwrap());
-        values.fold(0.0, f64::max)
-    };
-    let strongest = ["A1", "A2", "A3", "C1", "C2", "C3"]
-        .map(|joint| peak(&format!("force_{joint}_max")))
-        .into_iter()
-        .fold(0.0, f64::max);
-    assert!((number(&browser, "strongest") / strongest - 1.0).abs() < 1e-6);
-
-    // Every choice of curves draws them, each as wide as the plot but for its margins.
-    for (chart, curves) in [6, 6, 2, 1].into_iter().enumerate() {
-        browser.run(&format!(
-            "const s = document.querySelector('#chart'); s.value = {chart}; \
-             s.dispatchEvent(new Event('change'))"
-        ));
-        let drawn = "[...document.querySelectorAll('#plot .curve')].filter(c => \
-                     c.getBBox().width > 0.8 * document.querySelector('#plot').clientWidth).length";
-        assert_eq!(number(&browser, drawn), f64::from(curves), "curves {chart}");
-    }
-    browser.click("#legend input");
-    assert_eq!(number(&browser, "document.querySelectorAll('#plot .curve').length"), 0.0);
+    it_plays_and_pauses(&browser);
+    it_goes_where_it_is_told(&browser);
+    it_draws_the_time_series(&browser, &place.read("r/timeseries.csv"));
+    it_draws_every_choice_of_curves(&browser);
 
     // The picture that moves.
     browser.open(&place.path("r/animation.svg"));

@@ -32,26 +32,13 @@ fn against(schema: &Value, value: &Value, at: &str) -> Vec<String> {
             }
             "minimum" if value.as_f64() < rule.as_f64() => found.push(complaint("is too small")),
             "maximum" if value.as_f64() > rule.as_f64() => found.push(complaint("is too large")),
-            "minItems"
-                if value.as_array().is_some_and(|v| (v.len() as u64) < rule.as_u64().unwrap()) =>
-            {
-                found.push(complaint("is too short"));
+            "minItems" if count(value).is_some_and(|n| n < rule.as_u64().unwrap()) => {
+                found.push(complaint("is too short"))
             }
-            "maxItems"
-                if value.as_array().is_some_and(|v| (v.len() as u64) > rule.as_u64().unwrap()) =>
-            {
-                found.push(complaint("is too long"));
+            "maxItems" if count(value).is_some_and(|n| n > rule.as_u64().unwrap()) => {
+                found.push(complaint("is too long"))
             }
-            "items" => {
-                for (i, item) in value.as_array().into_iter().flatten().enumerate() {
-                    found.extend(match rule {
-                        Value::Array(each) => {
-                            against(&each[i.min(each.len() - 1)], item, &format!("{at}.{i}"))
-                        }
-                        one => against(one, item, &format!("{at}.{i}")),
-                    });
-                }
-            }
+            "items" => found.extend(items(rule, value, at)),
             "required" => {
                 let lacks = |key: &&Value| value.get(key.as_str().unwrap()).is_none();
                 let keys = rule.as_array().unwrap().iter().filter(|_| value.is_object());
@@ -72,6 +59,21 @@ fn against(schema: &Value, value: &Value, at: &str) -> Vec<String> {
     }
     found.extend(members(schema, value, at));
     found
+}
+
+/// Number of a list's items.
+fn count(value: &Value) -> Option<u64> {
+    value.as_array().map(|items| items.len() as u64)
+}
+
+/// What a list's items have against the rule of each, or of all.
+fn items(rule: &Value, value: &Value, at: &str) -> Vec<String> {
+    let items = value.as_array().into_iter().flatten().enumerate();
+    let of_item = |(i, item): (usize, &Value)| match rule {
+        Value::Array(each) => against(&each[i.min(each.len() - 1)], item, &format!("{at}.{i}")),
+        one => against(one, item, &format!("{at}.{i}")),
+    };
+    items.flat_map(of_item).collect()
 }
 
 fn is(value: &Value, kind: &str) -> bool {

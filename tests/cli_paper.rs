@@ -34,14 +34,7 @@ fn verdict(ci95: &Value, limit: &str) -> &'static str {
     }
 }
 
-#[test]
-fn the_study_writes_everything_that_was_promised() {
-    let place = Place::new();
-    let out = place.good("paper --duration 0.12 --phases 3 --json");
-    assert_eq!(place.entries(), ["freeplay-paper-default"]);
-    assert_eq!(names(&place.path("freeplay-paper-default")), FILES);
-    assert_eq!(out, place.read("freeplay-paper-default/paper.json"));
-
+fn assert_figures(place: &Place) {
     for number in 4..=9 {
         let svg = place.read(&format!("freeplay-paper-default/figure-{number}.svg"));
         let curves = |colour: &str| {
@@ -52,6 +45,58 @@ fn the_study_writes_everything_that_was_promised() {
         assert!(svg.contains("C = 0.5 mm") && svg.contains("C = 0.00001 mm"), "{number}");
         assert_eq!((curves("#0072B2"), curves("#222222")), (2, 2), "figure {number}");
     }
+}
+
+/// The `i`-th claim is what its values say, under each variant.
+fn assert_claim(i: usize, claim: &Value, variants: &[Value]) {
+    let (key, limit) = (&claim["key"], claim["limit"].as_str().unwrap());
+    assert!(claim["value"].is_number() && claim["ci95"][1].is_number(), "{claim}");
+    assert!(!claim["evidence"].as_str().unwrap().is_empty(), "{claim}");
+    let mut verdicts = Vec::new();
+    for variant in variants {
+        let judged = &variant["claims"][i];
+        assert_eq!(&judged["key"], key);
+        // Growth at every step is judged by all steps, of which the smallest is shown.
+        if judged["ci95"][0].is_null() {
+            // Endless, against an ideal machine that needs nothing, or never defined.
+            assert_ne!(judged["verdict"], "contradicted", "{}: {judged}", variant["key"]);
+            verdicts.push(&judged["verdict"]);
+            continue;
+        }
+        let shown = verdict(&judged["ci95"], limit);
+        if !key.as_str().unwrap().ends_with("grows") {
+            assert_eq!(judged["verdict"], shown, "{}: {judged}", variant["key"]);
+        } else if judged["verdict"] == "supported" {
+            assert_eq!(shown, "supported", "{}: {judged}", variant["key"]);
+        }
+        verdicts.push(&judged["verdict"]);
+    }
+    assert_eq!(&claim["verdict"], verdicts[0]);
+    let moves = &claim["over_variants"];
+    for word in ["supported", "contradicted", "undecided"] {
+        let count = verdicts.iter().filter(|verdict| **verdict == word).count();
+        assert_eq!(moves[word], count, "{claim}");
+    }
+}
+
+fn assert_parameters(parameters: &[Value]) {
+    let origin = |name: &str| {
+        let row = parameters.iter().find(|p| p["name"].as_str().unwrap().contains(name)).unwrap();
+        row["origin"].as_str().unwrap()
+    };
+    assert_eq!(["C_max", "d_max", "trajectory", "phi"].map(origin), ["assumed"; 4]);
+    assert_eq!(["platform, mass", "stiffness K", "density"].map(origin), ["paper"; 3]);
+}
+
+#[test]
+fn the_study_writes_everything_that_was_promised() {
+    let place = Place::new();
+    let out = place.good("paper --duration 0.12 --phases 3 --json");
+    assert_eq!(place.entries(), ["freeplay-paper-default"]);
+    assert_eq!(names(&place.path("freeplay-paper-default")), FILES);
+    assert_eq!(out, place.read("freeplay-paper-default/paper.json"));
+
+    assert_figures(&place);
 
     let json: Value = serde_json::from_str(&out).unwrap();
     assert_eq!((&json["program"], &json["phases"]), (&"freeplay".into(), &3.into()));
@@ -62,34 +107,7 @@ fn the_study_writes_everything_that_was_promised() {
         (json["claims"].as_array().unwrap(), json["variants"].as_array().unwrap());
     assert_eq!((claims.len(), variants.len()), (14, 13));
     for (i, claim) in claims.iter().enumerate() {
-        let (key, limit) = (&claim["key"], claim["limit"].as_str().unwrap());
-        assert!(claim["value"].is_number() && claim["ci95"][1].is_number(), "{claim}");
-        assert!(!claim["evidence"].as_str().unwrap().is_empty(), "{claim}");
-        let mut verdicts = Vec::new();
-        for variant in variants {
-            let judged = &variant["claims"][i];
-            assert_eq!(&judged["key"], key);
-            // Growth at every step is judged by all steps, of which the smallest is shown.
-            if judged["ci95"][0].is_null() {
-                // Endless, against an ideal machine that needs nothing, or never defined.
-                assert_ne!(judged["verdict"], "contradicted", "{}: {judged}", variant["key"]);
-                verdicts.push(&judged["verdict"]);
-                continue;
-            }
-            let shown = verdict(&judged["ci95"], limit);
-            if !key.as_str().unwrap().ends_with("grows") {
-                assert_eq!(judged["verdict"], shown, "{}: {judged}", variant["key"]);
-            } else if judged["verdict"] == "supported" {
-                assert_eq!(shown, "supported", "{}: {judged}", variant["key"]);
-            }
-            verdicts.push(&judged["verdict"]);
-        }
-        assert_eq!(&claim["verdict"], verdicts[0]);
-        let moves = &claim["over_variants"];
-        for word in ["supported", "contradicted", "undecided"] {
-            let count = verdicts.iter().filter(|verdict| **verdict == word).count();
-            assert_eq!(moves[word], count, "{claim}");
-        }
+        assert_claim(i, claim, variants);
     }
     for variant in variants {
         for case in variant["cases"].as_array().unwrap() {
@@ -101,13 +119,7 @@ fn the_study_writes_everything_that_was_promised() {
     }
     let adams = variants.iter().find(|v| v["key"] == "adams-damping").unwrap();
     assert_eq!(adams["sets"], serde_json::json!(["contact.c_max=1e4", "contact.d_max=1e-4"]));
-    let parameters = json["parameters"].as_array().unwrap();
-    let origin = |name: &str| {
-        let row = parameters.iter().find(|p| p["name"].as_str().unwrap().contains(name)).unwrap();
-        row["origin"].as_str().unwrap()
-    };
-    assert_eq!(["C_max", "d_max", "trajectory", "phi"].map(origin), ["assumed"; 4]);
-    assert_eq!(["platform, mass", "stiffness K", "density"].map(origin), ["paper"; 3]);
+    assert_parameters(json["parameters"].as_array().unwrap());
 
     let page = place.read("freeplay-paper-default/index.html");
     let claims = page.find("<section id=\"claims\">").unwrap();

@@ -262,58 +262,65 @@ fn what_a_pendulum_lacks_is_found() {
     assert!(after < 0.02 * before, "{before} {after}");
 }
 
-/// Each fault in a recording of the stage and of the pendulum, under both commands.
+/// A recording must be refused under both commands, with these words.
+fn refused(place: &Place, model: &str, text: &str, words: &[&str]) {
+    place.write("run.csv", text);
+    place.refused(&format!("predict {model} --data run.csv"), words);
+    place.refused(&format!("calibrate --rig {model} --data run.csv"), words);
+}
+
 #[test]
-fn recordings_that_cannot_be_right_are_refused() {
+fn recordings_of_the_stage_that_cannot_be_right_are_refused() {
     let place = Place::new();
     place.write("stage.toml", STAGE);
-    place.write("arm.toml", ARM);
-    let refused = |model: &str, text: &str, words: &[&str]| {
-        place.write("run.csv", text);
-        place.refused(&format!("predict {model} --data run.csv"), words);
-        place.refused(&format!("calibrate --rig {model} --data run.csv"), words);
-    };
+    let refused = |text: &str, words: &[&str]| refused(&place, "stage.toml", text, words);
     let rows = stage_rows(&[HIDDEN], 4.0, 0.0);
     let good = stage_csv(&rows);
     let other = |head: &str, with: &str| good.replacen(head, with, 1);
-    refused("stage.toml", &other("q_ref_m", "q_soll"), &["run.csv:1", "no column `q_ref_m`"]);
-    refused("stage.toml", &other("u_V", "u"), &["run.csv:1", "u_V", "the file has"]);
+    refused(&other("q_ref_m", "q_soll"), &["run.csv:1", "no column `q_ref_m`"]);
+    refused(&other("u_V", "u"), &["run.csv:1", "u_V", "the file has"]);
     let scaled = |factors: [f64; 5]| -> String {
         let row = |row: &[f64; 5]| std::array::from_fn(|k| row[k] * factors[k]);
         stage_csv(&rows.iter().map(row).collect::<Vec<_>>())
     };
     let mm = scaled([1.0, 1e3, 1e3, 1.0, 1.0]);
-    refused("stage.toml", &mm, &["run.csv", "q_ref_m", "q_m", "scale = 0.001"]);
-    refused("stage.toml", &scaled([1.0, 1.0, 1e3, 1.0, 1.0]), &["columns.q1 ", "scale = 0.001"]);
-    refused("stage.toml", &scaled([1.0, 1.0, 1.0, 1e3, 1.0]), &["columns.F1", "scale = 0.0351"]);
-    refused("stage.toml", &scaled([1e3, 1.0, 1.0, 1.0, 1.0]), &["every 1.0000", "columns.t"]);
+    refused(&mm, &["run.csv", "q_ref_m", "q_m", "scale = 0.001"]);
+    refused(&scaled([1.0, 1.0, 1e3, 1.0, 1.0]), &["columns.q1 ", "scale = 0.001"]);
+    refused(&scaled([1.0, 1.0, 1.0, 1e3, 1.0]), &["columns.F1", "scale = 0.0351"]);
+    refused(&scaled([1e3, 1.0, 1.0, 1.0, 1.0]), &["every 1.0000", "columns.t"]);
 
     // Two runs put together: at another place, and at the same place with another speed.
     let jump: Vec<[f64; 5]> = (0..3000).map(|i| rows[if i < 1500 { i } else { i + 700 }]).collect();
     let jump: Vec<[f64; 5]> =
         jump.iter().enumerate().map(|(i, r)| [i as f64 * 1e-3, r[1], r[2], r[3], r[4]]).collect();
-    refused("stage.toml", &stage_csv(&jump), &["run.csv:150", "two runs", "cut the file"]);
+    refused(&stage_csv(&jump), &["run.csv:150", "two runs", "cut the file"]);
     let turned: Vec<[f64; 5]> = (0..3000)
         .map(|i| {
             let r = if i < 1500 { rows[i] } else { rows[3000 - i] };
             [i as f64 * 1e-3, r[1], r[2], r[3], r[4]]
         })
         .collect();
-    refused("stage.toml", &stage_csv(&turned), &["run.csv:150", "two runs"]);
+    refused(&stage_csv(&turned), &["run.csv:150", "two runs"]);
+}
 
+#[test]
+fn recordings_of_the_pendulum_that_cannot_be_right_are_refused() {
+    let place = Place::new();
+    place.write("arm.toml", ARM);
+    let refused = |text: &str, words: &[&str]| refused(&place, "arm.toml", text, words);
     let rows = arm_rows([1.6, 0.0], 12.0);
     let good = arm_csv(&rows);
     let other = good.replacen("theta1_rad", "theta", 1);
-    refused("arm.toml", &other, &["theta1_rad", "the file has t_s, theta"]);
+    refused(&other, &["theta1_rad", "the file has t_s, theta"]);
     let scaled = |factor: f64| {
         arm_csv(&rows.iter().map(|[t, angle]| [*t, angle * factor]).collect::<Vec<_>>())
     };
-    refused("arm.toml", &scaled(180.0 / PI), &["columns.phi", "scale = 0.01745"]);
-    refused("arm.toml", &scaled(1e3), &["columns.phi", "scale = 0.001"]);
+    refused(&scaled(180.0 / PI), &["columns.phi", "scale = 0.01745"]);
+    refused(&scaled(1e3), &["columns.phi", "scale = 0.001"]);
     let jump: Vec<[f64; 2]> = (0..5000)
         .map(|i| [rows[i].map(|x| x)[0], rows[if i < 2500 { i } else { i + 150 }][1]])
         .collect();
-    refused("arm.toml", &arm_csv(&jump), &["run.csv:250", "two runs", "cut the file"]);
+    refused(&arm_csv(&jump), &["run.csv:250", "two runs", "cut the file"]);
     // Where it swings through a place both ways.
     let near = rows[2500][1];
     let back = (2501..4000)
@@ -323,16 +330,16 @@ fn recordings_that_cannot_be_right_are_refused() {
     let turned: Vec<[f64; 2]> = (0..4000)
         .map(|i| [rows[i][0], rows[if i < 2500 { i } else { back + i - 2500 }][1]])
         .collect();
-    refused("arm.toml", &arm_csv(&turned), &["run.csv:250", "two runs"]);
+    refused(&arm_csv(&turned), &["run.csv:250", "two runs"]);
     let gap: String = good
         .lines()
         .enumerate()
         .filter(|(i, _)| !(900..1000).contains(i))
         .map(|(_, l)| format!("{l}\n"))
         .collect();
-    refused("arm.toml", &gap, &["run.csv:9", "constant rate"]);
+    refused(&gap, &["run.csv:9", "constant rate"]);
     // The other machine's recording.
-    refused("arm.toml", &stage_csv(&stage_rows(&[], 1.0, 0.0)), &["theta1_rad", "q_ref_m"]);
+    refused(&stage_csv(&stage_rows(&[], 1.0, 0.0)), &["theta1_rad", "q_ref_m"]);
     place.refused("predict arm.toml --data none.csv", &["none.csv", "cannot be read"]);
 }
 

@@ -136,6 +136,29 @@ fn rows(place: &Place, part: u32) -> String {
     std::fs::read_to_string(place.path(&format!("part-{part}/rows.jsonl"))).unwrap_or_default()
 }
 
+fn sorted_lines(place: &Place, name: &str) -> Vec<String> {
+    let mut lines: Vec<String> = place.read(name).lines().map(str::to_owned).collect();
+    lines.sort();
+    lines
+}
+
+impl Cluster {
+    /// Ends a task by a signal: the queue's own way by SIGTERM; by what nobody can answer, as when memory is short, else.
+    fn end(&self, job: &str, task: u32, signal: &str) {
+        match signal {
+            // It ends with 1 where the task is gone before it looks again: what became of the task is what counts.
+            "TERM" => {
+                let arguments = format!("--signal=TERM --full {job}_{task}");
+                drop(self.slurm("scancel", &arguments).output().unwrap());
+            }
+            _ => {
+                let process = self.place.read(&format!("pid-{task}"));
+                drop(run(Command::new("kill").args(["-KILL", process.trim()])));
+            }
+        }
+    }
+}
+
 /// Ten runs a task, each of a quarter of a second: long enough to be ended between two of them.
 const SWEEP: &str = "sweep --duration 0.8 --vary joints.clearance=1e-4..1e-3:log:20 --vary motion.phase=0..5:4 --quiet";
 
@@ -163,17 +186,7 @@ fn killed_and_resubmitted(sweep: &str, parts: u32) {
     let mut before = Vec::new();
     for (task, signal) in [(first, "TERM"), (second, "KILL")] {
         cluster.until("the task has made a row", || rows(place, task).contains('\n'));
-        // The queue's own way for the first; what nobody can answer, as when memory is short, for the second.
-        match signal {
-            // It ends with 1 where the task is gone before it looks again: what became of the task is what counts.
-            "TERM" => {
-                let arguments = format!("--signal=TERM --full {job}_{task}");
-                drop(cluster.slurm("scancel", &arguments).output().unwrap());
-            }
-            _ => drop(run(
-                Command::new("kill").args(["-KILL", place.read(&format!("pid-{task}")).trim()])
-            )),
-        }
+        cluster.end(&job, task, signal);
         cluster.until("the task has ended", || !cluster.ended(&job, task).starts_with("RUNNING"));
         before.push((task, rows(place, task)));
     }
@@ -205,12 +218,7 @@ fn killed_and_resubmitted(sweep: &str, parts: u32) {
     for file in ["sweep.csv", "scenario.toml"] {
         assert_eq!(place.read(&format!("all/{file}")), place.read(&format!("one/{file}")));
     }
-    let lines = |name: &str| {
-        let mut lines: Vec<String> = place.read(name).lines().map(str::to_owned).collect();
-        lines.sort();
-        lines
-    };
-    assert_eq!(lines("all/rows.jsonl"), lines("one/rows.jsonl"));
+    assert_eq!(sorted_lines(place, "all/rows.jsonl"), sorted_lines(place, "one/rows.jsonl"));
 }
 
 #[test]

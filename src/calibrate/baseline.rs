@@ -1,5 +1,6 @@
 //! What simulations of a model say of its own residuals.
 
+use super::draws::{Coefficients, difference, mean, without};
 use super::lens::Lens;
 use super::model::{Case, Ensemble, Known, SearchError, Segment};
 use super::rattle;
@@ -92,76 +93,17 @@ impl Case {
         };
         let Ensemble { starts, logs, still, rattles } =
             self.ensemble(effects, rattle::REPLICAS, known)?;
-        let view = |log: &Log| Lens::new(log).expect("the channels of the recorded log");
         let views: Vec<Vec<Lens>> =
             logs.iter().map(|logs| logs.par_iter().map(view).collect()).collect();
-        let known = |like: Option<&Baseline>, segment: &Segment| {
-            let parts = &like.filter(|like| like.rattles == rattles)?.parts;
-            Some(parts.iter().find(|part| part.segment == *segment)?.swing.clone())
+        let simulated = Simulated {
+            case: self,
+            starts: &starts,
+            logs: &logs,
+            views: &views,
+            still: &still,
+            rattles,
         };
-        let part = |segment: &Segment| {
-            let machine = &starts[segment.run].machine;
-            let seen = |lens: &Lens| self.coefficients(lens, machine, segment);
-            let look = |log: &Log| seen(&view(log));
-            let logs = &logs[segment.run];
-            let clean: Vec<Vec<Vec<f64>>> = views[segment.run].par_iter().map(seen).collect();
-            let bias = mean(&clean);
-            // A replica stands for the data, the mean of the others for the bias: sensor noise, the
-            // rattle of one run, and what is left of it in a mean.
-            let draws: Vec<Vec<Vec<f64>>> = (0..DRAWS)
-                .into_par_iter()
-                .map(|draw| {
-                    let index = draw % clean.len();
-                    let log = replica::with_noise(
-                        &logs[index],
-                        &self.simulator.sensors,
-                        draw as u64 + 1000,
-                    );
-                    difference(&look(&log), &without(&bias, &clean[index], clean.len()))
-                })
-                .collect();
-            let seen_swing = || {
-                let mut swing = difference(&bias, &look(&still[segment.run]));
-                for (channel, swing) in swing.iter_mut().enumerate() {
-                    let share =
-                        if rattles { SQRT_2 * coherence(&clean, channel, swing) } else { MISSED };
-                    swing.iter_mut().for_each(|value| *value *= share);
-                }
-                swing
-            };
-            let swing = known(same, segment).unwrap_or_else(seen_swing);
-            let part = |noise: Noise, swing, lost| {
-                let draws = draws.iter().map(|draw| noise.whiten(draw)).collect();
-                Part { segment: segment.clone(), bias, noise, draws, swing, lost }
-            };
-            if rattles && !self.chaotic {
-                // Beside models whose noise is the sensors' alone.
-                let draw = |draw| {
-                    let noisy =
-                        replica::with_noise(&logs[0], &self.simulator.sensors, draw as u64 + 1000);
-                    difference(&look(&noisy), &clean[0])
-                };
-                let sensors: Vec<_> = (0..DRAWS).into_par_iter().map(draw).collect();
-                let sensors = Noise::from_draws(&sensors, &swing).log_determinant();
-                let noise = Noise::from_draws(&draws, &swing);
-                let lost = noise.log_determinant() - sensors;
-                return part(noise, swing, lost);
-            }
-            if rattles || starts[segment.run].shown {
-                return part(Noise::from_draws(&draws, &swing), swing, 0.0);
-            }
-            // Two swings of one size and any phase; the size that models beside it have, for they are
-            // compared.
-            let swing = known(like, segment).unwrap_or(swing);
-            let larger: Vec<Vec<f64>> = swing
-                .iter()
-                .map(|channel| channel.iter().map(|value| value * SQRT_2 / MISSED).collect())
-                .collect();
-            let noise = Noise::from_draws(&draws, &larger);
-            let lost = noise.swinging() - Noise::from_draws(&draws, &swing).swinging();
-            part(noise, swing, lost)
-        };
-        let parts = segments.iter().map(part).collect();
+        let parts = segments.iter().map(|segment| simulated.part(segment, same, like)).collect();
         Ok(Baseline { parts, starts, rattles, views: Arc::new(views), logs: Arc::new(logs), still })
     }
 
@@ -222,6 +164,116 @@ impl Case {
     }
 }
 
+fn view(log: &Log) -> Lens {
+    Lens::new(log).expect("the channels of the recorded log")
+}
+
+/// Simulations of a model.
+struct Simulated<'a> {
+    case: &'a Case,
+    starts: &'a [Start],
+    logs: &'a [Vec<Log>],
+    views: &'a [Vec<Lens>],
+    still: &'a [Log],
+    rattles: bool,
+}
+
+impl Simulated<'_> {
+    /// Bias and noise on one segment, with the swing of the `same` model at values nearby, or one as large as that of a
+    /// model like it, where they are known.
+    fn part(&self, segment: &Segment, same: Option<&Baseline>, like: Option<&Baseline>) -> Part {
+        let views = &self.views[segment.run];
+        let clean: Vec<Coefficients> =
+            views.par_iter().map(|lens| self.seen(lens, segment)).collect();
+        let bias = mean(&clean);
+        let draws = self.draws(segment, &clean, &bias);
+        let swing =
+            self.known_swing(same, segment).unwrap_or_else(|| self.swing(segment, &clean, &bias));
+        let (noise, swing, lost) = self.noise(segment, &clean, &draws, swing, like);
+        let draws = draws.iter().map(|draw| noise.whiten(draw)).collect();
+        Part { segment: segment.clone(), bias, noise, draws, swing, lost }
+    }
+
+    /// Coefficients of residuals.
+    fn seen(&self, lens: &Lens, segment: &Segment) -> Coefficients {
+        self.case.coefficients(lens, &self.starts[segment.run].machine, segment)
+    }
+
+    /// The same of a log with noise of its own.
+    fn noisy(&self, log: &Log, draw: usize, segment: &Segment) -> Coefficients {
+        let log = replica::with_noise(log, &self.case.simulator.sensors, draw as u64 + 1000);
+        self.seen(&view(&log), segment)
+    }
+
+    /// The swing that another baseline has on a segment, if joints rattle in both or in none.
+    fn known_swing(&self, like: Option<&Baseline>, segment: &Segment) -> Option<Coefficients> {
+        let parts = &like.filter(|like| like.rattles == self.rattles)?.parts;
+        Some(parts.iter().find(|part| part.segment == *segment)?.swing.clone())
+    }
+
+    /// A replica stands for the data, the mean of the others for the bias: sensor noise, the rattle of one
+    /// run, and what is left of it in a mean.
+    fn draws(
+        &self,
+        segment: &Segment,
+        clean: &[Coefficients],
+        bias: &[Vec<f64>],
+    ) -> Vec<Coefficients> {
+        let logs = &self.logs[segment.run];
+        let draw = |draw: usize| {
+            let index = draw % clean.len();
+            let seen = self.noisy(&logs[index], draw, segment);
+            difference(&seen, &without(bias, &clean[index], clean.len()))
+        };
+        (0..DRAWS).into_par_iter().map(draw).collect()
+    }
+
+    /// What of the residual is the platform's swing, by the share that may be missed.
+    fn swing(&self, segment: &Segment, clean: &[Coefficients], bias: &[Vec<f64>]) -> Coefficients {
+        let mut swing = difference(bias, &self.seen(&view(&self.still[segment.run]), segment));
+        for (channel, swing) in swing.iter_mut().enumerate() {
+            let share =
+                if self.rattles { SQRT_2 * coherence(clean, channel, swing) } else { MISSED };
+            swing.iter_mut().for_each(|value| *value *= share);
+        }
+        swing
+    }
+
+    /// Noise that these draws are of, the swing in it, and what it has more of: see [`Part`].
+    fn noise(
+        &self,
+        segment: &Segment,
+        clean: &[Coefficients],
+        draws: &[Coefficients],
+        swing: Coefficients,
+        like: Option<&Baseline>,
+    ) -> (Noise, Coefficients, f64) {
+        if self.rattles && !self.case.chaotic {
+            // Beside models whose noise is the sensors' alone.
+            let log = &self.logs[segment.run][0];
+            let draw = |draw| difference(&self.noisy(log, draw, segment), &clean[0]);
+            let sensors: Vec<_> = (0..DRAWS).into_par_iter().map(draw).collect();
+            let sensors = Noise::from_draws(&sensors, &swing).log_determinant();
+            let noise = Noise::from_draws(draws, &swing);
+            let lost = noise.log_determinant() - sensors;
+            return (noise, swing, lost);
+        }
+        if self.rattles || self.starts[segment.run].shown {
+            return (Noise::from_draws(draws, &swing), swing, 0.0);
+        }
+        // Two swings of one size and any phase; the size that models beside it have, for they are
+        // compared.
+        let swing = self.known_swing(like, segment).unwrap_or(swing);
+        let larger: Coefficients = swing
+            .iter()
+            .map(|channel| channel.iter().map(|value| value * SQRT_2 / MISSED).collect())
+            .collect();
+        let noise = Noise::from_draws(draws, &larger);
+        let lost = noise.swinging() - Noise::from_draws(draws, &swing).swinging();
+        (noise, swing, lost)
+    }
+}
+
 impl Baseline {
     /// How many replicas it rests on.
     pub fn replicas(&self) -> usize {
@@ -262,22 +314,6 @@ impl Baseline {
     }
 }
 
-fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let channels = a.iter().zip(b);
-    channels.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
-}
-
-/// The mean of `count` draws with one of them left out, if that leaves any.
-fn without(mean: &[Vec<f64>], own: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
-    if count < 2 {
-        return own.to_vec();
-    }
-    let part = 1.0 / count as f64;
-    let left = |(all, own): (&f64, &f64)| (all - part * own) / (1.0 - part);
-    let channels = mean.iter().zip(own);
-    channels.map(|(all, own)| all.iter().zip(own).map(left).collect()).collect()
-}
-
 /// Share of a swing, mean of replicas less a machine at rest, that is no rattle: what replicas differ by
 /// would be as large in both. Its phase is anybody's guess after some seconds, and two swings of one size
 /// and any phase differ by √2 of it.
@@ -290,21 +326,6 @@ fn coherence(replicas: &[Vec<Vec<f64>>], channel: usize, swing: &[f64]) -> f64 {
     };
     let rattle = replicas.iter().map(from_mean).sum::<f64>() / (count - 1.0);
     (1.0 - (1.0 + 1.0 / count) * rattle / square(swing).max(f64::MIN_POSITIVE)).max(0.0).sqrt()
-}
-
-fn mean(draws: &[Vec<Vec<f64>>]) -> Vec<Vec<f64>> {
-    let mut sum = draws[0].clone();
-    for draw in &draws[1..] {
-        for (sum, values) in sum.iter_mut().zip(draw) {
-            for (sum, value) in sum.iter_mut().zip(values) {
-                *sum += value;
-            }
-        }
-    }
-    for value in sum.iter_mut().flatten() {
-        *value /= draws.len() as f64;
-    }
-    sum
 }
 
 #[cfg(test)]

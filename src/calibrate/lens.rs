@@ -12,12 +12,12 @@
 //!
 //! Everything about the machine is read off its [`Mechanism`], effects included.
 
+use super::measured_dynamics::{Machine, PlatformMotion};
 use super::spectrum::{Signal, fast_length};
-use crate::contact::Friction;
 use crate::measure::filter::{ZeroPhase, derivative};
 use crate::measure::log::{Channel, Log};
-use crate::mechanism::{Bearing, Body, BodyState, Command, Drive, Mechanism, Revolute, Situation};
-use nalgebra::{Matrix3, UnitComplex, Vector2, Vector3};
+use crate::mechanism::{Command, Drive, Mechanism};
+use nalgebra::Vector3;
 use std::ops::Range;
 
 /// Noise of slow actuator forces in N, below which it decides at which flank a drive with backlash lies.
@@ -159,7 +159,8 @@ impl Lens {
                 let truth = actuator.true_command(read).acceleration;
                 actuator.transmission.is_none().then_some([read.acceleration, truth])
             });
-            let look = machine.look(t, [pose, rate, acceleration], rods, self.leaning_forces[i]);
+            let motion = PlatformMotion { pose, rate, acceleration };
+            let look = machine.look(t, motion, rods, self.leaning_forces[i]);
             for leg in 0..3 {
                 let actuator = &mechanism.actuators[leg];
                 let (q, command) = (self.lengths[i][leg], commands[leg]);
@@ -182,196 +183,5 @@ impl Lens {
             }
         }
         signals
-    }
-}
-
-/// A 3-RPR at measured poses.
-struct Machine<'a> {
-    mechanism: &'a Mechanism,
-    states: Vec<BodyState>,
-    wrenches: Vec<Vector3<f64>>,
-}
-
-/// What the dynamics say at one instant.
-struct Look {
-    /// Force of each drive by inverse dynamics, N.
-    forces: [f64; 3],
-    /// By how much the journals' leaning lengthens each leg as a vector, m.
-    leans: [Vector2<f64>; 3],
-}
-
-fn turned(v: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(-v.y, v.x)
-}
-
-impl<'a> Machine<'a> {
-    fn new(mechanism: &'a Mechanism) -> Self {
-        let bodies = mechanism.bodies.len();
-        Self {
-            mechanism,
-            states: vec![BodyState::ground(); bodies],
-            wrenches: vec![Vector3::zeros(); bodies],
-        }
-    }
-
-    /// From ring to ring in m: C_i − A_i at a pose (m, m, rad) of the platform's reference point.
-    fn span(&self, leg: usize, pose: Vector3<f64>) -> Vector2<f64> {
-        let platform = &self.mechanism.bodies[self.mechanism.output];
-        let [base, top] = [leg, leg + 3].map(|joint| self.mechanism.revolutes[joint].ring.point);
-        pose.xy() + UnitComplex::new(pose.z) * (top - platform.reference) - base
-    }
-
-    /// Length of a leg in m whose journals lean by `lean` (m).
-    fn length(&self, leg: usize, pose: Vector3<f64>, lean: Vector2<f64>) -> f64 {
-        (self.span(leg, pose) + lean).norm()
-    }
-
-    fn look(
-        &mut self,
-        t: f64,
-        [pose, rate, acceleration]: [Vector3<f64>; 3],
-        rods: [Option<[f64; 2]>; 3],
-        measured: [f64; 3],
-    ) -> Look {
-        let mechanism = self.mechanism;
-        let platform = &mechanism.bodies[mechanism.output];
-        let rotation = UnitComplex::new(pose.z);
-        let moved = |point: Vector2<f64>| {
-            let arm = rotation * point;
-            let velocity = rate.xy() + turned(arm) * rate.z;
-            let second = acceleration.xy() + turned(arm) * acceleration.z - arm * rate.z.powi(2);
-            [pose.xy() + arm, velocity, second]
-        };
-        // States of all bodies, and what each would need as force: M a.
-        let mut needed = vec![Vector3::zeros(); mechanism.bodies.len()];
-        let [position, velocity, second] = moved(-platform.reference);
-        let twist = Vector3::new(velocity.x, velocity.y, rate.z);
-        self.states[mechanism.output] = BodyState { position, rotation, twist };
-        needed[mechanism.output] = Vector3::new(
-            platform.mass * second.x,
-            platform.mass * second.y,
-            platform.inertia * acceleration.z,
-        );
-        let mut axes = [[Vector2::zeros(); 2]; 3];
-        let mut spans = [0.0; 3];
-        let mut spins = [0.0; 3];
-        for leg in 0..3 {
-            let joint = &mechanism.prismatics[leg];
-            let base = mechanism.revolutes[leg].ring.point;
-            let top = mechanism.revolutes[leg + 3].ring.point;
-            let [corner, corner_rate, corner_second] = moved(top - platform.reference);
-            let d = corner - base;
-            let q = d.norm();
-            let u = d / q;
-            let n = turned(u);
-            let (q_rate, omega) = (corner_rate.dot(&u), corner_rate.dot(&n) / q);
-            let q_second = corner_second.dot(&u) + q * omega * omega;
-            let alpha = (corner_second.dot(&n) - 2.0 * q_rate * omega) / q;
-            axes[leg] = [u, n];
-            spans[leg] = q;
-            spins[leg] = omega;
-            let rotation = UnitComplex::from_cos_sin_unchecked(u.x, u.y);
-            // Distances of the centres of mass from A, and their rates along the leg.
-            let parts = [
-                (joint.base.body, -joint.base.point.x, 0.0, 0.0),
-                (
-                    joint.slider.body,
-                    q - joint.slider.point.x,
-                    q_rate,
-                    rods[leg].map_or(q_second, |[read, _]| read),
-                ),
-            ];
-            for (body, s, s_rate, s_second) in parts {
-                let Some(body) = body else { continue };
-                let velocity = u * s_rate + n * (s * omega);
-                let twist = Vector3::new(velocity.x, velocity.y, omega);
-                self.states[body] = BodyState { position: base + u * s, rotation, twist };
-                let a = u * (s_second - s * omega * omega) + n * (s * alpha + 2.0 * s_rate * omega);
-                let Body { mass, inertia, .. } = &mechanism.bodies[body];
-                needed[body] = Vector3::new(mass * a.x, mass * a.y, inertia * alpha);
-            }
-        }
-        // What is left for joints and drives to give.
-        for (wrench, body) in self.wrenches.iter_mut().zip(&mechanism.bodies) {
-            *wrench = (mechanism.gravity * body.mass).push(0.0);
-        }
-        for load in &mechanism.loads {
-            load.add(Situation { t, mechanism, states: &self.states }, &mut self.wrenches);
-        }
-        for (needed, given) in needed.iter_mut().zip(&self.wrenches) {
-            *needed -= given;
-        }
-        // Friction in the joints depends on their forces: once without, once with it.
-        let mut joint_forces = [[Vector2::zeros(); 2]; 3];
-        let mut look = Look { forces: [0.0; 3], leans: [Vector2::zeros(); 3] };
-        let rubbing = mechanism.revolutes.iter().any(|joint| friction(joint).is_some());
-        for pass in 0..=usize::from(rubbing) {
-            let centre = self.states[mechanism.output].position;
-            let mut matrix = Matrix3::zeros();
-            let mut rhs = needed[mechanism.output];
-            let mut across = [0.0; 3];
-            for leg in 0..3 {
-                let [u, n] = axes[leg];
-                let base = mechanism.revolutes[leg].ring.point;
-                let mut moment = 0.0;
-                let joint = &mechanism.prismatics[leg];
-                for body in [joint.base.body, joint.slider.body].into_iter().flatten() {
-                    let arm = self.states[body].position - base;
-                    moment += arm.perp(&needed[body].xy()) + needed[body].z;
-                }
-                if pass > 0 {
-                    let spin = spins[leg];
-                    let torques = [(leg, spin), (leg + 3, spin - rate.z)].map(|(joint, slip)| {
-                        let revolute = &mechanism.revolutes[joint];
-                        let force = joint_forces[leg][joint / 3].norm();
-                        friction(revolute)
-                            .map_or(0.0, |(law, radius)| -radius * law.force(force, slip * radius))
-                    });
-                    moment -= torques[0] + torques[1];
-                    rhs.z += torques[1];
-                }
-                across[leg] = moment / spans[leg];
-                // The rod's end pushes the platform by −(s u + across n).
-                let arm = base + u * spans[leg] - centre;
-                let push = n * across[leg];
-                rhs += Vector3::new(push.x, push.y, arm.perp(&push));
-                matrix.set_column(leg, &-Vector3::new(u.x, u.y, arm.perp(&u)));
-            }
-            let along = matrix.lu().solve(&rhs).unwrap_or_default();
-            for leg in 0..3 {
-                let [u, n] = axes[leg];
-                let joint = &mechanism.prismatics[leg];
-                let rod = joint.slider.body.map_or_else(Vector3::zeros, |b| needed[b]);
-                let cylinder = joint.base.body.map_or_else(Vector3::zeros, |b| needed[b]);
-                let rod_along = rod.xy().dot(&u);
-                // What an error of the encoder adds turns fast: which way journals lean is none of its matter.
-                let mass = joint.slider.body.map_or(0.0, |b| mechanism.bodies[b].mass);
-                let unread = rods[leg].map_or(0.0, |[read, truth]| mass * (truth - read));
-                look.forces[leg] = rod_along + unread - along[leg];
-                let top = u * (rod_along - measured[leg]) + n * across[leg];
-                let base = rod.xy() + cylinder.xy() - top;
-                joint_forces[leg] = [base, top];
-                let [lean_base, lean_top] = [(leg, base), (leg + 3, top)].map(|(joint, force)| {
-                    let size = force.norm();
-                    match &mechanism.revolutes[joint].bearing {
-                        Bearing::Clearance(clearance) if size > 0.0 => {
-                            let depth = clearance.law.resting_penetration(size);
-                            force * (-(clearance.radial() + depth) / size)
-                        }
-                        _ => Vector2::zeros(),
-                    }
-                });
-                look.leans[leg] = lean_top - lean_base;
-            }
-        }
-        look
-    }
-}
-
-/// Friction of a joint and its journal's radius in m, if it rubs.
-fn friction(joint: &Revolute) -> Option<(Friction, f64)> {
-    match &joint.bearing {
-        Bearing::Clearance(clearance) => Some((clearance.friction?, clearance.journal_radius)),
-        Bearing::Ideal | Bearing::Native { .. } => None,
     }
 }

@@ -6,7 +6,8 @@ use super::left::is_noise;
 use super::model::Case;
 use super::outcome::{Outcome, Verdict};
 use super::report::{EffectReport, Report};
-use super::way::name as in_words;
+use super::unnamed::Described;
+use super::way::{Round, name as in_words};
 use crate::effects::{Map, Setting};
 use crate::report::{Fact, Part, Table, document, known_to, length, number};
 
@@ -223,59 +224,64 @@ fn dependence(charts: &Charts) -> Table {
     }
 }
 
-fn candidates(outcome: &Outcome) -> Table {
+/// What was tried in a round, which has this number.
+fn of_round(number_of_round: usize, round: &Round, outcome: &Outcome) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
-    for (i, round) in outcome.rounds.iter().enumerate() {
-        let mut seen: Vec<&Setting> = Vec::new();
-        for scored in &round.ranking {
-            if seen.len() == LISTED || seen.iter().any(|other| other.is(&scored.effect)) {
-                continue;
+    let mut seen: Vec<&Setting> = Vec::new();
+    for scored in &round.ranking {
+        if seen.len() == LISTED || seen.iter().any(|other| other.is(&scored.effect)) {
+            continue;
+        }
+        seen.push(&scored.effect);
+        let added = round.added.as_ref().is_some_and(|added| added.is(&scored.effect));
+        let kept = outcome.effects.iter().any(|(effect, _)| effect.is(&scored.effect));
+        rows.push(vec![
+            number_of_round.to_string(),
+            in_words(&scored.effect),
+            format!("{:.1} %", 100.0 * scored.share),
+            number(scored.gain),
+            if scored.simulated { "yes" } else { "no" }.to_owned(),
+            match (added, kept) {
+                (true, true) => "kept",
+                (true, false) => "taken, not kept in the end",
+                _ => "",
             }
-            seen.push(&scored.effect);
-            let added = round.added.as_ref().is_some_and(|added| added.is(&scored.effect));
-            let kept = outcome.effects.iter().any(|(effect, _)| effect.is(&scored.effect));
-            rows.push(vec![
-                (i + 1).to_string(),
-                in_words(&scored.effect),
-                format!("{:.1} %", 100.0 * scored.share),
-                number(scored.gain),
-                if scored.simulated { "yes" } else { "no" }.to_owned(),
-                match (added, kept) {
-                    (true, true) => "kept",
-                    (true, false) => "taken, not kept in the end",
-                    _ => "",
-                }
-                .to_owned(),
-            ]);
-        }
-        if round.added.is_none() {
-            rows.push(vec![
-                (i + 1).to_string(),
-                "none of them".to_owned(),
-                String::new(),
-                String::new(),
-                String::new(),
-                "the search ends".to_owned(),
-            ]);
-        }
+            .to_owned(),
+        ]);
     }
-    if let Some(described) = &outcome.described {
-        for (depends_on, share) in &described.others {
-            rows.push(vec![
-                "–".to_owned(),
-                format!("a table over {}", depends_on.words()),
-                format!("{:.1} %", 100.0 * share.max(0.0)),
-                "–".to_owned(),
-                "no".to_owned(),
-                if described.effect.map().is_some_and(|map| map.depends_on == *depends_on) {
-                    "kept"
-                } else {
-                    ""
-                }
-                .to_owned(),
-            ]);
-        }
+    if round.added.is_none() {
+        rows.push(vec![
+            number_of_round.to_string(),
+            "none of them".to_owned(),
+            String::new(),
+            String::new(),
+            String::new(),
+            "the search ends".to_owned(),
+        ]);
     }
+    rows
+}
+
+/// Tables over one quantity or another that stand in for what has no name.
+fn of_tables(described: &Described) -> impl Iterator<Item = Vec<String>> {
+    described.others.iter().map(|(depends_on, share)| {
+        let kept = described.effect.map().is_some_and(|map| map.depends_on == *depends_on);
+        vec![
+            "–".to_owned(),
+            format!("a table over {}", depends_on.words()),
+            format!("{:.1} %", 100.0 * share.max(0.0)),
+            "–".to_owned(),
+            "no".to_owned(),
+            if kept { "kept" } else { "" }.to_owned(),
+        ]
+    })
+}
+
+fn candidates(outcome: &Outcome) -> Table {
+    let rounds = outcome.rounds.iter().enumerate();
+    let mut rows: Vec<Vec<String>> =
+        rounds.flat_map(|(i, round)| of_round(i + 1, round, outcome)).collect();
+    rows.extend(outcome.described.iter().flat_map(of_tables));
     Table {
         id: "candidates",
         title: "Candidates, round by round".into(),

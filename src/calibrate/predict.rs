@@ -6,7 +6,7 @@ use super::errors::{self, ChannelError};
 use super::model::{Case, released};
 use super::plausibility;
 use super::predict_page;
-use super::rattle;
+use super::rattle::{self, Rattle};
 use super::recording::Recording;
 use super::report::RattleReport;
 use super::result::{CalibrateError, control, refuse, sensors, to_json};
@@ -14,7 +14,7 @@ use super::start::as_seen;
 use crate::engine::Halt;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
-use crate::report::Style;
+use crate::report::{Picture, Style};
 use crate::scenario::{self, Law, Problem, Scenario};
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
@@ -103,14 +103,7 @@ pub fn into_folder(
     let rattle = rattle::look(&case.simulator, &machine, &log)?;
     refuse(plausibility::forces(&recording.path, &recording.log, &rattle.logs[0], &model.drive))?;
     tell("predicting the run");
-    let simulate = |mut machine: Mechanism| {
-        if !rattle.chaotic {
-            machine = as_seen(&case.simulator, machine, &recording.log, None, false)?.machine;
-        }
-        let replicas = (0..rattle.replicas as u64).into_par_iter();
-        let logs = replicas.map(|r| case.simulator.record(&machine, &log, r));
-        logs.collect::<Result<Vec<Log>, Halt>>()
-    };
+    let simulate = |machine| simulated(&case, machine, recording, &log, &rattle);
     let after = simulate(machine)?;
     let before = if model.effects.is_empty() {
         None
@@ -153,14 +146,38 @@ pub fn into_folder(
         wall_s: started.elapsed().as_secs_f64(),
         files: texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect(),
     };
+    written(prediction, &predicted, &pictures, folder)
+}
+
+/// Replicas of a machine that a log's commands drive; where joints stay loaded, started as it was seen.
+fn simulated(
+    case: &Case,
+    mut machine: Mechanism,
+    recording: &Recording,
+    log: &Log,
+    rattle: &Rattle,
+) -> Result<Vec<Log>, Halt> {
+    if !rattle.chaotic {
+        machine = as_seen(&case.simulator, machine, &recording.log, None, false)?.machine;
+    }
+    let replicas = (0..rattle.replicas as u64).into_par_iter();
+    replicas.map(|r| case.simulator.record(&machine, log, r)).collect()
+}
+
+fn written(
+    prediction: Prediction,
+    predicted: &Log,
+    pictures: &[Picture],
+    folder: Folder,
+) -> Result<Predicted, CalibrateError> {
     let json = to_json(&prediction);
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
     write(ERRORS_FILE, &json)?;
     write(PREDICTED_FILE, &predicted.to_csv())?;
-    for picture in &pictures {
+    for picture in pictures {
         write(&picture.file, &picture.svg)?;
     }
-    write(PAGE_FILE, &predict_page::page(&prediction, &pictures))?;
+    write(PAGE_FILE, &predict_page::page(&prediction, pictures))?;
     let folder = folder.finish().map_err(RunError::from)?;
     Ok(Predicted { prediction, json, folder })
 }

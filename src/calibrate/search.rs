@@ -84,19 +84,10 @@ pub fn search(
             ways = vec![best.clone()];
             continue;
         }
-        let mut fan = Fan::new(case, question, until, tell);
-        let mut searched = Vec::new();
-        for way in &ways {
-            if searched.is_empty() || fan.affords_another() {
-                searched.push(fan.beside(way)?);
-            }
-        }
-        let mut next = fan.found();
-        next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
-        told_apart(case, question, &mut next);
+        let (round, mut next) = beside_all(case, question, &ways, until, tell)?;
         let won = next.first().is_some_and(|first| first.cost() < best.cost() - threshold);
         if !won {
-            best.rounds.extend(searched.into_iter().next());
+            best.rounds.extend(round);
             break;
         }
         let winner = next.remove(0);
@@ -109,11 +100,7 @@ pub fn search(
                 tell(&format!("settling {} point by point", names(&way.model.fit.effects)));
                 way.model = refined(case, question, way.model.clone())?;
             }
-            if let Some(better) = next.iter_mut().min_by(|a, b| a.cost().total_cmp(&b.cost()))
-                && better.cost() < best.cost()
-            {
-                std::mem::swap(better, &mut best);
-            }
+            exchange_for_better(&mut best, &mut next);
         }
         ways = vec![best.clone()];
         certain.extend(next.iter().chain([&best]).filter(|way| way.certain).cloned());
@@ -126,13 +113,50 @@ pub fn search(
     }
     if is_noise(&left(case, question, &best.model)) {
         best.model = needed(case, question, best.model, threshold, tell)?;
-        let kept = &best.model.fit.effects;
-        for added in best.rounds.iter_mut().filter_map(|round| round.added.as_mut()) {
+        best.rename_added();
+    }
+    Ok(Found { best, declared, certain })
+}
+
+/// What is found beside several ways, the best first, and the round of the first way.
+fn beside_all(
+    case: &Case,
+    question: &Question,
+    ways: &[Way],
+    until: f64,
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<(Option<Round>, Vec<Way>), SearchError> {
+    let mut fan = Fan::new(case, question, until, tell);
+    let mut searched = Vec::new();
+    for way in ways {
+        if searched.is_empty() || fan.affords_another() {
+            searched.push(fan.beside(way)?);
+        }
+    }
+    let mut next = fan.found();
+    next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    told_apart(case, question, &mut next);
+    Ok((searched.into_iter().next(), next))
+}
+
+/// Puts the best of others in the place of the best way, and that in its place, if it is better.
+fn exchange_for_better(best: &mut Way, others: &mut [Way]) {
+    if let Some(better) = others.iter_mut().min_by(|a, b| a.cost().total_cmp(&b.cost()))
+        && better.cost() < best.cost()
+    {
+        std::mem::swap(better, best);
+    }
+}
+
+impl Way {
+    /// Rounds name what is left of what they added.
+    fn rename_added(&mut self) {
+        let kept = &self.model.fit.effects;
+        for added in self.rounds.iter_mut().filter_map(|round| round.added.as_mut()) {
             let inner = kept.iter().find(|effect| contains(added, effect));
             *added = inner.unwrap_or(added).clone();
         }
     }
-    Ok(Found { best, declared, certain })
 }
 
 /// What is noise already is not explained any better; but that recorded joints rattle less than those of a

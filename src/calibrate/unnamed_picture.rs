@@ -93,68 +93,64 @@ fn plane(map: &Map) -> Result<String, ReportError> {
 
 /// Force over speed, length or acceleration; what a motion of the map's reach once a second has.
 fn of_map(map: &Map) -> Vec<Panel> {
-    let panel = |title: String, x_label: &str, points: Vec<(f64, f64)>, torque: bool| Panel {
-        curves: vec![Curve { name: title.clone(), points, style: Style::Solid }],
-        title,
-        x_label: x_label.into(),
-        y_label: if torque { "torque (N m)" } else { "force (N)" }.into(),
-    };
-    let parts = ["along x", "along y", "torque"];
     (0..map.coefficients.len())
         .map(|i| {
-            let curve = |motion: &dyn Fn(f64) -> (f64, Motion, Vec<Command>)| -> Vec<(f64, f64)> {
-                let at = |share: f64| {
-                    let (x, motion, commands) = motion(share);
-                    (x, forces(map, motion, &commands)[i])
-                };
-                from_end_to_end(POINTS).map(at).collect()
+            let at = |share: f64| {
+                let (x, motion, commands) = moving(map, i, share);
+                (x, forces(map, motion, &commands)[i])
             };
-            let pose = Vector3::from(map.middle);
-            let [middle, reach] = map.lengths;
-            match map.depends_on {
-                DependsOn::ActuatorLength => {
-                    let points = curve(&|share| {
-                        let length = middle + share * reach;
-                        (
-                            length,
-                            Motion { pose, actuator: [length, 0.0], ..Motion::default() },
-                            Vec::new(),
-                        )
-                    });
-                    panel(format!("Actuator {}", i + 1), "length (m)", points, false)
-                }
-                DependsOn::ActuatorVelocity => {
-                    let points = curve(&|share| {
-                        let speed = share * TAU * reach;
-                        (
-                            speed,
-                            Motion { pose, actuator: [middle, speed], ..Motion::default() },
-                            Vec::new(),
-                        )
-                    });
-                    panel(format!("Actuator {}", i + 1), "speed (m/s)", points, false)
-                }
-                DependsOn::Acceleration => {
-                    let points = curve(&|share| {
-                        let acceleration = share * TAU * TAU * reach;
-                        let mut commands = vec![Command::default(); map.coefficients.len()];
-                        commands[i].acceleration = acceleration;
-                        (acceleration, Motion { pose, ..Motion::default() }, commands)
-                    });
-                    panel(format!("Actuator {}", i + 1), "acceleration (m/s²)", points, false)
-                }
-                DependsOn::Velocity | DependsOn::Position => {
-                    let points = curve(&|share| {
-                        let mut rate = Vector3::zeros();
-                        rate[i] = share * TAU * map.reach[i];
-                        (rate[i], Motion { pose, rate, ..Motion::default() }, Vec::new())
-                    });
-                    let label = if i == 2 { "angular velocity (rad/s)" } else { "velocity (m/s)" };
-                    panel(parts[i.min(2)].to_owned(), label, points, i == 2)
-                }
+            let points = from_end_to_end(POINTS).map(at).collect();
+            let (title, x_label, torque) = heading(map.depends_on, i);
+            Panel {
+                curves: vec![Curve { name: title.clone(), points, style: Style::Solid }],
+                title,
+                x_label: x_label.into(),
+                y_label: if torque { "torque (N m)" } else { "force (N)" }.into(),
             }
         })
         .collect()
+}
+
+/// Title of the panel of a force, label of what it is over, and whether it is a torque.
+fn heading(depends_on: DependsOn, i: usize) -> (String, &'static str, bool) {
+    const PARTS: [&str; 3] = ["along x", "along y", "torque"];
+    let actuator = || format!("Actuator {}", i + 1);
+    match depends_on {
+        DependsOn::ActuatorLength => (actuator(), "length (m)", false),
+        DependsOn::ActuatorVelocity => (actuator(), "speed (m/s)", false),
+        DependsOn::Acceleration => (actuator(), "acceleration (m/s²)", false),
+        DependsOn::Velocity | DependsOn::Position => {
+            let label = if i == 2 { "angular velocity (rad/s)" } else { "velocity (m/s)" };
+            (PARTS[i.min(2)].to_owned(), label, i == 2)
+        }
+    }
+}
+
+/// What a force is over at a share of its reach, and the motion and commands there.
+fn moving(map: &Map, i: usize, share: f64) -> (f64, Motion, Vec<Command>) {
+    let pose = Vector3::from(map.middle);
+    let [middle, reach] = map.lengths;
+    match map.depends_on {
+        DependsOn::ActuatorLength => {
+            let length = middle + share * reach;
+            (length, Motion { pose, actuator: [length, 0.0], ..Motion::default() }, Vec::new())
+        }
+        DependsOn::ActuatorVelocity => {
+            let speed = share * TAU * reach;
+            (speed, Motion { pose, actuator: [middle, speed], ..Motion::default() }, Vec::new())
+        }
+        DependsOn::Acceleration => {
+            let acceleration = share * TAU * TAU * reach;
+            let mut commands = vec![Command::default(); map.coefficients.len()];
+            commands[i].acceleration = acceleration;
+            (acceleration, Motion { pose, ..Motion::default() }, commands)
+        }
+        DependsOn::Velocity | DependsOn::Position => {
+            let mut rate = Vector3::zeros();
+            rate[i] = share * TAU * map.reach[i];
+            (rate[i], Motion { pose, rate, ..Motion::default() }, Vec::new())
+        }
+    }
 }
 
 /// The effort at each joint over its coordinate or rate, the other joints in the middle of their ways.

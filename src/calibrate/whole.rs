@@ -134,61 +134,128 @@ fn from(
     stages: &[Stage],
     patient: bool,
 ) -> Option<Fit> {
-    let count = values(effects).len();
-    let mut free: Vec<Free> = free(effects);
-    let mut now = values(effects);
-    for kicks in on.iter().filter_map(|segment| starts[segment.run].kicks) {
-        now.extend(kicks.iter());
-        free.extend([Free { step: 1.0, bounds: [f64::NEG_INFINITY, f64::INFINITY] }; KICKS]);
+    let (sought, mut progress) = Sought::new(case, on, effects, starts)?;
+    for (i, stage) in stages.iter().enumerate() {
+        let last = i + 1 == stages.len();
+        progress.take(&sought, stage, patient, last)?;
     }
-    let mut axes = Axes::along(&free, STEP / SIGMAS);
-    let swings = on.iter().map(|segment| Swing::of(case, segment, &starts[segment.run]));
-    let swings: Vec<Swing> = swings.collect::<Option<_>>()?;
-    let mut fit = None;
-    // Derivatives along the axes in units of what may be missed, and those units.
-    let mut last: Option<(DMatrix<f64>, DVector<f64>)> = None;
-    for (i, Stage { seen, band, share, steps, enough, kept }) in stages.iter().enumerate() {
-        let parts: Vec<Vec<Part>> = on
-            .iter()
-            .zip(&swings)
-            .map(|(segment, swing)| {
-                let interval = case.runs[segment.run].log.interval;
-                let rows = segment.rows.clone();
-                let end = ((seen / interval) as usize).saturating_add(rows.start).min(rows.end);
-                let whole = end == rows.end;
-                let first = Part::new(case, swing, rows.start..end, *band, *share)?;
-                let motion = || Part::new(case, swing, rows.clone(), MOTION, ROUGH[0].share);
-                Some(if whole { vec![first] } else { vec![first, motion()?] })
-            })
-            .collect::<Option<_>>()?;
-        let look = |values: &[f64]| {
-            let (own, mut rest) = values.split_at(count);
-            let effects = with_values(effects, own);
-            let mut white = Vec::new();
-            for (segment, parts) in on.iter().zip(&parts) {
-                let mut machine = case.runs[segment.run].released(&case.rig, &effects).ok()?;
-                if starts[segment.run].kicks.is_some() {
-                    let (own, others) = rest.split_at(KICKS);
-                    rest = others;
-                    let still = still(&case.simulator, &machine).ok()?;
-                    machine = kicked(&still, &Kicks::from_column_slice(own));
-                }
-                let simulated = simulate(case, segment, &machine)?;
-                for part in parts {
-                    white.extend(part.missed(case, &case.runs[segment.run].log, &simulated)?);
-                }
-            }
-            Some(DVector::from_vec(white))
-        };
-        let along = |steps: &[f64]| look(&axes.values(&free, &now, steps));
-        let sigmas = vec![Free { step: SIGMAS, bounds: [-1e9, 1e9] }; now.len()];
-        let units = units(&parts);
-        if fit.is_none() {
-            let zero = vec![0.0; now.len()];
-            let first = jacobian(&along, &sigmas, &zero, &along(&zero)?)?;
-            axes = axes.turned(&free, &first)?;
+    let (residual, jacobian) = progress.fit?;
+    Some(sought.fit(&progress.now, residual, &jacobian))
+}
+
+/// What is fitted to segments: values of effects, then kicks where starts have them.
+struct Sought<'a> {
+    case: &'a Case,
+    on: &'a [Segment],
+    effects: &'a [Setting],
+    starts: &'a [Start],
+    /// Number of the effects' values.
+    count: usize,
+    free: Vec<Free>,
+    /// One a segment.
+    swings: Vec<Swing>,
+}
+
+impl<'a> Sought<'a> {
+    /// That, and a fit that has not begun.
+    fn new(
+        case: &'a Case,
+        on: &'a [Segment],
+        effects: &'a [Setting],
+        starts: &'a [Start],
+    ) -> Option<(Self, Progress)> {
+        let count = values(effects).len();
+        let mut free: Vec<Free> = free(effects);
+        let mut now = values(effects);
+        for kicks in on.iter().filter_map(|segment| starts[segment.run].kicks) {
+            now.extend(kicks.iter());
+            free.extend([Free { step: 1.0, bounds: [f64::NEG_INFINITY, f64::INFINITY] }; KICKS]);
         }
-        let mut known = last.take().filter(|_| *kept).map(|(mut along, before)| {
+        let axes = Axes::along(&free, STEP / SIGMAS);
+        let swings = on.iter().map(|segment| Swing::of(case, segment, &starts[segment.run]));
+        let swings: Vec<Swing> = swings.collect::<Option<_>>()?;
+        let sought = Self { case, on, effects, starts, count, free, swings };
+        Some((sought, Progress { now, axes, fit: None, last: None }))
+    }
+
+    /// What counts of each segment in a stage.
+    fn parts(&self, stage: &Stage) -> Option<Vec<Vec<Part>>> {
+        let case = self.case;
+        let of = |(segment, swing): (&Segment, &Swing)| {
+            let interval = case.runs[segment.run].log.interval;
+            let rows = segment.rows.clone();
+            let end = ((stage.seen / interval) as usize).saturating_add(rows.start).min(rows.end);
+            let whole = end == rows.end;
+            let first = Part::new(case, swing, rows.start..end, stage.band, stage.share)?;
+            let motion = || Part::new(case, swing, rows.clone(), MOTION, ROUGH[0].share);
+            Some(if whole { vec![first] } else { vec![first, motion()?] })
+        };
+        self.on.iter().zip(&self.swings).map(of).collect()
+    }
+
+    /// What simulations with these values miss of what counts.
+    fn missed(&self, parts: &[Vec<Part>], values: &[f64]) -> Option<DVector<f64>> {
+        let case = self.case;
+        let (own, mut rest) = values.split_at(self.count);
+        let effects = with_values(self.effects, own);
+        let mut white = Vec::new();
+        for (segment, parts) in self.on.iter().zip(parts) {
+            let mut machine = case.runs[segment.run].released(&case.rig, &effects).ok()?;
+            if self.starts[segment.run].kicks.is_some() {
+                let (own, others) = rest.split_at(KICKS);
+                rest = others;
+                let still = still(&case.simulator, &machine).ok()?;
+                machine = kicked(&still, &Kicks::from_column_slice(own));
+            }
+            let simulated = simulate(case, segment, &machine)?;
+            for part in parts {
+                white.extend(part.missed(case, &case.runs[segment.run].log, &simulated)?);
+            }
+        }
+        Some(DVector::from_vec(white))
+    }
+
+    /// The fit that numbers make, kicks among them.
+    fn fit(&self, now: &[f64], residual: DVector<f64>, jacobian: &DMatrix<f64>) -> Fit {
+        let count = self.count;
+        let chi2 = residual.norm_squared();
+        // What kicks could do as well tells nothing of values.
+        let mut own = jacobian.columns(0, count).into_owned();
+        if jacobian.ncols() > count {
+            let others = jacobian.columns(count, jacobian.ncols() - count).into_owned().qr().q();
+            own -= &others * (others.transpose() * &own);
+        }
+        let effects = with_values(self.effects, &now[..count]);
+        Fit { effects, chi2, white: residual, jacobian: Some(own) }
+    }
+}
+
+/// How far a fit has come.
+struct Progress {
+    now: Vec<f64>,
+    axes: Axes,
+    /// What is missed, and its derivatives.
+    fit: Option<(DVector<f64>, DMatrix<f64>)>,
+    /// Derivatives along the axes in units of what may be missed, and those units.
+    last: Option<(DMatrix<f64>, DVector<f64>)>,
+}
+
+impl Progress {
+    /// Takes the steps of a stage, the `last` one or not; none where they do not come near enough for more.
+    fn take(&mut self, sought: &Sought, stage: &Stage, patient: bool, last: bool) -> Option<()> {
+        let parts = sought.parts(stage)?;
+        let free = &sought.free;
+        let look = |values: &[f64]| sought.missed(&parts, values);
+        let count = self.now.len();
+        let sigmas = vec![Free { step: SIGMAS, bounds: [-1e9, 1e9] }; count];
+        let units = units(&parts);
+        if self.fit.is_none() {
+            let along = |steps: &[f64]| look(&self.axes.values(free, &self.now, steps));
+            let zero = vec![0.0; count];
+            let first = jacobian(&along, &sigmas, &zero, &along(&zero)?)?;
+            self.axes = self.axes.turned(free, &first)?;
+        }
+        let mut known = self.last.take().filter(|_| stage.kept).map(|(mut along, before)| {
             let scale = before.component_div(&units);
             along.column_iter_mut().for_each(|mut column| column.component_mul_assign(&scale));
             along
@@ -196,41 +263,31 @@ fn from(
         // With axes that were wrong a fit may have ended too soon.
         let mut before = SLOW * COMPLETE;
         loop {
-            let along = |steps: &[f64]| look(&axes.values(&free, &now, steps));
-            let effort = Effort { steps: *steps, enough: *enough, secant: true };
-            let best = least_squares(&along, &sigmas, vec![0.0; now.len()], effort, known.take())?;
+            let along = |steps: &[f64]| look(&self.axes.values(free, &self.now, steps));
+            let effort = Effort { steps: stage.steps, enough: stage.enough, secant: true };
+            let best = least_squares(&along, &sigmas, vec![0.0; count], effort, known.take())?;
             let left = best.residual.norm_squared() / best.residual.len() as f64;
             if left > f64::max(COMPLETE, FALLING * before) || (left > COMPLETE && !patient) {
                 return None;
             }
-            now = axes.values(&free, &now, &best.values);
+            self.now = self.axes.values(free, &self.now, &best.values);
             let derivatives = best.jacobian.as_ref()?;
-            let mut own = axes.derivatives(derivatives)?;
-            let turned = axes.turned(&free, derivatives)?;
-            if case.chaotic && i + 1 == stages.len() {
-                let along = |steps: &[f64]| look(&turned.values(&free, &now, steps));
+            let mut own = self.axes.derivatives(derivatives)?;
+            let turned = self.axes.turned(free, derivatives)?;
+            if sought.case.chaotic && last {
+                let along = |steps: &[f64]| look(&turned.values(free, &self.now, steps));
                 let slopes = turned.derivatives_along(&own);
                 own = turned.derivatives(&smoothed(&along, slopes, &best.residual))?;
             }
-            last = Some((turned.derivatives_along(&own), units.clone()));
-            axes = turned;
-            fit = Some((best.residual, own));
+            self.last = Some((turned.derivatives_along(&own), units.clone()));
+            self.axes = turned;
+            self.fit = Some((best.residual, own));
             if left < COMPLETE {
-                break;
+                return Some(());
             }
             before = left;
         }
     }
-    let (residual, jacobian) = fit?;
-    let chi2 = residual.norm_squared();
-    // What kicks could do as well tells nothing of values.
-    let mut own = jacobian.columns(0, count).into_owned();
-    if jacobian.ncols() > count {
-        let others = jacobian.columns(count, jacobian.ncols() - count).into_owned().qr().q();
-        own -= &others * (others.transpose() * &own);
-    }
-    let effects = with_values(effects, &now[..count]);
-    Some(Fit { effects, chi2, white: residual, jacobian: Some(own) })
 }
 
 /// Slopes along axes no larger than what is missed grows farther away. Where joints rattle that friction has

@@ -130,48 +130,8 @@ fn rule(targets: Targets) -> &'static str {
     match targets {
         Targets::Machine => "none: it acts on the whole machine",
         Targets::Commands => "none: it acts on the commands of all drives",
-        Targets::Joint(joints) => match joints {
-            Joints::Prismatic => {
-                "a prismatic joint, such as \"P1\", or a list of some with a common cause"
-            }
-            Joints::DrivenPrismatic => {
-                "a prismatic joint with a drive, such as \"P1\", or a list of some with a common cause"
-            }
-            Joints::Driven => {
-                "a joint with a drive, such as \"P1\", or a list of some with a common cause"
-            }
-            Joints::Sampled => {
-                "a joint whose drive has a sampled controller, such as \"P1\" of a drive stage, or a list of \
-                 some with a common cause"
-            }
-            Joints::Revolute | Joints::Bearing => {
-                "a revolute joint, such as \"A1\" or \"C1\", or a list of some with a common cause"
-            }
-            Joints::DrivenRevolute => {
-                "a revolute joint with a drive, such as \"O\" of a four-bar, or a list of some with a common \
-                 cause"
-            }
-            Joints::Anchor => {
-                "a revolute joint whose bearing is on the base, such as \"A1\", or a list of some with a \
-                 common cause"
-            }
-            Joints::Any => {
-                "a joint, prismatic or revolute, such as \"P1\" or \"A1\", or a list of some with a common \
-                 cause"
-            }
-        },
-        Targets::JointOrAll(joints) => match joints {
-            Joints::Prismatic | Joints::DrivenPrismatic => {
-                "a prismatic joint with a drive, such as \"P1\", or a list of some; all of them when none is \
-                 named"
-            }
-            Joints::Driven => {
-                "a joint with a drive, such as \"P1\", or a list of some; all of them when none is named"
-            }
-            _ => {
-                "a revolute joint, such as \"A1\" or \"C1\", or a list of some; all of them when none is named"
-            }
-        },
+        Targets::Joint(joints) => rule_of_joint(joints),
+        Targets::JointOrAll(joints) => rule_of_joint_or_all(joints),
         Targets::Body => {
             "a moving body, such as \"platform\"; the output body, whose motion is the machine's result, when \
              none is named"
@@ -179,16 +139,68 @@ fn rule(targets: Targets) -> &'static str {
         Targets::Point => {
             "a named point of a body or of the ground, such as \"rocker.B\" or \"ground.S\""
         }
-        Targets::Sensor(senses) => match senses {
-            Senses::Any => {
-                "the column of a sensor, or a list of some that share a clock; commands are not measured"
-            }
-            Senses::Coordinate => "the column of a sensor of a joint's position",
-            Senses::Zeroed => "the column of a sensor of a joint's position or of a body's angle",
-            Senses::Angle => "the column of a sensor of a revolute joint's position",
-            Senses::Effort => "the column of a sensor of a drive's force or torque",
-        },
+        Targets::Sensor(senses) => rule_of_sensor(senses),
         Targets::Tracker => "none: it acts on every sensor of x, y or angle",
+    }
+}
+
+fn rule_of_joint(joints: Joints) -> &'static str {
+    match joints {
+        Joints::Prismatic => {
+            "a prismatic joint, such as \"P1\", or a list of some with a common cause"
+        }
+        Joints::DrivenPrismatic => {
+            "a prismatic joint with a drive, such as \"P1\", or a list of some with a common cause"
+        }
+        Joints::Driven => {
+            "a joint with a drive, such as \"P1\", or a list of some with a common cause"
+        }
+        Joints::Sampled => {
+            "a joint whose drive has a sampled controller, such as \"P1\" of a drive stage, or a list of \
+                 some with a common cause"
+        }
+        Joints::Revolute | Joints::Bearing => {
+            "a revolute joint, such as \"A1\" or \"C1\", or a list of some with a common cause"
+        }
+        Joints::DrivenRevolute => {
+            "a revolute joint with a drive, such as \"O\" of a four-bar, or a list of some with a common \
+                 cause"
+        }
+        Joints::Anchor => {
+            "a revolute joint whose bearing is on the base, such as \"A1\", or a list of some with a \
+                 common cause"
+        }
+        Joints::Any => {
+            "a joint, prismatic or revolute, such as \"P1\" or \"A1\", or a list of some with a common \
+                 cause"
+        }
+    }
+}
+
+fn rule_of_joint_or_all(joints: Joints) -> &'static str {
+    match joints {
+        Joints::Prismatic | Joints::DrivenPrismatic => {
+            "a prismatic joint with a drive, such as \"P1\", or a list of some; all of them when none is \
+                 named"
+        }
+        Joints::Driven => {
+            "a joint with a drive, such as \"P1\", or a list of some; all of them when none is named"
+        }
+        _ => {
+            "a revolute joint, such as \"A1\" or \"C1\", or a list of some; all of them when none is named"
+        }
+    }
+}
+
+fn rule_of_sensor(senses: Senses) -> &'static str {
+    match senses {
+        Senses::Any => {
+            "the column of a sensor, or a list of some that share a clock; commands are not measured"
+        }
+        Senses::Coordinate => "the column of a sensor of a joint's position",
+        Senses::Zeroed => "the column of a sensor of a joint's position or of a body's angle",
+        Senses::Angle => "the column of a sensor of a revolute joint's position",
+        Senses::Effort => "the column of a sensor of a drive's force or torque",
     }
 }
 

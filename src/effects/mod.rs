@@ -38,6 +38,7 @@ mod out_of_round;
 mod payload;
 mod pivot_friction;
 mod point_offset;
+mod reading;
 #[cfg(test)]
 mod rigs;
 mod rotor_inertia;

@@ -1,6 +1,7 @@
 //! The only way from a scenario to a machine.
 
-use super::build::{Built, build, kind_of_drives};
+use super::build::{Built, build};
+use super::declared_drives::kind_of_drives;
 use super::drives::{Followed, command, follow};
 use super::ideal::{Ideal, States};
 use super::layout::Layout;

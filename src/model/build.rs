@@ -1,5 +1,6 @@
 //! A description as a [`Mechanism`]: bodies, joints, drives, springs and stops, not yet put together.
 
+use super::declared_drives::add_drives;
 use super::guides::{corners, has_play};
 use super::layout::{Layout, Written};
 use super::names::{mark, names};
@@ -7,14 +8,12 @@ use super::parts::Parts;
 use crate::contact::laws::Given;
 use crate::contact::{Clearance, HertzStep, Material, RingShape, RingTable};
 use crate::mechanism::{
-    Actuator, Attachment, Bearing, Cascade, Drive, JointIndex, JointSpring, Mechanism, OilFilm,
-    PointSpring, Prismatic, Reads, Revolute, Sensor, Stop,
+    Attachment, Bearing, JointIndex, JointSpring, Mechanism, OilFilm, PointSpring, Prismatic,
+    Reads, Revolute, Sensor, Stop,
 };
-use crate::scenario::{
-    self, Contact, Described, DriveMode, Joint, JointDrive, Law, Motion, Quantity, Sampled,
-    Scenario, Spring, Target,
-};
+use crate::scenario::{self, Contact, Described, Joint, Law, Quantity, Scenario, Spring, Target};
 use nalgebra::{UnitComplex, Vector2};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A described machine before it is put together.
@@ -32,7 +31,42 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
     let parts = Parts::of(described);
     let mut mechanism = Mechanism::free(parts.bodies.clone());
     mechanism.gravity = scenario.environment.gravity.into();
-    let (mut laws, mut declared) = (Vec::new(), Vec::new());
+    let Joints { laws, mut declared } = add_joints(scenario, described, &parts, &mut mechanism);
+    declared.extend(add_corners(scenario, described, &mut mechanism));
+    let mut layout = Layout { joints: declared, ..Layout::default() };
+    add_drives(scenario, described, &mut mechanism, &mut layout);
+    outputs(scenario, described, &parts, &mut mechanism, &mut layout);
+    for body in &described.bodies {
+        for point in body.points.keys() {
+            let name = format!("{}.{point}", body.name);
+            layout.marks.push(mark(&mechanism, &parts, &name));
+            layout.mark_names.push(name);
+        }
+    }
+    let springs = add_springs(described, &parts, &mut mechanism);
+    add_stops(described, &mut mechanism);
+    add_films(scenario, described, &mut mechanism);
+    mechanism.sensors =
+        described.sensors.iter().filter_map(|s| sensor(&mechanism, &parts, s)).collect();
+    mechanism.names = names(scenario, described, &parts, &mechanism, &springs);
+    Built { mechanism, parts, layout, laws }
+}
+
+/// What is to be known of joints that were built.
+struct Joints {
+    /// As of [`Built`].
+    laws: Vec<Option<HertzStep>>,
+    /// Revolute joints with a declared clearance.
+    declared: Vec<usize>,
+}
+
+fn add_joints(
+    scenario: &Scenario,
+    described: &Described,
+    parts: &Parts,
+    mechanism: &mut Mechanism,
+) -> Joints {
+    let mut joints = Joints { laws: Vec::new(), declared: Vec::new() };
     for joint in &described.joints {
         let [first, second] = joint.points().map(|(_, point)| parts.point(point));
         match joint {
@@ -41,7 +75,7 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
                 let clearance = clearance(scenario, joint, index);
                 let given = clearance.map(|clearance| given(scenario, joint, clearance));
                 if clearance.is_some() {
-                    declared.push(index);
+                    joints.declared.push(index);
                 }
                 let bearing = bearing(scenario, joint, index, given);
                 let by_law = matches!(bearing, Bearing::Clearance(_));
@@ -53,66 +87,61 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
                     bearing,
                     out_of_round: profile.and_then(RingTable::new).map(RingShape::from),
                 });
-                laws.push(given.as_ref().map(HertzStep::from));
+                joints.laws.push(given.as_ref().map(HertzStep::from));
             }
             Joint::Prismatic(joint) => {
                 let ((base, base_angle), (slider, slider_angle)) = (first, second);
-                let play = has_play(scenario, joint);
+                // Where the slider's axes keep another angle than `axis`, the axis is turned in them.
+                let turn = joint.angle.map_or(0.0, |angle| joint.axis - angle);
                 mechanism.prismatics.push(Prismatic {
-                    play,
+                    play: has_play(scenario, joint),
                     name: joint.name.clone(),
                     base,
                     slider,
-                    // Where the slider's axes keep another angle than `axis`, the axis is turned in them.
-                    axes: [
-                        direction(base_angle + joint.axis),
-                        direction(
-                            slider_angle + joint.angle.map_or(0.0, |angle| joint.axis - angle),
-                        ),
-                    ],
+                    axes: [direction(base_angle + joint.axis), direction(slider_angle + turn)],
                 });
             }
             Joint::Fixed(_) => {}
         }
     }
+    joints
+}
+
+/// Adds the corners of guides with play, which are revolute joints with clearance; their indices.
+fn add_corners(
+    scenario: &Scenario,
+    described: &Described,
+    mechanism: &mut Mechanism,
+) -> Range<usize> {
+    let first = mechanism.revolutes.len();
     for joint in &described.joints {
         let Joint::Prismatic(joint) = joint else { continue };
         let built = mechanism.prismatics.iter().find(|built| built.name == joint.name);
         let corners = built.map(|built| corners(scenario, joint, built)).unwrap_or_default();
-        declared.extend((0..corners.len()).map(|i| mechanism.revolutes.len() + i));
         mechanism.revolutes.extend(corners);
     }
-    let mut layout = Layout { joints: declared, ..Layout::default() };
-    for drive in &described.drives {
-        add_drive(&mut mechanism, drive.joint(), joint_drive(drive));
-        layout.drives.push(drive.label());
-    }
-    // Joints that are moved and have no drive of their own follow as `[drive]` says.
-    if let Motion::Joints(motions) = &scenario.motion {
-        for motion in motions {
-            if !mechanism.actuators.iter().any(|actuator| actuator.name == motion.joint) {
-                add_drive(&mut mechanism, &motion.joint, drive(scenario));
-                layout.drives.push(format!("_{}", motion.joint));
-            }
-        }
-    }
-    outputs(scenario, described, &parts, &mut mechanism, &mut layout);
-    for body in &described.bodies {
-        for point in body.points.keys() {
-            let name = format!("{}.{point}", body.name);
-            layout.marks.push(mark(&mechanism, &parts, &name));
-            layout.mark_names.push(name);
-        }
-    }
+    first..mechanism.revolutes.len()
+}
+
+/// Adds springs; of those between points the index of the load, and the points' names.
+fn add_springs(
+    described: &Described,
+    parts: &Parts,
+    mechanism: &mut Mechanism,
+) -> Vec<(usize, [String; 2])> {
     let mut springs = Vec::new();
     for spring in &described.springs {
         if let Some(points) = &spring.between {
             springs.push((mechanism.loads.len(), points.clone()));
         }
-        add_spring(&mut mechanism, &parts, spring);
+        add_spring(mechanism, parts, spring);
     }
+    springs
+}
+
+fn add_stops(described: &Described, mechanism: &mut Mechanism) {
     for stop in &described.stops {
-        let Some(joint) = joint_named(&mechanism, &stop.joint) else { continue };
+        let Some(joint) = joint_named(mechanism, &stop.joint) else { continue };
         let law = HertzStep {
             stiffness: stop.stiffness,
             exponent: 1.0,
@@ -122,11 +151,6 @@ pub(super) fn build(scenario: &Scenario, described: &Described) -> Built {
         };
         mechanism.loads.push(Arc::new(Stop { joint, range: stop.range, law }));
     }
-    add_films(scenario, described, &mut mechanism);
-    mechanism.sensors =
-        described.sensors.iter().filter_map(|s| sensor(&mechanism, &parts, s)).collect();
-    mechanism.names = names(scenario, described, &parts, &mechanism, &springs);
-    Built { mechanism, parts, layout, laws }
 }
 
 /// A direction at `angle` rad; exactly along x where that is zero.
@@ -210,57 +234,6 @@ fn add_films(scenario: &Scenario, described: &Described, mechanism: &mut Mechani
     }
     for film in films {
         mechanism.loads.push(Arc::new(film));
-    }
-}
-
-fn add_drive(mechanism: &mut Mechanism, name: &str, drive: Drive) {
-    if let Some(joint) = joint_named(mechanism, name) {
-        mechanism.actuators.push(Actuator::new(name, joint, drive));
-    }
-}
-
-/// The drive that `[drive]` asks for.
-pub fn drive(scenario: &Scenario) -> Drive {
-    let drive = &scenario.drive;
-    match drive.mode {
-        DriveMode::Prescribed => Drive::Prescribed,
-        DriveMode::Servo => Drive::Servo { stiffness: drive.stiffness, damping: drive.damping },
-        DriveMode::Sampled => Drive::Sampled(cascade(&drive.sampled())),
-    }
-}
-
-/// The kind that all drives have; "none" without any, "mixed" where they differ.
-pub(super) fn kind_of_drives(mechanism: &Mechanism) -> &'static str {
-    let kind = |drive: &Drive| match drive {
-        Drive::Prescribed => "prescribed",
-        Drive::Servo { .. } => "servo",
-        Drive::Sampled(_) => "sampled",
-        Drive::Effort => "force",
-    };
-    let mut kinds = mechanism.actuators.iter().map(|actuator| kind(&actuator.drive));
-    let Some(first) = kinds.next() else { return "none" };
-    if kinds.all(|kind| kind == first) { first } else { "mixed" }
-}
-
-fn joint_drive(drive: &JointDrive) -> Drive {
-    match drive {
-        JointDrive::Prescribed(_) => Drive::Prescribed,
-        JointDrive::Servo(servo) => {
-            Drive::Servo { stiffness: servo.stiffness, damping: servo.damping }
-        }
-        JointDrive::Sampled(sampled) => Drive::Sampled(cascade(&sampled.controller)),
-        JointDrive::Force(_) => Drive::Effort,
-    }
-}
-
-fn cascade(sampled: &Sampled) -> Cascade {
-    Cascade {
-        position_gain: sampled.position_gain,
-        velocity_gain: sampled.velocity_gain,
-        interval: sampled.interval,
-        limit: sampled.limit,
-        force_gain: sampled.force_gain,
-        lag: sampled.lag,
     }
 }
 

@@ -7,6 +7,7 @@
 mod assemble;
 mod build;
 mod commands;
+mod declared_drives;
 mod drives;
 mod guides;
 mod ideal;
@@ -20,7 +21,7 @@ mod shape;
 mod templates;
 
 pub use assemble::{Machine, assemble, close, driven, parts_of, radial_clearance, recorded};
-pub use build::drive;
+pub use declared_drives::drive;
 pub use ideal::{Ideal, IdealInstant};
 pub use layout::{Layout, Written};
 pub use native::FIT_SPEED;

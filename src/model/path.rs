@@ -91,7 +91,8 @@ impl DrivenPath {
         };
         let mut loops: Vec<Loop> = mechanism.loops();
         loops.retain(|of| mechanism.has_branches(of));
-        let mut areas: Vec<f64> = Vec::new();
+        // Signed areas of the loops in the first pose.
+        let mut first: Option<Vec<f64>> = None;
         let mut before: Option<Hold> = None;
         let mut worst: Vec<Option<(f64, f64, f64)>> = vec![None; drives];
         let mut last = Vec::new();
@@ -120,19 +121,9 @@ impl DrivenPath {
                     found.held(t, hold, before);
                     before = Some(hold);
                 }
-                for (i, of) in loops.iter().enumerate() {
-                    let area = mechanism.signed_area(of, &states);
-                    match areas.get(i) {
-                        None => areas.push(area),
-                        Some(first)
-                            if first * area < 0.0
-                                && !found.turned.iter().any(|(turned, _)| turned == of) =>
-                        {
-                            found.turned.push((of.clone(), t));
-                        }
-                        Some(_) => {}
-                    }
-                }
+                let now: Vec<f64> =
+                    loops.iter().map(|of| mechanism.signed_area(of, &states)).collect();
+                found.turn(t, &loops, &now, first.get_or_insert_with(|| now.clone()));
             }
         }
         let breach = |(i, worst): (usize, &Option<(f64, f64, f64)>)| {
@@ -158,6 +149,15 @@ impl DrivenPath {
         let excess = (shortest - command.position).max(command.position - longest);
         if excess > 0.0 && worst.is_none_or(|(most, ..)| excess > most) {
             *worst = Some((excess, t, command.position));
+        }
+    }
+
+    /// Enters loops whose signed area has not the sign that it had at `first`.
+    fn turn(&mut self, t: f64, loops: &[Loop], now: &[f64], first: &[f64]) {
+        for (of, (now, first)) in loops.iter().zip(now.iter().zip(first)) {
+            if first * now < 0.0 && !self.turned.iter().any(|(turned, _)| turned == of) {
+                self.turned.push((of.clone(), t));
+            }
         }
     }
 

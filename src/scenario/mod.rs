@@ -13,16 +13,19 @@ mod connected;
 mod document;
 mod problem;
 mod read;
+mod read_motion;
 mod reader;
 mod schema;
 mod sections;
 #[cfg(test)]
 mod tests;
+mod unusable;
 mod validate;
 mod validate_described;
 mod validate_guides;
 mod validate_laws;
 mod validate_names;
+mod validate_revolute;
 mod validate_shape;
 mod write;
 

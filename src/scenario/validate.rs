@@ -25,7 +25,71 @@ impl Scenario {
 const LONGEST: f64 = 86_400.0;
 
 /// Keys and values.
-type Numbers<'a> = &'a [(&'a str, f64)];
+type Numbers = Vec<(&'static str, f64)>;
+
+/// The inertia of a mechanism, or what inertias are made of: path, value, unit.
+fn inertia(mechanism: &Mechanism) -> Option<(&'static str, f64, &'static str)> {
+    let along = |density: f64| Some(("mechanism.linear_density", density, "kg/m"));
+    match mechanism {
+        Mechanism::ThreeRpr(machine) => {
+            machine.platform_inertia.map(|value| ("mechanism.platform_inertia", value, "kg m²"))
+        }
+        Mechanism::Pendulum(arm) => Some(("mechanism.inertia", arm.inertia, "kg m²")),
+        Mechanism::FourBar(m) => along(m.linear_density),
+        Mechanism::FiveBar(m) => along(m.linear_density),
+        Mechanism::ThreeRrr(m) => along(m.linear_density),
+        Mechanism::DriveStage(_)
+        | Mechanism::SliderCrank(_)
+        | Mechanism::DoublePendulum(_)
+        | Mechanism::Described(_) => None,
+    }
+}
+
+/// Lengths (m) and masses (kg) of a mechanism that have keys of their own.
+fn lengths_and_masses(mechanism: &Mechanism) -> (Numbers, Numbers) {
+    match mechanism {
+        Mechanism::ThreeRpr(m) => (
+            vec![("base_side", m.base_side), ("platform_side", m.platform_side)],
+            vec![("platform_mass", m.platform_mass)],
+        ),
+        Mechanism::DriveStage(stage) => (Vec::new(), vec![("mass", stage.mass)]),
+        Mechanism::Pendulum(arm) => (vec![("length", arm.length)], vec![("mass", arm.mass)]),
+        Mechanism::SliderCrank(m) => (
+            vec![("crank", m.crank), ("rod", m.rod)],
+            vec![
+                ("crank_mass", m.crank_mass),
+                ("rod_mass", m.rod_mass),
+                ("slider_mass", m.slider_mass),
+            ],
+        ),
+        Mechanism::FourBar(m) => (
+            vec![
+                ("ground", m.ground),
+                ("crank", m.crank),
+                ("coupler", m.coupler),
+                ("rocker", m.rocker),
+            ],
+            Vec::new(),
+        ),
+        Mechanism::FiveBar(m) => {
+            (vec![("ground", m.ground), ("crank", m.crank), ("rod", m.rod)], Vec::new())
+        }
+        Mechanism::ThreeRrr(m) => (
+            vec![
+                ("base_side", m.base_side),
+                ("platform_side", m.platform_side),
+                ("crank", m.crank),
+                ("rod", m.rod),
+            ],
+            vec![("platform_mass", m.platform_mass)],
+        ),
+        Mechanism::DoublePendulum(m) => (
+            vec![("lengths.0", m.lengths[0]), ("lengths.1", m.lengths[1])],
+            vec![("masses.0", m.masses[0]), ("masses.1", m.masses[1])],
+        ),
+        Mechanism::Described(_) => (Vec::new(), Vec::new()),
+    }
+}
 
 struct Checks<'a> {
     scenario: &'a Scenario,
@@ -34,69 +98,17 @@ struct Checks<'a> {
 
 impl Checks<'_> {
     fn mechanism(&mut self) {
-        let (lengths, masses): (Numbers<'_>, Numbers<'_>) = match &self.scenario.mechanism {
-            Mechanism::ThreeRpr(machine) => {
-                if let Some(inertia) = machine.platform_inertia {
-                    self.positive("mechanism.platform_inertia", inertia, "kg m²");
-                }
-                (
-                    &[("base_side", machine.base_side), ("platform_side", machine.platform_side)],
-                    &[("platform_mass", machine.platform_mass)],
-                )
-            }
-            Mechanism::DriveStage(stage) => (&[], &[("mass", stage.mass)]),
-            Mechanism::Pendulum(arm) => {
-                self.positive("mechanism.inertia", arm.inertia, "kg m²");
-                (&[("length", arm.length)], &[("mass", arm.mass)])
-            }
-            Mechanism::SliderCrank(m) => (
-                &[("crank", m.crank), ("rod", m.rod)],
-                &[
-                    ("crank_mass", m.crank_mass),
-                    ("rod_mass", m.rod_mass),
-                    ("slider_mass", m.slider_mass),
-                ],
-            ),
-            Mechanism::FourBar(m) => {
-                self.positive("mechanism.linear_density", m.linear_density, "kg/m");
-                (
-                    &[
-                        ("ground", m.ground),
-                        ("crank", m.crank),
-                        ("coupler", m.coupler),
-                        ("rocker", m.rocker),
-                    ],
-                    &[],
-                )
-            }
-            Mechanism::FiveBar(m) => {
-                self.positive("mechanism.linear_density", m.linear_density, "kg/m");
-                (&[("ground", m.ground), ("crank", m.crank), ("rod", m.rod)], &[])
-            }
-            Mechanism::ThreeRrr(m) => {
-                self.positive("mechanism.linear_density", m.linear_density, "kg/m");
-                (
-                    &[
-                        ("base_side", m.base_side),
-                        ("platform_side", m.platform_side),
-                        ("crank", m.crank),
-                        ("rod", m.rod),
-                    ],
-                    &[("platform_mass", m.platform_mass)],
-                )
-            }
-            Mechanism::DoublePendulum(m) => (
-                &[("lengths.0", m.lengths[0]), ("lengths.1", m.lengths[1])],
-                &[("masses.0", m.masses[0]), ("masses.1", m.masses[1])],
-            ),
-            Mechanism::Described(described) => {
-                self.problems.extend(super::validate_described::problems(self.scenario, described));
-                (&[], &[])
-            }
-        };
-        let lengths = lengths.iter().map(|(key, value)| (key, *value, "m")).collect::<Vec<_>>();
-        let masses = masses.iter().map(|(key, value)| (key, *value, "kg"));
-        for (key, value, unit) in lengths.into_iter().chain(masses) {
+        let mechanism = &self.scenario.mechanism;
+        if let Mechanism::Described(described) = mechanism {
+            self.problems.extend(super::validate_described::problems(self.scenario, described));
+        }
+        if let Some((key, value, unit)) = inertia(mechanism) {
+            self.positive(key, value, unit);
+        }
+        let (lengths, masses) = lengths_and_masses(mechanism);
+        let lengths = lengths.into_iter().map(|(key, value)| (key, value, "m"));
+        let masses = masses.into_iter().map(|(key, value)| (key, value, "kg"));
+        for (key, value, unit) in lengths.chain(masses) {
             self.positive(&format!("mechanism.{key}"), value, unit);
         }
     }

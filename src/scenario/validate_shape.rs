@@ -7,6 +7,25 @@ use super::{Body, Shape};
 impl Checks<'_> {
     /// A body's mass and inertia, or its shape.
     pub(super) fn mass(&mut self, path: &str, body: &Body) {
+        self.given_mass(path, body);
+        let Some(shape) = &body.shape else { return };
+        self.sizes(path, shape);
+        // What a point nobody has would enclose says nothing more.
+        if !self.points_of_shape(path, body, shape) {
+            return;
+        }
+        if is_flat(body, shape) {
+            let message = format!("of the body \"{}\" has no extent, and so no mass", body.name);
+            let help = "a bar between two places, or a polygon with an area";
+            self.complain(&format!("{path}.shape"), message, help);
+        }
+        if let Shape::Polygon { corners, .. } = shape {
+            self.corners(path, body, corners);
+        }
+    }
+
+    /// Mass and inertia that stand there, or should.
+    fn given_mass(&mut self, path: &str, body: &Body) {
         let given = [("mass", body.mass, "kg"), ("inertia", body.inertia, "kg m²")];
         for (key, value, unit) in given {
             let path = format!("{path}.{key}");
@@ -29,23 +48,22 @@ impl Checks<'_> {
                 _ => {}
             }
         }
-        let Some(shape) = &body.shape else { return };
-        let (points, sizes): (Vec<&String>, &[(&str, f64, &str)]) = match shape {
-            Shape::Bar { from, to, diameter, density } => {
-                (vec![from, to], &[("diameter", *diameter, "m"), ("density", *density, "kg/m³")])
+    }
+
+    /// Sizes and densities of a shape.
+    fn sizes(&mut self, path: &str, shape: &Shape) {
+        let sizes: &[(&str, f64, &str)] = match shape {
+            Shape::Bar { diameter, density, .. } => {
+                &[("diameter", *diameter, "m"), ("density", *density, "kg/m³")]
             }
-            Shape::Disc { center, radius, thickness, density } => (
-                vec![center],
-                &[
-                    ("radius", *radius, "m"),
-                    ("thickness", *thickness, "m"),
-                    ("density", *density, "kg/m³"),
-                ],
-            ),
-            Shape::Polygon { corners, thickness, density } => (
-                corners.iter().collect(),
-                &[("thickness", *thickness, "m"), ("density", *density, "kg/m³")],
-            ),
+            Shape::Disc { radius, thickness, density, .. } => &[
+                ("radius", *radius, "m"),
+                ("thickness", *thickness, "m"),
+                ("density", *density, "kg/m³"),
+            ],
+            Shape::Polygon { thickness, density, .. } => {
+                &[("thickness", *thickness, "m"), ("density", *density, "kg/m³")]
+            }
         };
         for (key, value, unit) in sizes {
             if *value <= 0.0 {
@@ -53,54 +71,67 @@ impl Checks<'_> {
                 self.complain(&format!("{path}.shape.{key}"), format!("is {value}"), &help);
             }
         }
-        let known = points.iter().all(|point| body.points.contains_key(*point));
+    }
+
+    /// Whether the body has all points of its shape.
+    fn points_of_shape(&mut self, path: &str, body: &Body, shape: &Shape) -> bool {
+        let points: Vec<&String> = match shape {
+            Shape::Bar { from, to, .. } => vec![from, to],
+            Shape::Disc { center, .. } => vec![center],
+            Shape::Polygon { corners, .. } => corners.iter().collect(),
+        };
+        let mut known = true;
         for point in points {
             if !body.points.contains_key(point) {
+                known = false;
                 let message = format!("the body \"{}\" has no point \"{point}\"", body.name);
                 let known: Vec<&str> = body.points.keys().map(String::as_str).collect();
                 self.complain(&format!("{path}.shape"), message, &suggest(point, &known));
             }
         }
-        // What a point nobody has would enclose says nothing more.
-        if !known {
-            return;
+        known
+    }
+
+    /// A polygon's number of corners, and their order.
+    fn corners(&mut self, path: &str, body: &Body, corners: &[String]) {
+        let path = format!("{path}.shape.corners");
+        let places: Vec<[f64; 2]> = corners.iter().map(|name| place(body, name)).collect();
+        if corners.len() < 3 {
+            let message = format!("has {} corners", corners.len());
+            self.complain(&path, message, "expected 3 or more");
+        } else if let Some([a, b]) = crossing(&places) {
+            let name = |i: usize| &corners[i % corners.len()];
+            let message = format!(
+                "crosses itself: {}-{} and {}-{}",
+                name(a),
+                name(a + 1),
+                name(b),
+                name(b + 1)
+            );
+            self.complain(&path, message, "name the corners in their order around the plate");
         }
-        let place = |name: &String| body.points.get(name).copied().unwrap_or_default();
-        let flat = match shape {
-            Shape::Bar { from, to, .. } => place(from) == place(to),
-            Shape::Disc { .. } => false,
-            Shape::Polygon { corners, .. } => {
-                let next = corners.iter().cycle().skip(1);
-                let double: f64 = corners
-                    .iter()
-                    .zip(next)
-                    .map(|(a, b)| (place(a), place(b)))
-                    .map(|([ax, ay], [bx, by])| ax * by - ay * bx)
-                    .sum();
-                double == 0.0
-            }
-        };
-        if flat {
-            let message = format!("of the body \"{}\" has no extent, and so no mass", body.name);
-            let help = "a bar between two places, or a polygon with an area";
-            self.complain(&format!("{path}.shape"), message, help);
-        }
-        if let Shape::Polygon { corners, .. } = shape {
-            let path = format!("{path}.shape.corners");
-            if corners.len() < 3 {
-                let message = format!("has {} corners", corners.len());
-                self.complain(&path, message, "expected 3 or more");
-            } else if let Some([a, b]) = crossing(&corners.iter().map(place).collect::<Vec<_>>()) {
-                let name = |i: usize| &corners[i % corners.len()];
-                let message = format!(
-                    "crosses itself: {}-{} and {}-{}",
-                    name(a),
-                    name(a + 1),
-                    name(b),
-                    name(b + 1)
-                );
-                self.complain(&path, message, "name the corners in their order around the plate");
-            }
+    }
+}
+
+/// Where a point of a body is, in its own axes, m.
+fn place(body: &Body, name: &str) -> [f64; 2] {
+    body.points.get(name).copied().unwrap_or_default()
+}
+
+/// Whether a shape has no extent.
+fn is_flat(body: &Body, shape: &Shape) -> bool {
+    match shape {
+        Shape::Bar { from, to, .. } => place(body, from) == place(body, to),
+        Shape::Disc { .. } => false,
+        Shape::Polygon { corners, .. } => {
+            let next = corners.iter().cycle().skip(1);
+            let double: f64 = corners
+                .iter()
+                .zip(next)
+                .map(|(a, b)| (place(body, a), place(body, b)))
+                .map(|([ax, ay], [bx, by])| ax * by - ay * bx)
+                .sum();
+            double == 0.0
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::chaos::{WINDOW, engines_apart};
 use crate::engine::TYPICAL_IMPACT_SPEED;
 use crate::mechanism::motion::looks;
-use crate::mechanism::{Actuator, BodyState, Drive, JointIndex, Loop, Mechanism};
+use crate::mechanism::{Actuator, Body, BodyState, Drive, JointIndex, Loop, Mechanism, Revolute};
 use crate::model::DrivenPath;
 use crate::scenario::{self, Law, Problem, Scenario};
 use crate::simulate::{
@@ -257,20 +257,6 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         && machine.ideal.is_kinematic();
     let ideal = regular.then(|| ideal(machine, path.as_ref()));
     let mechanism = &machine.mechanism;
-    let bodies = mechanism.bodies.iter().map(|body| CheckedBody {
-        name: body.name.clone(),
-        mass_kg: body.mass,
-        inertia_kg_m2: body.inertia,
-    });
-    let joints = mechanism.revolutes.iter().enumerate().map(|(i, joint)| {
-        let contact = machine.contact(i, TYPICAL_IMPACT_SPEED);
-        CheckedJoint {
-            joint: joint.name.clone(),
-            clearance_m: radial_clearance(&joint.bearing),
-            stiffness: contact.and_then(|(law, _)| law.stiffness()),
-            contact_time_s: contact.map(|(_, time)| time),
-        }
-    });
     let stroke_m = scenario.legs.stroke;
     let gains = mechanism.actuators.iter().find_map(|actuator| match actuator.drive {
         Drive::Servo { stiffness, damping } => Some([stiffness, damping]),
@@ -283,7 +269,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         duration_s: scenario.simulation.duration,
         base_side_m: kind.map(|kind| kind.base_side),
         platform_side_m: kind.map(|kind| kind.platform_side),
-        bodies: bodies.collect(),
+        bodies: bodies(mechanism),
         legs: reach
             .iter()
             .flat_map(|reach| reach.lengths)
@@ -294,7 +280,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
         singularity_time_s: reach.as_ref().map(|reach| reach.singularity_time),
         platform_circumradius_m: kind.map(|kind| kind.platform_side / 3f64.sqrt()),
         law: scenario.contact.law,
-        joints: joints.collect(),
+        joints: joints(machine),
         impact_speed_m_s: TYPICAL_IMPACT_SPEED,
         longest_step_s: mechanism.longest_step(TYPICAL_IMPACT_SPEED),
         step_s,
@@ -314,6 +300,28 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
 
 fn starts(mechanism: &Mechanism) -> Vec<BodyState> {
     mechanism.bodies.iter().map(|body| body.start).collect()
+}
+
+fn bodies(mechanism: &Mechanism) -> Vec<CheckedBody> {
+    let body = |body: &Body| CheckedBody {
+        name: body.name.clone(),
+        mass_kg: body.mass,
+        inertia_kg_m2: body.inertia,
+    };
+    mechanism.bodies.iter().map(body).collect()
+}
+
+fn joints(machine: &Machine) -> Vec<CheckedJoint> {
+    let joint = |(i, joint): (usize, &Revolute)| {
+        let contact = machine.contact(i, TYPICAL_IMPACT_SPEED);
+        CheckedJoint {
+            joint: joint.name.clone(),
+            clearance_m: radial_clearance(&joint.bearing),
+            stiffness: contact.and_then(|(law, _)| law.stiffness()),
+            contact_time_s: contact.map(|(_, time)| time),
+        }
+    };
+    machine.mechanism.revolutes.iter().enumerate().map(joint).collect()
 }
 
 fn drives(mechanism: &Mechanism, path: Option<&DrivenPath>) -> Vec<CheckedDrive> {

@@ -107,100 +107,139 @@ fn clearance(s: &Summary) -> String {
 }
 
 fn facts(s: &Summary, body: &str) -> Vec<Fact> {
-    let fact = |label: &str, value: String, note: String| Fact { label: label.into(), value, note };
-    let unit = |value: f64, unit: &str| format!("{} {unit}", number(value));
-    let ideal = |value: f64, unit: &str| format!("ideal machine: {} {unit}", number(value));
     let mut facts = Vec::new();
-    // What rounding leaves of a machine that follows its ideal is no result.
-    let strays = s.max_path_error_m > ROUNDING_M;
     if s.has_figures() {
-        facts.extend([
-            fact(
-                &format!("Peak {body} acceleration"),
-                unit(s.peak_platform_acceleration_m_s2, "m/s²"),
-                ideal(s.ideal_peak_platform_acceleration_m_s2, "m/s²"),
-            ),
-            fact(
-                if s.without_play() { "Peak joint force" } else { "Peak contact force" },
-                unit(s.peak_contact_force, "N"),
-                hardest_joint(s),
-            ),
-        ]);
-    }
-    if s.has_figures() && strays {
-        facts.extend([
-            fact(
-                "Path error, largest",
-                length(s.max_path_error_m),
-                format!("root mean square: {}", length(s.rms_path_error_m)),
-            ),
-            fact(
-                "Acceleration, rms deviation from ideal",
-                unit(s.rms_acceleration_deviation_m_s2, "m/s²"),
-                String::new(),
-            ),
-        ]);
-    }
-    if s.has_figures() {
-        for (peak, ideal_peak, of) in s.drive_peaks() {
-            let (name, deviation) = match of {
-                "N" => ("force", s.rms_actuator_force_deviation),
-                _ => ("torque", s.rms_actuator_torque_deviation.unwrap_or(f64::NAN)),
-            };
-            facts.push(fact(
-                &format!("Peak actuator {name}"),
-                unit(peak, of),
-                ideal(ideal_peak, of),
-            ));
-            if strays {
-                facts.push(fact(
-                    &format!("Actuator {name}s, rms deviation from ideal"),
-                    unit(deviation, of),
-                    "mean of all actuators".into(),
-                ));
-            }
+        facts.extend(peaks(s, body));
+        if strays(s) {
+            facts.extend(deviations(s));
+        }
+        facts.extend(drives(s));
+        if !s.without_play() {
+            facts.extend(contacts(s));
         }
     }
-    if s.has_figures() && !s.without_play() {
-        facts.extend([
-            fact(
-                "Impacts",
-                s.impacts.to_string(),
-                format!("{} a second, in all joints together", number(s.impacts_per_s)),
-            ),
-            fact(
-                "Share of time in contact",
-                unit(100.0 * s.contact_fraction, "%"),
-                "mean of all joints".into(),
-            ),
-            fact(
-                "Deepest penetration",
-                length(s.largest_penetration_m),
-                "of the instants in timeseries.csv".into(),
-            ),
-        ]);
-    }
-    if let Some(rate) = s.lyapunov_exponent_1_s {
-        let horizon = s.predictability_horizon_s;
-        facts.push(fact(
-            "Prediction holds",
-            horizon.map_or_else(|| "beyond 0.2 s".to_owned(), |t| format!("for {} s", number(t))),
-            if rate > 0.0 {
-                format!(
-                    "until then the path is exact to 1 µm; small differences grow like e^({} t/s), \
-                     and later digits are one of many possible motions",
-                    number(rate)
-                )
-            } else {
-                format!(
-                    "until then the path is exact to 1 µm; small differences die out like e^({} t/s)",
-                    number(rate)
-                )
-            },
-        ));
-    }
+    facts.extend(s.lyapunov_exponent_1_s.map(|rate| prediction(s, rate)));
     facts.extend(balance(s));
-    facts.push(fact(
+    facts.push(steps(s));
+    facts
+}
+
+fn fact(label: &str, value: String, note: String) -> Fact {
+    Fact { label: label.into(), value, note }
+}
+
+fn with_unit(value: f64, unit: &str) -> String {
+    format!("{} {unit}", number(value))
+}
+
+fn of_ideal(value: f64, unit: &str) -> String {
+    format!("ideal machine: {} {unit}", number(value))
+}
+
+/// Whether a machine does not follow its ideal: what rounding leaves of one that does is no result.
+fn strays(s: &Summary) -> bool {
+    s.max_path_error_m > ROUNDING_M
+}
+
+fn peaks(s: &Summary, body: &str) -> [Fact; 2] {
+    [
+        fact(
+            &format!("Peak {body} acceleration"),
+            with_unit(s.peak_platform_acceleration_m_s2, "m/s²"),
+            of_ideal(s.ideal_peak_platform_acceleration_m_s2, "m/s²"),
+        ),
+        fact(
+            if s.without_play() { "Peak joint force" } else { "Peak contact force" },
+            with_unit(s.peak_contact_force, "N"),
+            hardest_joint(s),
+        ),
+    ]
+}
+
+/// How far the machine is from its ideal.
+fn deviations(s: &Summary) -> [Fact; 2] {
+    [
+        fact(
+            "Path error, largest",
+            length(s.max_path_error_m),
+            format!("root mean square: {}", length(s.rms_path_error_m)),
+        ),
+        fact(
+            "Acceleration, rms deviation from ideal",
+            with_unit(s.rms_acceleration_deviation_m_s2, "m/s²"),
+            String::new(),
+        ),
+    ]
+}
+
+/// What the drives have to do.
+fn drives(s: &Summary) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    for (peak, ideal_peak, of) in s.drive_peaks() {
+        let (name, deviation) = match of {
+            "N" => ("force", s.rms_actuator_force_deviation),
+            _ => ("torque", s.rms_actuator_torque_deviation.unwrap_or(f64::NAN)),
+        };
+        facts.push(fact(
+            &format!("Peak actuator {name}"),
+            with_unit(peak, of),
+            of_ideal(ideal_peak, of),
+        ));
+        if strays(s) {
+            facts.push(fact(
+                &format!("Actuator {name}s, rms deviation from ideal"),
+                with_unit(deviation, of),
+                "mean of all actuators".into(),
+            ));
+        }
+    }
+    facts
+}
+
+/// How journals and rings meet.
+fn contacts(s: &Summary) -> [Fact; 3] {
+    [
+        fact(
+            "Impacts",
+            s.impacts.to_string(),
+            format!("{} a second, in all joints together", number(s.impacts_per_s)),
+        ),
+        fact(
+            "Share of time in contact",
+            with_unit(100.0 * s.contact_fraction, "%"),
+            "mean of all joints".into(),
+        ),
+        fact(
+            "Deepest penetration",
+            length(s.largest_penetration_m),
+            "of the instants in timeseries.csv".into(),
+        ),
+    ]
+}
+
+/// For how long small differences, growing at a rate in 1/s, leave a prediction right.
+fn prediction(s: &Summary, rate: f64) -> Fact {
+    let horizon = s.predictability_horizon_s;
+    fact(
+        "Prediction holds",
+        horizon.map_or_else(|| "beyond 0.2 s".to_owned(), |t| format!("for {} s", number(t))),
+        if rate > 0.0 {
+            format!(
+                "until then the path is exact to 1 µm; small differences grow like e^({} t/s), \
+                 and later digits are one of many possible motions",
+                number(rate)
+            )
+        } else {
+            format!(
+                "until then the path is exact to 1 µm; small differences die out like e^({} t/s)",
+                number(rate)
+            )
+        },
+    )
+}
+
+fn steps(s: &Summary) -> Fact {
+    fact(
         "Steps",
         s.steps.to_string(),
         format!(
@@ -209,8 +248,7 @@ fn facts(s: &Summary, body: &str) -> Vec<Fact> {
             number(s.wall_s),
             number(s.simulated_s)
         ),
-    ));
-    facts
+    )
 }
 
 /// What the run saw of its own errors.

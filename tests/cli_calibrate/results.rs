@@ -41,36 +41,10 @@ fn a_calibration_writes_everything_that_was_promised() {
     assert_eq!(json["program"], "freeplay");
     // Halves of 1.5 s need not tell whether anything else is missing; what is certain they tell.
     assert_ne!(json["verdict"], "nothing-missing", "{out}");
-    let effect = &json["effects"][0];
-    assert_eq!((&effect["kind"], &effect["joint"]), (&"actuator-friction".into(), &"P2".into()));
-    assert!(effect["evidence"].as_str().unwrap().starts_with("removes "));
-    for (name, fitted) in effect["params"].as_object().unwrap() {
-        let [low, value, high] =
-            [&fitted["ci95"][0], &fitted["value"], &fitted["ci95"][1]].map(|v| v.as_f64().unwrap());
-        assert!(low < value && value < high && fitted["std"].as_f64().unwrap() > 0.0, "{name}");
-    }
+    assert_effect(&json["effects"][0]);
     let errors = json["errors"].as_array().unwrap();
-    let channels: Vec<&str> = errors.iter().map(|e| e["channel"].as_str().unwrap()).collect();
-    assert_eq!(channels, ["q1", "q2", "q3", "F1", "F2", "F3", "x", "y", "phi"]);
-    for error in errors {
-        assert_eq!((&error["run"], &error["role"]), (&"run.csv".into(), &"calibration".into()));
-        for key in ["before", "after", "floor"] {
-            assert_number(&error[key], key);
-        }
-    }
-    let force = &errors[4];
-    assert_eq!(force["unit"], "N");
-    assert!(force["before"].as_f64().unwrap() > 10.0 * force["after"].as_f64().unwrap());
-    let ranking = json["ranking"].as_array().unwrap();
-    assert!(ranking.len() > 4);
-    for candidate in ranking {
-        let score = candidate["validation_score"].as_f64().unwrap();
-        assert!((0.0..=1.0).contains(&score), "{candidate}");
-        let kind = candidate["kind"].as_str().unwrap();
-        assert!(tried.contains(&kind), "--without {kind} was not heeded");
-    }
-    let kept: Vec<&Value> = ranking.iter().filter(|c| c["kept"] == true).collect();
-    assert_eq!((kept.len(), &kept[0]["kind"]), (1, &"actuator-friction".into()));
+    assert_errors(errors);
+    assert_ranking(&json["ranking"], &tried);
     for key in ["simulations", "wall_s"] {
         assert_number(&json[key], key);
     }
@@ -85,15 +59,62 @@ fn a_calibration_writes_everything_that_was_promised() {
     assert_eq!(predicted.lines().count(), log.lines().count());
     assert_eq!(predicted.lines().next(), log.lines().next());
 
-    let page = place.read("c/index.html");
-    let verdict = json["verdict"].as_str().unwrap();
+    assert_page(&place.read("c/index.html"), json["verdict"].as_str().unwrap());
+
+    assert_model_predicts(&place, errors);
+
+    let again = format!("calibrate --rig {rig_file} --data run.csv --out c");
+    place.refused(&again, &["`c` already holds a result", "--force"]);
+}
+
+fn assert_effect(effect: &Value) {
+    assert_eq!((&effect["kind"], &effect["joint"]), (&"actuator-friction".into(), &"P2".into()));
+    assert!(effect["evidence"].as_str().unwrap().starts_with("removes "));
+    for (name, fitted) in effect["params"].as_object().unwrap() {
+        let [low, value, high] =
+            [&fitted["ci95"][0], &fitted["value"], &fitted["ci95"][1]].map(|v| v.as_f64().unwrap());
+        assert!(low < value && value < high && fitted["std"].as_f64().unwrap() > 0.0, "{name}");
+    }
+}
+
+fn assert_errors(errors: &[Value]) {
+    let channels: Vec<&str> = errors.iter().map(|e| e["channel"].as_str().unwrap()).collect();
+    assert_eq!(channels, ["q1", "q2", "q3", "F1", "F2", "F3", "x", "y", "phi"]);
+    for error in errors {
+        assert_eq!((&error["run"], &error["role"]), (&"run.csv".into(), &"calibration".into()));
+        for key in ["before", "after", "floor"] {
+            assert_number(&error[key], key);
+        }
+    }
+    let force = &errors[4];
+    assert_eq!(force["unit"], "N");
+    assert!(force["before"].as_f64().unwrap() > 10.0 * force["after"].as_f64().unwrap());
+}
+
+/// Only what was `tried` stands there, and the hidden effect alone is kept.
+fn assert_ranking(ranking: &Value, tried: &[&str]) {
+    let ranking = ranking.as_array().unwrap();
+    assert!(ranking.len() > 4);
+    for candidate in ranking {
+        let score = candidate["validation_score"].as_f64().unwrap();
+        assert!((0.0..=1.0).contains(&score), "{candidate}");
+        let kind = candidate["kind"].as_str().unwrap();
+        assert!(tried.contains(&kind), "--without {kind} was not heeded");
+    }
+    let kept: Vec<&Value> = ranking.iter().filter(|c| c["kept"] == true).collect();
+    assert_eq!((kept.len(), &kept[0]["kind"]), (1, &"actuator-friction".into()));
+}
+
+fn assert_page(page: &str, verdict: &str) {
     assert!(page.contains(&format!("Calibration of rig-2: {verdict}")) && !page.contains("NaN"));
     for id in ["facts", "effects", "errors", "depends-on", "candidates", "residuals", "provenance"]
     {
         assert!(page.contains(&format!("id=\"{id}\"")), "{id}");
     }
+}
 
-    // The calibrated model is a scenario like any other.
+/// The calibrated model is a scenario like any other, and errs as the report says.
+fn assert_model_predicts(place: &Place, errors: &[Value]) {
     place
         .good("run c/calibrated.toml --set simulation.settle=0.01 --duration 0.03 --out r --quiet");
     let predicted = place.good("predict c/calibrated.toml --data run.csv --out p --json");
@@ -103,7 +124,4 @@ fn a_calibration_writes_everything_that_was_promised() {
             assert_eq!(one[key], other[key], "{key} of {}", one["channel"]);
         }
     }
-
-    let again = format!("calibrate --rig {rig_file} --data run.csv --out c");
-    place.refused(&again, &["`c` already holds a result", "--force"]);
 }

@@ -9,4 +9,5 @@ mod long;
 mod mixed;
 mod odd;
 mod refusals;
+mod refused_motions;
 mod templates;

@@ -230,7 +230,6 @@ impl Chain {
     pub fn text(&self, form: &Form) -> String {
         let (put, [a, d, e]) = self.put();
         let names = self.names(form);
-        let xy = |v: Vector2<f64>| format!("[{:?}, {:?}]", v.x, v.y);
         let gravity = if self.gravity { -9.81 } else { 0.0 };
         let mut text = format!(
             "[environment]\ngravity = [0.0, {gravity:?}]\n[contact]\nstiffness = {STIFFNESS:?}\nc_max = \
@@ -240,13 +239,34 @@ impl Chain {
             xy(d),
             xy(e)
         );
+        let mut bodies = self.body_texts(form, &put, &names);
+        let mut joints = self.joint_texts(form, &names);
+        if form.other {
+            bodies.reverse();
+            joints.rotate_left(2);
+            joints.reverse();
+        }
+        text.extend(bodies);
+        text.extend(joints);
+        text += &self.drive_text(form);
+        if self.spring {
+            text += &format!(
+                "[[spring]]\nbetween = [\"ground.s\", \"{}.q\"]\nstiffness = {:?}\nfree_length = {:?}\n",
+                names[1], SPRING[0], SPRING[1]
+            );
+        }
+        text
+    }
+
+    /// The bodies, one text each.
+    fn body_texts(&self, form: &Form, put: &[Put], names: &[String]) -> Vec<String> {
         let carrier = (self.bodies() - self.second) / 2;
         let hinge = put[carrier].local(
             (put[carrier].ends[0] + put[carrier].ends[1]) / 2.0
                 + ((put[carrier].ends[0] + put[carrier].ends[1]) / 2.0).normalize() * 0.04,
         );
         let mut bodies: Vec<String> = Vec::new();
-        for (i, (link, body)) in self.links.iter().zip(&put).enumerate() {
+        for (i, (link, body)) in self.links.iter().zip(put).enumerate() {
             let [x, y, turn] = if form.perturbed {
                 let [x, y, turn] = link.perturbation;
                 [5e-3 * x, 5e-3 * y, 0.05 * turn]
@@ -267,6 +287,11 @@ impl Chain {
                 link.velocity,
             ));
         }
+        bodies
+    }
+
+    /// The joints, one text each.
+    fn joint_texts(&self, form: &Form, names: &[String]) -> Vec<String> {
         let end = |(body, point): (Option<usize>, &str)| match body {
             Some(i) => format!("{}.{point}", names[i]),
             None => format!("ground.{point}"),
@@ -285,13 +310,12 @@ impl Chain {
             }
             joints.push(joint);
         }
-        if form.other {
-            bodies.reverse();
-            joints.rotate_left(2);
-            joints.reverse();
-        }
-        text.extend(bodies);
-        text.extend(joints);
+        joints
+    }
+
+    /// The drive of the first joint, and its motion.
+    fn drive_text(&self, form: &Form) -> String {
+        let mut text = String::new();
         let name = joint_name(form, 0);
         let keys = match self.driven {
             Driven::Not => None,
@@ -309,13 +333,6 @@ impl Chain {
                 "[[motion]]\njoint = \"{name}\"\nkind = \"quintic\"\nfrom = {from:?}\nto = {:?}\ntime = \
                  {MOVING:?}",
                 from + self.drive
-            );
-        }
-        if self.spring {
-            let _ = writeln!(
-                text,
-                "[[spring]]\nbetween = [\"ground.s\", \"{}.q\"]\nstiffness = {:?}\nfree_length = {:?}",
-                names[1], SPRING[0], SPRING[1]
             );
         }
         text
@@ -341,6 +358,10 @@ impl Chain {
     pub fn machine(&self, form: &Form) -> Result<Machine, String> {
         assemble(&self.scenario(form)?).map_err(|e| e.to_string())
     }
+}
+
+fn xy(v: Vector2<f64>) -> String {
+    format!("[{:?}, {:?}]", v.x, v.y)
 }
 
 fn joint_name(form: &Form, k: usize) -> String {

@@ -27,6 +27,11 @@ const END: [f64; 7] = [
     1.048_080_741_042_263,
 ];
 
+/// Points of the ground in m.
+const A: [f64; 2] = [-0.06934, -0.00227];
+const B: [f64; 2] = [-0.03635, 0.03273];
+const C: [f64; 2] = [0.014, 0.072];
+
 /// Angles of K1 to K7 in rad.
 fn angles([beta, theta, gamma, phi, delta, omega, epsilon]: [f64; 7]) -> [f64; 7] {
     [beta, beta + theta, gamma, phi + delta, delta, omega + epsilon, epsilon]
@@ -35,7 +40,30 @@ fn angles([beta, theta, gamma, phi, delta, omega, epsilon]: [f64; 7]) -> [f64; 7
 /// The mechanism at its start. A body's axes are those that its angle turns; of K3, K5 and K7 the problem
 /// says only how far the centre of mass is from their pivot, which is all that acts without gravity.
 fn squeezer() -> String {
-    let [xa, ya, xb, yb, xc, yc] = [-0.06934, -0.00227, -0.03635, 0.03273, 0.014, 0.072f64];
+    let [[xa, ya], [xb, yb], [xc, yc]] = [A, B, C];
+    let text = format!(
+        "
+        [ground.points]
+        O = [0.0, 0.0]
+        A = [{xa:?}, {ya:?}]
+        B = [{xb:?}, {yb:?}]
+        C = [{xc:?}, {yc:?}]
+        [[drive]]
+        joint = \"O\"
+        kind = \"force\"
+        value = 0.033
+        [[spring]]
+        between = [\"K3.spring\", \"ground.C\"]
+        stiffness = 4530.0
+        free_length = 0.07785
+        "
+    );
+    text + &bodies() + &joints()
+}
+
+/// The bodies.
+fn bodies() -> String {
+    let [[xa, ya], [xb, yb]] = [A, B];
     let [d, da, e, ea, rr, ra] = [0.028, 0.0115, 0.02, 0.01421, 0.007, 0.00092f64];
     let [ss, sa, sb, sc, sd] = [0.035, 0.01874, 0.01043, 0.018, 0.02f64];
     let [ta, tb, u, ua, ub, zf, zt, fa] =
@@ -68,23 +96,7 @@ fn squeezer() -> String {
         point("P", zf, 0.0),
         point("end", 0.0, -u),
     ];
-    let mut text = format!(
-        "
-        [ground.points]
-        O = [0.0, 0.0]
-        A = [{xa:?}, {ya:?}]
-        B = [{xb:?}, {yb:?}]
-        C = [{xc:?}, {yc:?}]
-        [[drive]]
-        joint = \"O\"
-        kind = \"force\"
-        value = 0.033
-        [[spring]]
-        between = [\"K3.spring\", \"ground.C\"]
-        stiffness = 4530.0
-        free_length = 0.07785
-        "
-    );
+    let mut text = String::new();
     for i in 0..7 {
         let [x, y] = origins[i];
         text += &format!(
@@ -105,6 +117,11 @@ fn squeezer() -> String {
             turned[i],
         );
     }
+    text
+}
+
+/// The joints.
+fn joints() -> String {
     let joints = [
         ("O", "ground.O", "K1.pivot"),
         ("K1K2", "K1.end", "K2.pivot"),
@@ -117,6 +134,7 @@ fn squeezer() -> String {
         ("K7K6", "K7.end", "K6.pivot"),
         ("A7", "ground.A", "K7.pivot"),
     ];
+    let mut text = String::new();
     for (name, ring, journal) in joints {
         text += &format!(
             "[[joint]]\nname = \"{name}\"\nkind = \"revolute\"\nring = \"{ring}\"\n\

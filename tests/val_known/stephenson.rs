@@ -25,6 +25,59 @@ impl Load for Push {
     }
 }
 
+/// A link in the first pose.
+struct Link {
+    name: &'static str,
+    /// In kg and kg m².
+    inertia: [f64; 2],
+    /// In m, as the points.
+    centre: [f64; 2],
+    points: &'static [(&'static str, [f64; 2])],
+}
+
+const LINKS: [Link; 5] = [
+    Link {
+        name: "AB",
+        inertia: [5.0, 0.1],
+        centre: [6.0, 10.0],
+        points: &[("A", [7.0, 4.0]), ("B", [5.0, 16.0])],
+    },
+    Link {
+        name: "BCE",
+        inertia: [10.0, 0.2],
+        centre: [16.0, 76.0 / 3.0],
+        points: &[("B", [5.0, 16.0]), ("C", [25.0, 25.0]), ("E", [18.0, 35.0])],
+    },
+    Link {
+        name: "CD",
+        inertia: [5.0, 0.1],
+        centre: [24.0, 17.5],
+        points: &[("C", [25.0, 25.0]), ("D", [23.0, 10.0])],
+    },
+    Link {
+        name: "EF",
+        inertia: [10.0, 0.2],
+        centre: [30.5, 33.5],
+        points: &[("E", [18.0, 35.0]), ("F", [43.0, 32.0])],
+    },
+    Link {
+        name: "FG",
+        inertia: [5.0, 0.1],
+        centre: [44.0, 24.5],
+        points: &[("F", [43.0, 32.0]), ("G", [45.0, 17.0])],
+    },
+];
+
+fn link(Link { name, inertia: [mass, inertia], centre, points }: Link) -> String {
+    let points: Vec<String> =
+        points.iter().map(|(name, place)| format!("{name} = {place:?}")).collect();
+    format!(
+        "[[body]]\nname = \"{name}\"\nmass = {mass:?}\ninertia = {inertia:?}\n\
+         center_of_mass = {centre:?}\npoints = {{ {} }}\n",
+        points.join(", ")
+    )
+}
+
 /// The six-bar under this gravity in m/s². In its first pose the axes of all links are those of the world.
 fn six_bar(gravity: f64) -> Machine {
     let text = format!(
@@ -35,36 +88,7 @@ fn six_bar(gravity: f64) -> Machine {
         A = [7.0, 4.0]
         D = [23.0, 10.0]
         G = [45.0, 17.0]
-        [[body]]
-        name = \"AB\"
-        mass = 5.0
-        inertia = 0.1
-        center_of_mass = [6.0, 10.0]
-        points = {{ A = [7.0, 4.0], B = [5.0, 16.0] }}
-        [[body]]
-        name = \"BCE\"
-        mass = 10.0
-        inertia = 0.2
-        center_of_mass = [16.0, {:?}]
-        points = {{ B = [5.0, 16.0], C = [25.0, 25.0], E = [18.0, 35.0] }}
-        [[body]]
-        name = \"CD\"
-        mass = 5.0
-        inertia = 0.1
-        center_of_mass = [24.0, 17.5]
-        points = {{ C = [25.0, 25.0], D = [23.0, 10.0] }}
-        [[body]]
-        name = \"EF\"
-        mass = 10.0
-        inertia = 0.2
-        center_of_mass = [30.5, 33.5]
-        points = {{ E = [18.0, 35.0], F = [43.0, 32.0] }}
-        [[body]]
-        name = \"FG\"
-        mass = 5.0
-        inertia = 0.1
-        center_of_mass = [44.0, 24.5]
-        points = {{ F = [43.0, 32.0], G = [45.0, 17.0] }}
+        {}
         {}
         [[drive]]
         joint = \"A\"
@@ -75,7 +99,7 @@ fn six_bar(gravity: f64) -> Machine {
         start = 0.0
         velocity = {SPEED:?}
         ",
-        76.0 / 3.0,
+        LINKS.map(link).concat(),
         joints(&[
             ("A", "ground", "AB"),
             ("B", "AB", "BCE"),

@@ -35,71 +35,107 @@ pub struct Ranked {
 /// that of a good laboratory.
 pub fn missing(rig: &Scenario, machine: &Mechanism) -> Vec<Instrument> {
     let Some(described) = rig.mechanism.described() else { return Vec::new() };
-    let has =
-        |reads: &dyn Fn(&Reads) -> bool| machine.sensors.iter().any(|sensor| reads(&sensor.reads));
-    let sensor = |quantity: Quantity, turns: bool, column: &str, of: &str| {
+    let shop = Shop { rig, machine, declared: &described.sensors };
+    let mut found = Vec::new();
+    found.extend(shop.tracker());
+    found.extend(shop.encoders());
+    found.extend(shop.effort_sensors());
+    found.extend(shop.accelerometers());
+    found.truncate(MOST);
+    found
+}
+
+/// Where instruments for a machine are looked for.
+struct Shop<'a> {
+    rig: &'a Scenario,
+    machine: &'a Mechanism,
+    /// Sensors that the rig has.
+    declared: &'a [scenario::Sensor],
+}
+
+impl Shop<'_> {
+    /// Whether the machine has a sensor that reads this.
+    fn has(&self, reads: &dyn Fn(&Reads) -> bool) -> bool {
+        self.machine.sensors.iter().any(|sensor| reads(&sensor.reads))
+    }
+
+    /// A sensor with the noise of those like it, or that of a good laboratory.
+    fn sensor(&self, quantity: Quantity, turns: bool, column: &str, of: &str) -> scenario::Sensor {
         let bare = laboratory(quantity, turns, column, of);
         let joint = |name: &str| {
-            let found = machine.joints().find(|(known, _)| *known == name);
+            let found = self.machine.joints().find(|(known, _)| *known == name);
             found.is_some_and(|(_, joint)| matches!(joint, JointIndex::Revolute(_)))
         };
         let alike =
             |known: &&scenario::Sensor| known.quantity == quantity && joint(&known.of) == turns;
-        let like = described.sensors.iter().find(alike);
+        let like = self.declared.iter().find(alike);
         like.map_or(bare.clone(), |like| scenario::Sensor {
             std: like.std,
             resolution: like.resolution,
             lowpass: like.lowpass,
             ..bare
         })
-    };
-    let mut found = Vec::new();
-    let output = machine.output;
-    if let Some((body, point)) = point_of(rig, machine, output)
-        && !has(&|reads| matches!(reads, Reads::X(mark) if mark.body == Some(output)))
-    {
+    }
+
+    fn tracker(&self) -> Option<Instrument> {
+        let output = self.machine.output;
+        let (body, point) = point_of(self.rig, self.machine, output)?;
+        if self.has(&|reads| matches!(reads, Reads::X(mark) if mark.body == Some(output))) {
+            return None;
+        }
         let sensors = [("x", Quantity::X), ("y", Quantity::Y), ("phi", Quantity::Angle)];
-        found.push(Instrument {
-            name: format!("tracker of {body}"),
-            sensors: sensors
-                .map(|(name, quantity)| {
-                    sensor(quantity, false, &format!("plan_{name}_{body}"), &point)
-                })
-                .to_vec(),
-        });
-    }
-    for (name, joint) in machine.joints() {
-        let known = |reads: &Reads| matches!(reads, Reads::Position(of) if *of == joint);
-        if !has(&known) {
-            let turns = matches!(joint, JointIndex::Revolute(_));
-            let one = sensor(Quantity::Position, turns, &format!("plan_q_{name}"), name);
-            found.push(Instrument { name: format!("encoder of {name}"), sensors: vec![one] });
-        }
-    }
-    for (index, drive) in machine.actuators.iter().enumerate() {
-        if !has(&|reads| matches!(reads, Reads::Effort(of) if *of == index)) {
-            let turns = matches!(drive.joint, JointIndex::Revolute(_));
-            let joint = machine.joint_name(drive.joint);
-            let one = sensor(Quantity::Force, turns, &format!("plan_F_{joint}"), joint);
-            let what = if turns { "torque" } else { "force" };
-            found
-                .push(Instrument { name: format!("{what} sensor of {joint}"), sensors: vec![one] });
-        }
-    }
-    for index in 0..machine.bodies.len() {
-        let Some((body, point)) = point_of(rig, machine, index) else { continue };
-        if has(&|reads| matches!(reads, Reads::Acceleration(mark, _) if mark.body == Some(index))) {
-            continue;
-        }
-        let along = |axis: f64, name: &str| scenario::Sensor {
-            axis: Some(axis),
-            ..sensor(Quantity::Acceleration, false, &format!("plan_a{name}_{body}"), &point)
+        let sensor = |(name, quantity): (&str, Quantity)| {
+            self.sensor(quantity, false, &format!("plan_{name}_{body}"), &point)
         };
-        let sensors = vec![along(0.0, "x"), along(std::f64::consts::FRAC_PI_2, "y")];
-        found.push(Instrument { name: format!("accelerometer on {body}"), sensors });
+        let name = format!("tracker of {body}");
+        Some(Instrument { name, sensors: sensors.map(sensor).to_vec() })
     }
-    found.truncate(MOST);
-    found
+
+    fn encoders(&self) -> impl Iterator<Item = Instrument> {
+        self.machine.joints().filter_map(|(name, joint)| {
+            let known = |reads: &Reads| matches!(reads, Reads::Position(of) if *of == joint);
+            if self.has(&known) {
+                return None;
+            }
+            let turns = matches!(joint, JointIndex::Revolute(_));
+            let one = self.sensor(Quantity::Position, turns, &format!("plan_q_{name}"), name);
+            Some(Instrument { name: format!("encoder of {name}"), sensors: vec![one] })
+        })
+    }
+
+    fn effort_sensors(&self) -> impl Iterator<Item = Instrument> {
+        self.machine.actuators.iter().enumerate().filter_map(|(index, drive)| {
+            if self.has(&|reads| matches!(reads, Reads::Effort(of) if *of == index)) {
+                return None;
+            }
+            let turns = matches!(drive.joint, JointIndex::Revolute(_));
+            let joint = self.machine.joint_name(drive.joint);
+            let one = self.sensor(Quantity::Force, turns, &format!("plan_F_{joint}"), joint);
+            let what = if turns { "torque" } else { "force" };
+            Some(Instrument { name: format!("{what} sensor of {joint}"), sensors: vec![one] })
+        })
+    }
+
+    fn accelerometers(&self) -> impl Iterator<Item = Instrument> {
+        (0..self.machine.bodies.len()).filter_map(|index| {
+            let (body, point) = point_of(self.rig, self.machine, index)?;
+            let known = |reads: &Reads| matches!(reads, Reads::Acceleration(mark, _) if mark.body == Some(index));
+            if self.has(&known) {
+                return None;
+            }
+            let along = |axis: f64, name: &str| scenario::Sensor {
+                axis: Some(axis),
+                ..self.sensor(
+                    Quantity::Acceleration,
+                    false,
+                    &format!("plan_a{name}_{body}"),
+                    &point,
+                )
+            };
+            let sensors = vec![along(0.0, "x"), along(std::f64::consts::FRAC_PI_2, "y")];
+            Some(Instrument { name: format!("accelerometer on {body}"), sensors })
+        })
+    }
 }
 
 /// Name of a body, and of the point of it where an instrument would sit: the last one, which is away from the joint that

@@ -2,16 +2,19 @@
 //!
 //! [`prepare`](prepare::prepare) reads what is asked ([`asked`]) and within which [`limits`]; [`series`] and [`motion`] make
 //! motions out of numbers, [`path`] says whether the machine can follow them; [`sight`] is what a calibration would see
-//! along one, [`separation`] how far apart models are there; [`search`] finds the numbers; [`outcome`] is the whole way,
+//! along one, [`separation`] how far apart models are there; `posing` gives questions their numbers, [`search`] finds those of
+//! motions, `chosen` looks at the best with clearance; [`outcome`] is the whole way,
 //! [`instruments`] what one more sensor would bring, [`report`] what is written.
 
 pub mod asked;
+mod chosen;
 pub mod instruments;
 pub mod limits;
 pub mod motion;
 pub mod outcome;
 mod page;
 pub mod path;
+mod posing;
 pub mod prepare;
 pub mod report;
 pub mod search;

@@ -1,15 +1,14 @@
 //! The whole way: from what is asked to a motion, and to how far apart it brings the models.
 
-use super::asked::Question;
-use super::instruments::{Ranked, missing, ranked, worth};
+use super::chosen::{Chosen, Ground, no_motion, search_twice};
+use super::instruments::{Ranked, missing, ranked};
 use super::motion::{Maker, Motion};
 use super::path::Way;
+use super::posing::pose_all;
 use super::prepare::Prepared;
-use super::search::{Effort, best};
-use super::separation::{Apart, Posed, apart, detectable, named, nearest, shows, sized};
-use super::sight::{Seen, Sight};
+use super::separation::{Apart, Posed, apart, detectable, named, nearest};
+use super::sight::Sight;
 use crate::calibrate::result::CalibrateError;
-use crate::calibrate::sensed::estimate::effort_sensor;
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::SURE;
 use crate::effects::Setting;
@@ -17,16 +16,6 @@ use rayon::prelude::*;
 
 /// Motions of random numbers by which effects are looked for that the present motion does not show.
 const RANDOM: usize = 8;
-
-/// How many times its present detection limit a rival is large where nobody says: clearly there, and not so large that
-/// anything tells it from anything.
-const LARGE: f64 = 2.0;
-
-/// Share of what a linearised rival leaves that its full fit may leave for the search to have been right about it.
-const HELD: f64 = 0.7;
-
-/// Shares of a planned motion's size at which drives are strong enough for it with clearances, one after another.
-const GENTLER: [f64; 4] = [1.0, 0.9, 0.75, 0.5];
 
 /// How far apart the models of a question are on one motion.
 #[derive(Clone, Debug)]
@@ -108,44 +97,12 @@ pub fn plan(prepared: &Prepared, tell: &(dyn Fn(&str) + Sync)) -> Result<Outcome
     };
     tell("posing the questions");
     let reference = present.as_ref().unwrap_or(frozen);
-    let mut posed = pose_all(prepared, reference, frozen, &random)?;
+    let posed = pose_all(prepared, reference, frozen, &random)?;
     let before: Option<Vec<Answer>> =
         present.as_ref().map(|sight| posed.iter().map(|posed| answered(sight, posed).1).collect());
-    let mut candidates = 0;
-    let mut chosen: Option<Chosen> = None;
-    for round in 0..2 {
-        // The second one refines what the first one found out about rivals.
-        let all = prepared.effort;
-        let effort =
-            if round == 0 { all } else { Effort { generations: all.generations / 2, ..all } };
-        let search = Search {
-            effort,
-            prepared,
-            way: &way,
-            maker: &maker,
-            frozen,
-            posed: &posed,
-            before: candidates,
-            tell,
-        };
-        let found = search.run(seed + round)?;
-        candidates += effort.candidates();
-        let better = chosen.as_ref().is_none_or(|chosen| found.worth > chosen.worth);
-        let (linear, full) = (found.linear, found.worth);
-        if better {
-            chosen = Some(found);
-        }
-        // A rival that came nearer by other values is searched against with these.
-        if full >= HELD * linear {
-            break;
-        }
-        if let Some(chosen) = &chosen {
-            posed.clone_from(&chosen.posed);
-        }
-    }
-    let Some(Chosen { motion, like, sight, answers, forces, posed, .. }) = chosen else {
-        return Err(no_motion(&maker, &way));
-    };
+    let ground = Ground { prepared, way: &way, maker: &maker, frozen, tell };
+    let (chosen, candidates) = search_twice(&ground, posed)?;
+    let Chosen { motion, like, sight, answers, forces, posed, .. } = chosen;
     tell("trying one more sensor");
     let with = |machine: &crate::mechanism::Mechanism| {
         motion.like(machine, "planned", *interval, *samples)
@@ -172,116 +129,9 @@ fn random(maker: &Maker, way: &Way, seed: u64) -> Vec<(Motion, Recording)> {
     numbers.par_iter().filter_map(|numbers| way.largest(maker, numbers)).collect()
 }
 
-/// What to say where the machine can follow nothing.
-fn no_motion(maker: &Maker, way: &Way) -> CalibrateError {
-    // At rest, and in a small motion about home.
-    let tried = [0.0, 0.1].map(|share| maker.motion(&vec![1.0; maker.numbers()], share));
-    let blocked =
-        tried.iter().find_map(|motion| way.follows(&way.like(motion), &maker.limits).err());
-    let why = match blocked {
-        Some(blocked) => blocked.words(&maker.limits),
-        None => "none was found that the machine can follow".to_owned(),
-    };
-    let message = format!(
-        "the limits leave no motion: {why}; give wider ones (--stroke, --speed, --acceleration, --drive-force, --gain)"
-    );
-    CalibrateError::Input(vec![message])
-}
-
-/// Questions with numbers. What the present motion does not show is looked for along random ones.
-fn pose_all(
-    prepared: &Prepared,
-    reference: &Sight,
-    frozen: &Sight,
-    random: &[(Motion, Recording)],
-) -> Result<Vec<Posed>, CalibrateError> {
-    let seen = reference.own();
-    let recorded = |(_, like): &(Motion, Recording)| {
-        Seen::ideal(&prepared.described, like, prepared.control).ok()
-    };
-    let others: Vec<Seen> = random.par_iter().filter_map(recorded).collect();
-    let mut wrong = Vec::new();
-    let mut posed = Vec::new();
-    for question in &prepared.questions {
-        match pose(question, reference, &seen, frozen, &others) {
-            Ok(one) => posed.push(one),
-            Err(message) => wrong.push(message),
-        }
-    }
-    crate::calibrate::result::refuse(wrong)?;
-    Ok(posed)
-}
-
-/// The size at which an effect would be named, on the present motion or else on the random one that shows it best.
-fn size_of(
-    effect: &Setting,
-    reference: (&Sight, &Seen),
-    frozen: &Sight,
-    others: &[Seen],
-) -> Result<f64, String> {
-    let present = detectable(reference.0, reference.1, effect);
-    let elsewhere = || {
-        let sizes = others.iter().filter_map(|seen| detectable(frozen, seen, effect));
-        sizes.reduce(f64::min)
-    };
-    present.or_else(elsewhere).ok_or_else(|| {
-        let columns: Vec<&str> = reference.0.declared().sensors.iter().map(|s| s.column.as_str()).collect();
-        format!(
-            "{effect}: no sensor of this rig can see it, on the present motion or any of {} others, at any size that \
-             makes sense; the residuals of {} stay as they are. Another sensor would have to",
-            others.len(),
-            columns.join(", ")
-        )
-    })
-}
-
-fn pose(
-    question: &Question,
-    reference: &Sight,
-    seen: &Seen,
-    frozen: &Sight,
-    others: &[Seen],
-) -> Result<Posed, String> {
-    match question {
-        Question::Detect(effect, size) => {
-            let found = size_of(effect, (reference, seen), frozen, others)?;
-            let mut ways = sized(effect, size.unwrap_or(found));
-            ways.retain(|way| {
-                shows(reference, seen, way) || others.iter().any(|seen| shows(frozen, seen, way))
-            });
-            Ok(Posed::Detect { effect: effect.clone(), ways })
-        }
-        Question::Between(a, b) => {
-            // An effect of a report comes with its values.
-            let names: Vec<&'static str> = a.values().map(|(name, _)| name).collect();
-            let neutral = Setting::neutral(a.kind, a.target.clone(), &names, reference.declared());
-            let given = neutral.is_none_or(|neutral| *a != neutral);
-            let large = |effect: &Setting| -> Result<Setting, String> {
-                let size = LARGE * size_of(effect, (reference, seen), frozen, others)?;
-                Ok(sized(effect, size).into_iter().next().unwrap_or_else(|| effect.clone()))
-            };
-            let by = |truth: &Setting, rival: &Setting| {
-                let found = nearest(reference, seen, std::slice::from_ref(truth), rival);
-                found
-                    .map(|(rival, _)| rival)
-                    .ok_or_else(|| format!("{rival}: no value of it makes a machine that moves so"))
-            };
-            let (first, second) = (if given { a.clone() } else { large(a)? }, large(b)?);
-            let rival = by(&first, b)?;
-            // What a report holds for as good is as large as it has to be.
-            let back = if given {
-                [rival.clone(), first.clone()]
-            } else {
-                [second.clone(), by(&second, a)?]
-            };
-            Ok(Posed::Between { rivals: [a.clone(), b.clone()], pairs: vec![[first, rival], back] })
-        }
-    }
-}
-
 /// How far apart the models of a question are on a motion, rivals fitted to each other with all their values, and the
 /// question with the nearest values.
-fn answered(sight: &Sight, posed: &Posed) -> (Posed, Answer) {
+pub(super) fn answered(sight: &Sight, posed: &Posed) -> (Posed, Answer) {
     let seen = sight.own();
     let carried = |apart: &Apart| {
         let names = sight.names.iter().map(|name| format!("{} of {}", name.kind.word(), name.of));
@@ -318,105 +168,6 @@ fn answered(sight: &Sight, posed: &Posed) -> (Posed, Answer) {
             (Posed::Between { rivals: rivals.clone(), pairs }, answer.unwrap_or_else(nothing))
         }
     }
-}
-
-/// One search, and what it works with.
-struct Search<'a> {
-    prepared: &'a Prepared,
-    way: &'a Way<'a>,
-    maker: &'a Maker,
-    frozen: &'a Sight,
-    posed: &'a [Posed],
-    effort: Effort,
-    before: usize,
-    tell: &'a (dyn Fn(&str) + Sync),
-}
-
-/// A motion that was chosen.
-struct Chosen {
-    motion: Motion,
-    like: Recording,
-    sight: Sight,
-    answers: Vec<Answer>,
-    posed: Vec<Posed>,
-    forces: Vec<Option<f64>>,
-    /// The least separation over what is wanted, with rivals fitted and noise of this motion; and as the search saw it.
-    worth: f64,
-    linear: f64,
-}
-
-impl Search<'_> {
-    fn run(&self, seed: u64) -> Result<Chosen, CalibrateError> {
-        let worth = |numbers: &[f64]| {
-            let (_, like) = self.way.largest(self.maker, numbers)?;
-            let seen = Seen::ideal(self.way.rig, &like, self.prepared.control).ok()?;
-            self.worth(self.frozen, &seen)
-        };
-        let said = |tried: usize, worth: f64| {
-            let all = self.before + self.effort.candidates();
-            let tried = self.before + tried;
-            (self.tell)(&format!(
-                "{tried} of {all} motions; the best has {worth:.2} of what answers all questions"
-            ));
-        };
-        let found = best(self.maker.numbers(), seed, self.effort, &worth, &said);
-        (self.tell)("looking at the best motions with clearance and noise");
-        let mut chosen: Option<Chosen> = None;
-        for candidate in found {
-            let Some(finished) = self.finished(&candidate.numbers)? else { continue };
-            if chosen.as_ref().is_none_or(|chosen| finished.worth > chosen.worth) {
-                chosen = Some(finished);
-            }
-        }
-        chosen.ok_or_else(|| no_motion(self.maker, self.way))
-    }
-
-    fn worth(&self, sight: &Sight, seen: &Seen) -> Option<f64> {
-        let sigma = self.posed.iter().map(|posed| Some(apart(sight, seen, posed)?.sigma));
-        Some(worth(self.posed, &sigma.collect::<Option<Vec<f64>>>()?))
-    }
-
-    /// A candidate with clearances, noise of its own, and rivals fitted with all their values; so much smaller that its
-    /// drives are strong enough. None where that cannot be.
-    fn finished(&self, numbers: &[f64]) -> Result<Option<Chosen>, CalibrateError> {
-        let Prepared { described: rig, control, seed, limits, .. } = self.prepared;
-        let Some((largest, _)) = self.way.largest(self.maker, numbers) else { return Ok(None) };
-        for share in GENTLER {
-            let motion = self.maker.gentler(&largest, share);
-            let like = self.way.like(&motion);
-            if self.way.follows(&like, limits).is_err() {
-                continue;
-            }
-            // What breaks down is no motion for this machine.
-            let Ok(sight) = Sight::new(rig, &like, *control, *seed) else { continue };
-            let forces = forces(&sight);
-            let strong = forces.iter().zip(limits).all(|(force, limit)| {
-                force.zip(limit.force).is_none_or(|(force, most)| force <= most)
-            });
-            if !strong {
-                continue;
-            }
-            let linear = self.worth(&sight, &sight.own()).unwrap_or(0.0);
-            let answers: Vec<(Posed, Answer)> =
-                self.posed.iter().map(|posed| answered(&sight, posed)).collect();
-            let (posed, answers): (Vec<Posed>, Vec<Answer>) = answers.into_iter().unzip();
-            let sigma: Vec<f64> = answers.iter().map(|answer| answer.sigma).collect();
-            let worth = worth(&posed, &sigma);
-            return Ok(Some(Chosen { motion, like, sight, answers, posed, forces, worth, linear }));
-        }
-        Ok(None)
-    }
-}
-
-/// Largest measured force or torque of each drive, noise aside.
-fn forces(sight: &Sight) -> Vec<Option<f64>> {
-    let machine = sight.declared();
-    (0..machine.actuators.len())
-        .map(|drive| {
-            let column = sight.clean.get(effort_sensor(machine, drive)?)?;
-            Some(column.iter().map(|force| force.abs()).fold(0.0, f64::max))
-        })
-        .collect()
 }
 
 /// Chance that an answer is right: of two rivals a likelihood ratio chooses the right one with `Φ(σ/2)`, and an effect of

@@ -4,7 +4,7 @@
 use crate::calibrate::recording::triple;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::three_rpr::Geometry;
-use crate::scenario::{Mechanism, Scenario};
+use crate::scenario::{Mechanism, Scenario, ThreeRpr};
 use crate::simulate::assemble;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
@@ -27,39 +27,24 @@ pub(super) fn geometry(rig: &Scenario, log: &Log) -> Vec<(String, String)> {
     let Some(commands) = triple(log, Channel::Command) else { return Vec::new() };
     let lengths = triple(log, Channel::Length);
     let rows: Vec<usize> = (0..log.samples).step_by((log.samples / LOOKS).max(1)).collect();
-    let mut found = Vec::new();
     // The column that poses are held against, and what it is called.
     let (base, name): (_, fn(usize) -> Channel) = match lengths {
         Some(lengths) => (lengths, Channel::Length),
         None => (commands, Channel::Command),
     };
+    let mut found = Vec::new();
     let mut scales = [1.0; 3];
     if let Some(pose) = triple(log, Channel::Pose) {
         let fit = fit(&geometry, &rows, base, pose);
         if fit.misfit > MISFIT {
-            let message = format!(
-                "columns `{}` and `x`, `y`, `phi` do not close: the length of leg {} misses the one of \
-                 the measured pose by {:.3} m (rms)",
-                name(fit.leg),
-                fit.leg + 1,
-                fit.misfit
-            );
-            let help = format!(
-                "is this the rig of that log (base_side {} m, platform_side {} m), are columns \
-                 exchanged?",
-                machine.base_side, machine.platform_side
-            );
-            return vec![(message, help)];
+            return vec![not_closing(&fit, machine, name)];
         }
-        for (leg, (factor, unit)) in fit.lengths.into_iter().enumerate() {
-            scales[leg] = factor;
+        scales = fit.lengths.map(|(factor, _)| factor);
+        let lengths = (0..3).map(|leg| (name(leg), base[leg], fit.lengths[leg]));
+        let poses = (0..3).map(|k| (Channel::Pose(k), pose[k], fit.pose[k]));
+        for (channel, column, (factor, unit)) in lengths.chain(poses) {
             if factor != 1.0 {
-                found.push(unit_error(name(leg), base[leg], factor, unit));
-            }
-        }
-        for (k, (factor, unit)) in fit.pose.into_iter().enumerate() {
-            if factor != 1.0 {
-                found.push(unit_error(Channel::Pose(k), pose[k], factor, unit));
+                found.push(unit_error(channel, column, factor, unit));
             }
         }
     } else {
@@ -70,31 +55,59 @@ pub(super) fn geometry(rig: &Scenario, log: &Log) -> Vec<(String, String)> {
     }
     if lengths.is_some() {
         for leg in 0..3 {
-            let distance = |factor: f64| {
-                let squares = rows.iter().map(|&row| {
-                    (factor * commands[leg][row] - scales[leg] * base[leg][row]).powi(2)
-                });
-                (squares.sum::<f64>() / rows.len() as f64).sqrt()
-            };
-            if distance(1.0) <= MISFIT {
-                continue;
-            }
-            let channel = Channel::Command(leg);
-            found.push(match LENGTHS.into_iter().find(|(factor, _)| distance(*factor) <= MISFIT) {
-                Some((factor, unit)) => unit_error(channel, commands[leg], factor, unit),
-                None => (
-                    format!(
-                        "columns `{channel}` and `{}` differ by {:.3} m (rms)",
-                        Channel::Length(leg),
-                        distance(1.0)
-                    ),
-                    "a drive follows its command within millimetres: are columns exchanged?"
-                        .to_owned(),
-                ),
-            });
+            let measured: Vec<f64> = rows.iter().map(|&row| scales[leg] * base[leg][row]).collect();
+            found.extend(command(leg, commands[leg], &rows, &measured));
         }
     }
     found
+}
+
+/// What to say of lengths and poses that fit each other in no unit.
+fn not_closing(fit: &Fit, machine: &ThreeRpr, name: fn(usize) -> Channel) -> (String, String) {
+    let message = format!(
+        "columns `{}` and `x`, `y`, `phi` do not close: the length of leg {} misses the one of \
+         the measured pose by {:.3} m (rms)",
+        name(fit.leg),
+        fit.leg + 1,
+        fit.misfit
+    );
+    let help = format!(
+        "is this the rig of that log (base_side {} m, platform_side {} m), are columns \
+         exchanged?",
+        machine.base_side, machine.platform_side
+    );
+    (message, help)
+}
+
+/// What is wrong with a leg's command, held against its measured length (m) at these rows.
+fn command(
+    leg: usize,
+    command: &[f64],
+    rows: &[usize],
+    measured: &[f64],
+) -> Option<(String, String)> {
+    let distance = |factor: f64| {
+        let squares = rows
+            .iter()
+            .zip(measured)
+            .map(|(&row, measured)| (factor * command[row] - measured).powi(2));
+        (squares.sum::<f64>() / rows.len() as f64).sqrt()
+    };
+    if distance(1.0) <= MISFIT {
+        return None;
+    }
+    let channel = Channel::Command(leg);
+    Some(match LENGTHS.into_iter().find(|(factor, _)| distance(*factor) <= MISFIT) {
+        Some((factor, unit)) => unit_error(channel, command, factor, unit),
+        None => (
+            format!(
+                "columns `{channel}` and `{}` differ by {:.3} m (rms)",
+                Channel::Length(leg),
+                distance(1.0)
+            ),
+            "a drive follows its command within millimetres: are columns exchanged?".to_owned(),
+        ),
+    })
 }
 
 /// Units in which lengths and poses fit each other.

@@ -7,6 +7,7 @@ use super::recording::Recording;
 use super::simulate::{apart, with_noise};
 use super::start::machine;
 use super::thresholds::{DRAWS, MISSED, SEEN};
+use crate::calibrate::draws::{Coefficients, difference, mean, without};
 use crate::calibrate::spectrum::Noise;
 use crate::effects::Setting;
 use crate::mechanism::Mechanism;
@@ -50,8 +51,6 @@ pub struct Baseline {
     pub replicas: usize,
 }
 
-type Coefficients = Vec<Vec<f64>>;
-
 /// Draws that tell by how much a look at noise shrinks: the same ones before and after, so that two will do.
 const SHRUNK: usize = 2;
 
@@ -74,82 +73,12 @@ impl Baseline {
         let starts = problem.starts(effects)?;
         let (simulated, rattles) = replicas(problem, effects, deviations, &starts)?;
         let still = problem.still(&starts)?;
-        let sensors = &problem.declared.sensors;
-        let singular = || {
-            let message = "makes a machine that cannot move as it was measured".to_owned();
-            Stopped::Model(problem.rig.problem("effect", message, "other values"))
-        };
-        let mut parts = Vec::new();
-        for segment in segments {
-            let run = &problem.runs[segment.run];
-            let machine = machine(&problem.rig, effects, &run.recording)?;
-            let look = |recording: &Recording| {
-                let view = View::new(recording, sensors.len());
-                problem.coefficients(&view, &machine, segment)
-            };
-            let clean = &simulated[segment.run];
-            let seen: Vec<Coefficients> =
-                clean.par_iter().map(look).collect::<Option<_>>().ok_or_else(singular)?;
-            let bias = mean(&seen);
-            // A replica stands for the data, the mean of the others for the bias.
-            let noisy =
-                |draw: usize| with_noise(&clean[draw % clean.len()], sensors, draw as u64 + 1000);
-            let looked: Vec<Coefficients> = (0..DRAWS)
-                .into_par_iter()
-                .map(|draw| look(&noisy(draw)))
-                .collect::<Option<_>>()
-                .ok_or_else(singular)?;
-            let beside = |of: &dyn Fn(usize) -> Coefficients| -> Vec<Coefficients> {
-                let own = looked.iter().enumerate();
-                own.map(|(draw, noisy)| difference(noisy, &of(draw % seen.len()))).collect()
-            };
-            let draws = beside(&|own| without(&bias, &seen[own], seen.len()));
-            // Where loads keep joints in contact, bodies swing in their play, and nobody knows how they
-            // were let go: what the same machine does without a swing tells where that shows.
-            let still = still[segment.run].as_ref().map(look).unwrap_or(None);
-            let swing = |share: f64| -> Coefficients {
-                let nothing = || bias.iter().map(|c| vec![0.0; c.len()]).collect();
-                let size = |still: &Coefficients| {
-                    let mut swing = difference(&bias, still);
-                    swing.iter_mut().flatten().for_each(|value| *value *= share);
-                    swing
-                };
-                still.as_ref().map_or_else(nothing, size)
-            };
-            let data = problem.coefficients(&run.view, &machine, segment).ok_or_else(singular)?;
-            let left = difference(&data, &bias);
-            let [near, lost] =
-                [MISSED, SQRT_2].map(|share| Noise::from_draws(&draws, &swing(share)));
-            let likelihood = |noise: &Noise| noise.whiten(&left).norm_squared() + noise.swinging();
-            let price = lost.swinging() - near.swinging();
-            let (share, noise, lost) = match likelihood(&lost) < likelihood(&near) {
-                true => (SQRT_2, lost, price),
-                false => (MISSED, near, 0.0),
-            };
-            let of_sensors = Noise::from_draws(&beside(&|own| seen[own].clone()), &swing(0.0));
-            let rattle = noise.log_determinant() - of_sensors.log_determinant();
-            let draws = by_the_others(&draws, clean.len(), &swing(share));
-            let view = |recording: &Recording| View::new(recording, sensors.len());
-            // Those of the first replica.
-            let kept = || (0..SHRUNK).map(|k| k * clean.len());
-            let power = kept().map(|draw| difference(&looked[draw], &seen[0]));
-            let power = power.map(|own| noise.whiten(&own).norm_squared()).sum();
-            let noisy = kept().map(|draw| view(&noisy(draw))).collect();
-            let (segment, clean) = (segment.clone(), view(&clean[0]));
-            parts.push(Part {
-                segment,
-                machine,
-                bias,
-                left,
-                noise,
-                clean,
-                noisy,
-                power,
-                rattle,
-                draws,
-                lost,
-            });
-        }
+        let parts = segments.iter().map(|segment| {
+            let machine = machine(&problem.rig, effects, &problem.runs[segment.run].recording)?;
+            let own = Own { problem, segment, machine };
+            own.part(&simulated[segment.run], still[segment.run].as_ref())
+        });
+        let parts = parts.collect::<Result<Vec<Part>, Stopped>>()?;
         let replicas = simulated.first().map_or(1, Vec::len);
         Ok(Self { parts: Arc::new(parts), rattles, replicas })
     }
@@ -263,6 +192,102 @@ impl Baseline {
     }
 }
 
+/// A model on one segment.
+struct Own<'a> {
+    problem: &'a Problem,
+    segment: &'a Segment,
+    machine: Mechanism,
+}
+
+impl Own<'_> {
+    fn view(&self, recording: &Recording) -> View {
+        View::new(recording, self.problem.declared.sensors.len())
+    }
+
+    /// Coefficients of residuals; none where the machine cannot move as it was measured.
+    fn seen(&self, view: &View) -> Option<Coefficients> {
+        self.problem.coefficients(view, &self.machine, self.segment)
+    }
+
+    fn singular(&self) -> Stopped {
+        let message = "makes a machine that cannot move as it was measured".to_owned();
+        Stopped::Model(self.problem.rig.problem("effect", message, "other values"))
+    }
+
+    /// Bias and noise, by simulations without noise, replica by replica, and one without a swing.
+    fn part(self, clean: &[Recording], still: Option<&Recording>) -> Result<Part, Stopped> {
+        let look = |recording: &Recording| self.seen(&self.view(recording));
+        let singular = || self.singular();
+        let seen: Vec<Coefficients> =
+            clean.par_iter().map(look).collect::<Option<_>>().ok_or_else(singular)?;
+        let bias = mean(&seen);
+        let sensors = &self.problem.declared.sensors;
+        let noisy =
+            |draw: usize| with_noise(&clean[draw % clean.len()], sensors, draw as u64 + 1000);
+        let looked: Vec<Coefficients> = (0..DRAWS)
+            .into_par_iter()
+            .map(|draw| look(&noisy(draw)))
+            .collect::<Option<_>>()
+            .ok_or_else(singular)?;
+        let beside = |of: &dyn Fn(usize) -> Coefficients| -> Vec<Coefficients> {
+            let own = looked.iter().enumerate();
+            own.map(|(draw, noisy)| difference(noisy, &of(draw % seen.len()))).collect()
+        };
+        // A replica stands for the data, the mean of the others for the bias.
+        let draws = beside(&|own| without(&bias, &seen[own], seen.len()));
+        let still = still.map(look).unwrap_or(None);
+        let swing = |share: f64| swing(&bias, still.as_ref(), share);
+        let run = &self.problem.runs[self.segment.run];
+        let left = difference(&self.seen(&run.view).ok_or_else(singular)?, &bias);
+        let Likelier { share, noise, lost } = Likelier::of(&draws, &left, &swing);
+        let of_sensors = Noise::from_draws(&beside(&|own| seen[own].clone()), &swing(0.0));
+        let rattle = noise.log_determinant() - of_sensors.log_determinant();
+        let draws = by_the_others(&draws, clean.len(), &swing(share));
+        // Those of the first replica.
+        let kept = || (0..SHRUNK).map(|k| k * clean.len());
+        let power = kept().map(|draw| difference(&looked[draw], &seen[0]));
+        let power = power.map(|own| noise.whiten(&own).norm_squared()).sum();
+        let noisy = kept().map(|draw| self.view(&noisy(draw))).collect();
+        let (segment, clean) = (self.segment.clone(), self.view(&clean[0]));
+        let machine = self.machine;
+        Ok(Part { segment, machine, bias, left, noise, clean, noisy, power, rattle, draws, lost })
+    }
+}
+
+/// What of the residual is a swing, a share of it. Where loads keep joints in contact, bodies swing in their play, and
+/// nobody knows how they were let go: what the same machine does without a swing tells where that shows.
+fn swing(bias: &[Vec<f64>], still: Option<&Coefficients>, share: f64) -> Coefficients {
+    let nothing = || bias.iter().map(|c| vec![0.0; c.len()]).collect();
+    let size = |still: &Coefficients| {
+        let mut swing = difference(bias, still);
+        swing.iter_mut().flatten().for_each(|value| *value *= share);
+        swing
+    };
+    still.map_or_else(nothing, size)
+}
+
+/// The likelier noise of two: with a swing that is nearly the model's, or with one that is not.
+struct Likelier {
+    /// Share of the swing that is noise.
+    share: f64,
+    noise: Noise,
+    /// As of [`Part`].
+    lost: f64,
+}
+
+impl Likelier {
+    /// That of what is `left` of the data.
+    fn of(draws: &[Coefficients], left: &[Vec<f64>], swing: &dyn Fn(f64) -> Coefficients) -> Self {
+        let [near, lost] = [MISSED, SQRT_2].map(|share| Noise::from_draws(draws, &swing(share)));
+        let likelihood = |noise: &Noise| noise.whiten(left).norm_squared() + noise.swinging();
+        let price = lost.swinging() - near.swinging();
+        match likelihood(&lost) < likelihood(&near) {
+            true => Self { share: SQRT_2, noise: lost, lost: price },
+            false => Self { share: MISSED, noise: near, lost: 0.0 },
+        }
+    }
+}
+
 /// Noiseless recordings of a model, run by run, and whether they rattle. Of a machine that does as declared a model need
 /// not: what presses its journals on their rings makes it as predictable as any, and one simulation stands for it.
 fn replicas(
@@ -299,31 +324,6 @@ fn by_the_others(draws: &[Coefficients], replicas: usize, swing: &[Vec<f64>]) ->
         })
         .collect();
     draws.iter().enumerate().map(|(draw, own)| noises[draw % parts].whiten(own)).collect()
-}
-
-fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Coefficients {
-    a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
-}
-
-fn mean(draws: &[Coefficients]) -> Coefficients {
-    let mut sum = draws[0].clone();
-    for draw in &draws[1..] {
-        for (sum, value) in sum.iter_mut().flatten().zip(draw.iter().flatten()) {
-            *sum += value;
-        }
-    }
-    sum.iter_mut().flatten().for_each(|value| *value /= draws.len() as f64);
-    sum
-}
-
-/// The mean of `count` draws with one of them left out, if that leaves any.
-fn without(mean: &[Vec<f64>], own: &[Vec<f64>], count: usize) -> Coefficients {
-    if count < 2 {
-        return own.to_vec();
-    }
-    let part = 1.0 / count as f64;
-    let left = |(all, own): (&f64, &f64)| (all - part * own) / (1.0 - part);
-    mean.iter().zip(own).map(|(all, own)| all.iter().zip(own).map(left).collect()).collect()
 }
 
 #[cfg(test)]

@@ -1,25 +1,24 @@
 //! The whole way: from a rig and its recordings to a verdict, values with intervals, and errors.
 
 use super::candidates::candidates;
+use super::certainty::{estimated, uncertain};
 use super::errors::{are_met, mean, of_run};
 use super::events::{Event, search::beside};
-use super::fit::Fit;
 use super::hypotheses::Round;
 use super::left::{Left, is_noise};
 use super::limits::{Limit, limits};
 use super::noise::{self, OtherNoise};
-use super::problem::{Problem, Segment, Split, Start, Stopped};
+use super::problem::{Problem, Split, Start, Stopped};
 use super::recording::Recording;
 use super::rivals::Rest;
 use super::search::{Found, Search};
 use super::settle::Model;
-use super::thresholds::{CLEARED, PREDICTING, SURE};
+use super::thresholds::{CLEARED, PREDICTING};
 use super::unnamed::{Described, describe};
 use crate::calibrate::errors::{ChannelError, is_worse};
-use crate::calibrate::outcome::{Verdict, inverse_normal, pull};
+use crate::calibrate::outcome::Verdict;
 use crate::calibrate::report::Fitted;
 use crate::effects::{Setting, UNNAMED};
-use nalgebra::{DMatrix, DVector};
 
 /// An effect with its estimates by name.
 pub type Estimated = (Setting, Vec<(&'static str, Fitted)>);
@@ -76,16 +75,8 @@ pub fn calibrate(
     let mut rattle = problem.rattle(&logs);
     let split = problem.split();
     let asked = Asked { split: &split, candidates: candidates(&problem.declared, without), tell };
-    let mut found = searched(problem, &asked, &mut rattle)?;
     let unnamed = !without.contains(&UNNAMED);
-    // What is noise as a whole hides nothing that does not last.
-    let mut events = Vec::new();
-    if unnamed && !asked.search(problem).is_noise(&found.best) {
-        let acting = what_does_not_last(problem, &found, &logs, tell)?;
-        if let Some(again) = searched_beside(problem, &asked, &acting, &found, &mut rattle)? {
-            (found, events) = (again, acting);
-        }
-    }
+    let (mut found, events) = searched_with_events(problem, &asked, unnamed, &logs, &mut rattle)?;
     let search = asked.search(problem);
     let before = search.left(&found.declared);
     let rest = borne_out(&search, &mut found)?;
@@ -93,18 +84,12 @@ pub fn calibrate(
     let after = search.left(&best);
     let noise = is_noise(&after) && rest.is_none();
     let limits = if noise { limits(&search, &best) } else { Vec::new() };
-    let mut described = match noise || !unnamed {
-        true => None,
-        false => {
-            tell("looking for what the residual depends on");
-            describe(&search, &declared)?
-        }
-    };
-    let effects = match &described {
-        _ if noise => best.fit.effects.clone(),
-        Some((described, _)) => vec![described.effect.clone()],
-        None => Vec::new(),
-    };
+    let mut described = None;
+    if !noise && unnamed {
+        tell("looking for what the residual depends on");
+        described = describe(&search, &declared)?;
+    }
+    let effects = calibrated(&best, noise, described.as_ref().map(|(described, _)| described));
     let mut after = described.as_ref().map_or(after, |(_, model)| search.left(model));
     let deviations = if noise { best.fit.deviations() } else { Vec::new() };
     tell("predicting");
@@ -117,19 +102,14 @@ pub fn calibrate(
         errors = of_all(problem, &predicting);
     }
     let nothing = best.fit.effects.is_empty() && events.is_empty();
-    let verdict = match (noise && met(problem, &errors, &predicting), nothing) {
-        (true, true) => Verdict::NothingMissing,
-        (true, false) => Verdict::Explained,
-        (false, _) => Verdict::Unexplained,
-    };
-    let mut effects = match (verdict, &described) {
+    let verdict = verdict(noise && met(problem, &errors, &predicting), nothing);
+    let found = match (verdict, &described) {
         (Verdict::Explained, _) => estimated(&best, &split.on),
-        (_, Some((described, _))) => vec![(described.effect.clone(), Vec::new())],
-        (_, None) => Vec::new(),
+        (_, described) => described.iter().map(|(d, _)| (d.effect.clone(), Vec::new())).collect(),
     };
-    effects.extend(events.iter().map(|event| (event.setting(), event.params())));
-    let sensors = problem.declared.sensors.len();
-    let means = |logs: &[Vec<Recording>]| logs.iter().map(|logs| mean(logs, sensors)).collect();
+    let acting = events.iter().map(|event| (event.setting(), event.params()));
+    let effects = found.into_iter().chain(acting).collect();
+    let [declared, predicted] = predicting.means(problem);
     Ok(Outcome {
         effects,
         events,
@@ -143,10 +123,29 @@ pub fn calibrate(
         limits,
         rounds,
         errors,
-        declared: means(&predicting.declared),
-        predicted: means(&predicting.calibrated),
+        declared,
+        predicted,
         rattle,
     })
+}
+
+/// What a model comes to that predicts the recordings or does not, and adds nothing to the declared one or something.
+fn verdict(predicts: bool, nothing: bool) -> Verdict {
+    match (predicts, nothing) {
+        (true, true) => Verdict::NothingMissing,
+        (true, false) => Verdict::Explained,
+        (false, _) => Verdict::Unexplained,
+    }
+}
+
+/// Effects of the calibrated model: those of the best one if it leaves no more than noise, else what stands in for what has
+/// no name.
+fn calibrated(best: &Model, noise: bool, described: Option<&Described>) -> Vec<Setting> {
+    match described {
+        _ if noise => best.fit.effects.clone(),
+        Some(described) => vec![described.effect.clone()],
+        None => Vec::new(),
+    }
 }
 
 /// Largest mean square of residuals in units of noise.
@@ -183,6 +182,26 @@ fn searched(problem: &mut Problem, asked: &Asked, rattle: &mut f64) -> Result<Fo
         }
     }
     Ok(found)
+}
+
+/// What a search finds, and what does not last where what has no name is looked for; `declared` are simulations of the
+/// declared machine.
+fn searched_with_events(
+    problem: &mut Problem,
+    asked: &Asked,
+    unnamed: bool,
+    declared: &[Vec<Recording>],
+    rattle: &mut f64,
+) -> Result<(Found, Vec<Event>), Stopped> {
+    let found = searched(problem, asked, rattle)?;
+    // What is noise as a whole hides nothing that does not last.
+    if unnamed && !asked.search(problem).is_noise(&found.best) {
+        let acting = what_does_not_last(problem, &found, declared, asked.tell)?;
+        if let Some(again) = searched_beside(problem, asked, &acting, &found, rattle)? {
+            return Ok((again, acting));
+        }
+    }
+    Ok((found, Vec::new()))
 }
 
 /// What a search finds beside these events, which act on the rig from then on; none, and the rig as it was, where there are
@@ -300,101 +319,11 @@ impl Predicting {
         };
         Ok(Self { declared, calibrated })
     }
-}
 
-/// Covariance of the values: `(JᵀJ)⁻¹`, J in units of noise; larger where the fit's own residual is larger
-/// than noise, and where noise pulls values further than that of each frequency by itself does: rattle, and journals that
-/// lean under forces no larger than a sensor's noise. What whole simulations tell in its place, where values come from these;
-/// none where no derivatives are known.
-fn covariance(model: &Model, on: &[Segment]) -> Option<DMatrix<f64>> {
-    let Fit { jacobian, chi2, white, told, .. } = &model.fit;
-    if told.is_some() {
-        return told.clone();
-    }
-    let jacobian = jacobian.as_ref()?;
-    let inverse = inverse_normal(jacobian)?;
-    let spare = white.len().saturating_sub(jacobian.ncols()).max(1);
-    let pulled = pull(jacobian, &inverse, &model.baseline.draws(on));
-    let factor = (chi2 / spare as f64).max(pulled).max(1.0);
-    Some(inverse * factor)
-}
-
-/// An effect of a model of which nobody knows that there is any, if there is one.
-pub(super) fn uncertain(problem: &Problem, model: &Model, on: &[Segment]) -> Option<Setting> {
-    let effects = &model.fit.effects;
-    let away = |effect: &Setting| -> Vec<f64> {
-        let names: Vec<&'static str> = effect.values().map(|(name, _)| name).collect();
-        let neutral =
-            Setting::neutral(effect.kind, effect.target.clone(), &names, &problem.declared);
-        match neutral {
-            Some(neutral) => {
-                let pairs = effect.values().zip(neutral.values());
-                pairs.map(|((_, own), (_, none))| own - none).collect()
-            }
-            // Another law of contact is there, however large.
-            None => vec![f64::INFINITY; names.len()],
-        }
-    };
-    let away: Vec<Vec<f64>> = effects.iter().map(away).collect();
-    within_chance(&away, &covariance(model, on)?).map(|place| effects[place].clone())
-}
-
-/// The first effect whose values, of which it is told how far `away` they are from those at which there is nothing of it,
-/// are all together no further from these than [`SURE`] standard deviations: aᵀ C⁻¹ a (Wald's test), C being its part of the
-/// `covariance` of all values.
-fn within_chance(away: &[Vec<f64>], covariance: &DMatrix<f64>) -> Option<usize> {
-    let mut first = 0;
-    away.iter().position(|away| {
-        // What nothing depends on has no variance, and no part in this.
-        let told: Vec<usize> =
-            (0..away.len()).filter(|i| covariance[(first + i, first + i)] > 0.0).collect();
-        let part = DMatrix::from_fn(told.len(), told.len(), |r, c| {
-            covariance[(first + told[r], first + told[c])]
-        });
-        let apart = DVector::from_fn(told.len(), |k, _| away[told[k]]);
-        first += away.len();
-        let some = away.iter().any(|away| away.is_infinite());
-        !some && part.cholesky().is_some_and(|part| apart.dot(&part.solve(&apart)) < SURE * SURE)
-    })
-}
-
-/// Values with [standard deviations](covariance). Values that nothing depends on are left out.
-fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
-    // What nothing depends on is not known at all.
-    let deviation = |square: f64| if square > 0.0 { square.sqrt() } else { f64::NAN };
-    let deviations = covariance(model, on).map(|known| known.diagonal().map(deviation));
-    let mut next = 0;
-    let effects = model.fit.effects.iter();
-    effects
-        .map(|effect| {
-            let fitted = effect.values().filter_map(|(name, value)| {
-                let std = deviations.as_ref().map(|all| all[next]);
-                next += 1;
-                let told = std.is_none_or(f64::is_finite);
-                told.then(|| (name, Fitted::new(value, std.unwrap_or(f64::NAN))))
-            });
-            (effect.clone(), fitted.collect())
-        })
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn effects_within_two_standard_deviations_of_nothing_may_not_be_there() {
-        let of = |away: &[&[f64]], covariance: &[f64]| {
-            let away: Vec<Vec<f64>> = away.iter().map(|own| own.to_vec()).collect();
-            let count = away.iter().map(Vec::len).sum();
-            within_chance(&away, &DMatrix::from_row_slice(count, count, covariance))
-        };
-        assert_eq!(of(&[&[3.0], &[-1.9]], &[1.0, 0.0, 0.0, 1.0]), Some(1));
-        assert_eq!(of(&[&[3.0], &[-2.1]], &[1.0, 0.0, 0.0, 1.0]), None);
-        // Neither of two values that make up for each other is known, and their sum is: 1 + 1 of ±0.2.
-        assert_eq!(of(&[&[1.0, 1.0]], &[1.01, -0.99, -0.99, 1.01]), None);
-        assert_eq!(of(&[&[1.0, -1.0]], &[1.01, -0.99, -0.99, 1.01]), Some(0));
-        // A value without any variance is none that anything depends on.
-        assert_eq!(of(&[&[3.0, 50.0]], &[1.0, 0.0, 0.0, 0.0]), None);
+    /// Means over replicas, run by run, of the declared and of the calibrated model.
+    fn means(&self, problem: &Problem) -> [Vec<Recording>; 2] {
+        let sensors = problem.declared.sensors.len();
+        [&self.declared, &self.calibrated]
+            .map(|runs| runs.iter().map(|logs| mean(logs, sensors)).collect())
     }
 }

@@ -34,7 +34,50 @@ const NOTE: &str = "Root mean square of measured less predicted, both through a 
 
 /// The page.
 pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
-    let head = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    let equations: Vec<String> = report.effects.iter().map(why).collect();
+    let more = [
+        ("Figures", "report.json beside this page".to_owned()),
+        ("Simulations", report.simulations.to_string()),
+        ("Time of computing", format!("{} s", number(report.wall_s))),
+    ];
+    let provenance = report.provenance.lines("rig", None, more);
+    let mut parts = vec![Part::Table(values(report))];
+    if !equations.is_empty() {
+        parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });
+    }
+    if let Some(windows) = &report.windows {
+        parts.push(Part::Table(errors_table(&report.errors, windows.note)));
+        parts.push(Part::Table(horizons(windows)));
+        if !windows.remarks.is_empty() {
+            parts.push(Part::Text {
+                id: "remarks",
+                title: "The recordings",
+                paragraphs: &windows.remarks,
+            });
+        }
+    } else {
+        parts.push(Part::Table(errors_table(&report.errors, NOTE)));
+        if !report.residuals.is_empty() {
+            parts.push(Part::Table(residuals(report)));
+        }
+    }
+    parts.push(Part::Pictures(pictures));
+    parts.push(Part::Table(ranking(report)));
+    if !report.limits.is_empty() {
+        parts.push(Part::Table(limits(report)));
+    }
+    parts.push(Part::Provenance(&provenance));
+    let title =
+        format!("Calibration of {}: {}", report.provenance.scenario_name, verdict(report.verdict));
+    document(&title, &report.summary, &parts)
+}
+
+fn head(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| (*name).to_owned()).collect()
+}
+
+/// What the effects of the model were found to be.
+fn values(report: &Report) -> Table {
     let mut rows = Vec::new();
     for effect in &report.effects {
         for (name, fitted) in &effect.params {
@@ -47,14 +90,18 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
             ]);
         }
     }
-    let values = Table {
+    Table {
         id: "effects",
         title: "What the model was given".into(),
         header: head(&["effect", "parameter", "value", "95 % interval"]),
         rows,
         note: "SI units. calibrated.toml holds the rig with all of this.".into(),
-    };
-    let residuals = Table {
+    }
+}
+
+/// What is left of residuals before and after.
+fn residuals(report: &Report) -> Table {
+    Table {
         id: "residuals",
         title: "Residuals in units of noise, on the run where most is left".into(),
         header: head(&[
@@ -78,8 +125,12 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
             "1 is noise. Law: a drive against its command; dynamics: efforts against the measured \
                motion; closure: a position against the others."
                 .into(),
-    };
-    let ranking = Table {
+    }
+}
+
+/// What the search tried.
+fn ranking(report: &Report) -> Table {
+    Table {
         id: "candidates",
         title: "Candidates, round by round".into(),
         header: head(&["round", "candidate", "removes", "gain", ""]),
@@ -98,8 +149,12 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
             })
             .collect(),
         note: "Of what stands above noise on data that a candidate was not fitted to.".into(),
-    };
-    let limits = Table {
+    }
+}
+
+/// How large other effects would have to be.
+fn limits(report: &Report) -> Table {
+    Table {
         id: "limits",
         title: "What would have been seen".into(),
         header: head(&["effect", "parameter", "from", "unit"]),
@@ -118,49 +173,11 @@ pub(super) fn page(report: &Report, pictures: &[Picture]) -> String {
         note: "How far from its neutral value a parameter would have to be for these recordings to show it, \
                by the linearisation of the fit, with 98 % certainty."
             .into(),
-    };
-    let equations: Vec<String> = report.effects.iter().map(why).collect();
-    let more = [
-        ("Figures", "report.json beside this page".to_owned()),
-        ("Simulations", report.simulations.to_string()),
-        ("Time of computing", format!("{} s", number(report.wall_s))),
-    ];
-    let provenance = report.provenance.lines("rig", None, more);
-    let mut parts = vec![Part::Table(values)];
-    if !equations.is_empty() {
-        parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });
     }
-    if let Some(windows) = &report.windows {
-        parts.push(Part::Table(errors_table(&report.errors, windows.note)));
-        parts.push(Part::Table(horizons(windows)));
-        if !windows.remarks.is_empty() {
-            parts.push(Part::Text {
-                id: "remarks",
-                title: "The recordings",
-                paragraphs: &windows.remarks,
-            });
-        }
-    } else {
-        parts.push(Part::Table(errors_table(&report.errors, NOTE)));
-        if !report.residuals.is_empty() {
-            parts.push(Part::Table(residuals));
-        }
-    }
-    parts.push(Part::Pictures(pictures));
-    parts.push(Part::Table(ranking));
-    if !report.limits.is_empty() {
-        parts.push(Part::Table(limits));
-    }
-    parts.push(Part::Provenance(&provenance));
-    let title =
-        format!("Calibration of {}: {}", report.provenance.scenario_name, verdict(report.verdict));
-    document(&title, &report.summary, &parts)
 }
 
 /// Errors of all runs by windows.
 fn horizons(windows: &Windows) -> Table {
-    let head =
-        ["run", "role", "window", "fitted to", "from", "column", "declared", "calibrated", "floor"];
     let rows = windows.horizons.iter().flat_map(|of| {
         of.errors.iter().map(|e| {
             let horizon = of.horizon;
@@ -173,7 +190,17 @@ fn horizons(windows: &Windows) -> Table {
     Table {
         id: "horizons",
         title: "Errors over windows".into(),
-        header: head.iter().map(|name| (*name).to_owned()).collect(),
+        header: head(&[
+            "run",
+            "role",
+            "window",
+            "fitted to",
+            "from",
+            "column",
+            "declared",
+            "calibrated",
+            "floor",
+        ]),
         rows: rows.collect(),
         note: "Root mean squares in SI units.".into(),
     }

@@ -8,16 +8,12 @@ use super::released::{Released, StartError, let_go_at, released, released_near};
 use super::residual::{Residuals, residuals};
 use super::start::{machine, still};
 use super::{simulate, thresholds};
-use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::spectrum::transform;
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
 use crate::mechanism::Mechanism;
 use crate::scenario::{Problem as Wrong, Scenario};
 use lru::LruCache;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -40,11 +36,11 @@ pub struct Run {
 #[derive(Clone, Debug)]
 pub struct Start {
     /// The machine as it was let go.
-    released: Released,
+    pub(super) released: Released,
     /// Effects that it has.
-    effects: Vec<Setting>,
+    pub(super) effects: Vec<Setting>,
     /// The same without a swing; none of one that is held at the first row.
-    still: Option<Mechanism>,
+    pub(super) still: Option<Mechanism>,
 }
 
 impl Start {
@@ -92,7 +88,7 @@ pub struct Problem {
     pub control: StepControl,
     /// Simulations that a mean is taken of: one, or several where joints rattle.
     pub replicas: usize,
-    simulations: AtomicUsize,
+    pub(super) simulations: AtomicUsize,
     motions: Motions,
     /// Machines as they were let go: the start of a free one costs more than a simulation.
     released: Mutex<LruCache<String, Released>>,
@@ -196,7 +192,7 @@ impl Problem {
     }
 
     /// The machine with these effects as it was let go in run `index`.
-    fn released(&self, effects: &[Setting], index: usize) -> Result<Released, Stopped> {
+    pub(super) fn released(&self, effects: &[Setting], index: usize) -> Result<Released, Stopped> {
         let key = self.key(effects, index);
         let kept = || self.released.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(machine) = kept().get(&key) {
@@ -232,7 +228,7 @@ impl Problem {
 
     /// The machine with the `drawn` effects about where the model that begins at `start` was let go in run `index`, as
     /// far as nobody knows that: it is as uncertain whatever their values, and costs more than a simulation to find.
-    fn let_go_like(
+    pub(super) fn let_go_like(
         &self,
         start: &Start,
         drawn: &[Setting],
@@ -245,117 +241,6 @@ impl Problem {
         let coordinates = start.released.drawn(replica);
         let recording = &self.runs[index].recording;
         Ok(let_go_at(&self.rig, drawn, recording, &coordinates, self.control)?)
-    }
-
-    /// Noiseless recordings of a model that begins there, so many replicas of each run.
-    ///
-    /// # Errors
-    /// A run that broke down.
-    pub fn simulated(
-        &self,
-        starts: &[Start],
-        replicas: usize,
-    ) -> Result<Vec<Vec<Recording>>, Stopped> {
-        self.simulated_about(&[], &[], starts, 0..replicas)
-    }
-
-    /// The same of a model with these effects, these of its replicas: the first one with exactly these values, the others
-    /// with values as far away as `deviations` say that nobody knows them (none: all exactly), as they are let go.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn simulated_about(
-        &self,
-        effects: &[Setting],
-        deviations: &[f64],
-        starts: &[Start],
-        replicas: Range<usize>,
-    ) -> Result<Vec<Vec<Recording>>, Stopped> {
-        let numbers = || replicas.clone().map(|replica| replica as u64);
-        let about: Vec<Option<Vec<Setting>>> =
-            numbers().map(|replica| drawn(effects, deviations, replica)).collect();
-        let jobs: Vec<(usize, u64)> = (0..starts.len())
-            .flat_map(|run| numbers().map(move |replica| (run, replica)))
-            .collect();
-        self.simulations.fetch_add(jobs.len(), Ordering::Relaxed);
-        let recorded = jobs
-            .into_par_iter()
-            .map(|(run, replica)| {
-                let like = &self.runs[run].recording;
-                let record =
-                    |machine: &Mechanism| simulate::record(machine, self.control, like, replica);
-                let start = &starts[run];
-                // Where joints rattle a hair at the start is another run soon, and what nobody knows of it no hair.
-                let open = self.replicas > 1 && replica > 0 && start.released.is_fitted();
-                Ok(match &about[replica as usize - replicas.start] {
-                    Some(drawn) => record(&self.let_go_like(start, drawn, run, replica)?)?,
-                    None if open => {
-                        record(&self.let_go_like(start, &start.effects, run, replica)?)?
-                    }
-                    None => record(&start.released.machine)?,
-                })
-            })
-            .collect::<Result<Vec<Recording>, Stopped>>()?;
-        Ok(recorded.chunks(replicas.len()).map(<[Recording]>::to_vec).collect())
-    }
-
-    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it: a replica.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn one(
-        &self,
-        effects: &[Setting],
-        index: usize,
-        until: usize,
-        replica: u64,
-    ) -> Result<Recording, Stopped> {
-        let machine = self.released(effects, index)?.machine;
-        Ok(self.recorded(&machine, index, until, replica)?)
-    }
-
-    /// The same of the first replica where the machine, which nothing holds, is let go at these coordinates.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn from(
-        &self,
-        effects: &[Setting],
-        index: usize,
-        until: usize,
-        coordinates: &[f64],
-    ) -> Result<Recording, Stopped> {
-        let recording = &self.runs[index].recording;
-        let machine = let_go_at(&self.rig, effects, recording, coordinates, self.control)?;
-        Ok(self.recorded(&machine, index, until, 0)?)
-    }
-
-    fn recorded(
-        &self,
-        machine: &Mechanism,
-        index: usize,
-        until: usize,
-        replica: u64,
-    ) -> Result<Recording, Halt> {
-        let recording = &self.runs[index].recording;
-        // Filters see a little beyond the last row.
-        let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
-        self.simulations.fetch_add(1, Ordering::Relaxed);
-        simulate::record(machine, self.control, &recording.first(seconds), replica)
-    }
-
-    /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held
-    /// before they begin.
-    ///
-    /// # Errors
-    /// A run that broke down.
-    pub fn still(&self, starts: &[Start]) -> Result<Vec<Option<Recording>>, Stopped> {
-        let still = |(run, start): (&Run, &Start)| {
-            let Some(machine) = &start.still else { return Ok(None) };
-            self.simulations.fetch_add(1, Ordering::Relaxed);
-            Ok(Some(simulate::record(machine, self.control, &run.recording, 0)?))
-        };
-        self.runs.par_iter().zip(starts).map(still).collect()
     }
 
     /// Finds out whether replicas of the machine with these effects differ by more than sensors see, and by how
@@ -427,21 +312,6 @@ impl Problem {
         let finite = found.signals.iter().flat_map(|s| &s.values).all(|value| value.is_finite());
         finite.then(|| transform(&found.signals, view.interval * view.stride as f64))
     }
-}
-
-/// Effects with values drawn about their own, within bounds; none where they are exact, as of the first replica.
-fn drawn(effects: &[Setting], deviations: &[f64], replica: u64) -> Option<Vec<Setting>> {
-    let own = values(effects);
-    if replica == 0 || own.is_empty() || deviations.len() != own.len() {
-        return None;
-    }
-    let mut random = ChaCha8Rng::seed_from_u64(replica);
-    let drawn = own.iter().zip(deviations).zip(free(effects)).map(|((value, deviation), free)| {
-        let normal: f64 = StandardNormal.sample(&mut random);
-        let away = if deviation.is_finite() { normal * deviation } else { 0.0 };
-        (value + away).clamp(free.bounds[0], free.bounds[1])
-    });
-    Some(with_values(effects, &drawn.collect::<Vec<f64>>()))
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! Recorded runs of any mechanism: a CSV file with a column for each sensor, one row a sample.
 
 use super::cells::Cells;
-use super::thresholds::{LATE, LATE_SHARE, LATE_STEPS, LOWEST_RATE, PLAIN_BAND, SHORTEST};
+use super::heads::choose;
+use super::samples::{Row, Samples, unread, wrong};
+use super::thresholds::{LOWEST_RATE, PLAIN_BAND, SHORTEST};
 use crate::measure::bounded;
 use crate::measure::dialect::Rows;
-use crate::measure::log::{LogError, Source, constant_step, no_header};
+use crate::measure::log::{LogError, Source, no_header};
 use crate::measure::shown::shown;
-use crate::measure::spelling::nearest;
-use crate::measure::spline::CubicSpline;
-use crate::mechanism::{Reads, Sensor};
+use crate::mechanism::Sensor;
 use crate::scenario::Columns;
 use std::ops::Range;
 use std::path::Path;
@@ -38,7 +38,7 @@ pub struct Recording {
 }
 
 /// Heads that a column of time may have.
-const TIME: [&str; 2] = ["t", "t_s"];
+pub(super) const TIME: [&str; 2] = ["t", "t_s"];
 
 impl Recording {
     /// Reads the columns of `sensors`; measured ones may be missing, commands may not, unless `efforts` drive the
@@ -62,69 +62,27 @@ impl Recording {
         time: Option<Source>,
     ) -> Result<Self, LogError> {
         let file = path.display().to_string();
-        let wrong = |line: Option<u64>, message: String, help: String| LogError {
-            place: line.map_or_else(|| file.clone(), |line| format!("{file}:{line}")),
-            message,
-            help,
-        };
-        let unread = |error: csv::Error| {
-            let line = error.position().map(csv::Position::line);
-            let message = format!("cannot be read: {error}");
-            wrong(line, message, "expected a CSV file with a header and numbers".to_owned())
-        };
-        let opened =
-            bounded::open(path, bounded::TABLE).map_err(|error| unread(csv::Error::from(error)))?;
-        let mut rows = Rows::begin(opened).map_err(unread)?;
+        let opened = bounded::open(path, bounded::TABLE)
+            .map_err(|error| unread(&file, &csv::Error::from(error)))?;
+        let mut rows = Rows::begin(opened).map_err(|error| unread(&file, &error))?;
         let heads = rows.heads().clone();
         let asked = time.as_ref().map(|time| time.column.as_str());
-        let Places { time: place_of_time, places, others } = no_header(&heads)
+        let places = no_header(&heads)
             .map_or_else(|| choose(&heads, sensors, efforts, asked), Err)
-            .map_err(|(message, help)| wrong(Some(1), message, help))?;
-        let time = time.unwrap_or_else(|| Source::new(&heads[place_of_time], 1.0));
-        let ignored = others.iter().map(|place| heads[*place].to_owned()).collect();
-        let mut carried = vec![Cells::default(); others.len()];
-        let mut times = Vec::new();
-        let mut columns: Vec<Option<Vec<f64>>> =
-            places.iter().map(|place| place.map(|_| Vec::new())).collect();
+            .map_err(|(message, help)| wrong(&file, Some(1), message, help))?;
+        let time = time.unwrap_or_else(|| Source::new(&heads[places.time], 1.0));
+        let ignored = places.others.iter().map(|place| heads[*place].to_owned()).collect();
+        let mut samples = Samples::none(&places);
         let mut record = csv::StringRecord::new();
-        while rows.next(&mut record).map_err(unread)? {
-            let number = |place: usize| {
-                let text = record.get(place).unwrap_or_default();
-                rows.number(text).ok_or_else(|| {
-                    let what = if text.is_empty() { "nothing" } else { text };
-                    let message = format!("column `{}` holds {what}", &heads[place]);
-                    let line = record.position().map(csv::Position::line);
-                    wrong(line, message, "expected a finite number in every row".to_owned())
-                })
-            };
-            times.push(time.scale * number(place_of_time)?);
-            for ((place, column), sensor) in places.iter().zip(&mut columns).zip(sensors) {
-                if let (Some(place), Some(column)) = (place, column) {
-                    column.push(sensor.factor * number(*place)?);
-                }
-            }
-            for (place, cells) in others.iter().zip(&mut carried) {
-                cells.push(&rows.plain(record.get(*place).unwrap_or_default()));
-            }
+        while rows.next(&mut record).map_err(|error| unread(&file, &error))? {
+            let row = Row { rows: &rows, record: &record, heads: &heads, file: &file };
+            samples.add(&row, &places, sensors, time.scale)?;
         }
-        let mut jitter = 0.0;
-        let interval = match (constant_step(&times), jittered(&times)) {
-            (Ok(interval), _) => interval,
-            (Err(_), Some(Jitter { interval, share })) => {
-                for column in columns.iter_mut().flatten() {
-                    *column = on_grid(&times, column, interval);
-                }
-                let rows = columns.iter().flatten().map(Vec::len).next();
-                times.truncate(rows.unwrap_or(times.len()));
-                carried.clear();
-                jitter = share;
-                interval
-            }
-            (Err((row, message)), None) => {
-                let help = "expected samples at a constant rate, time growing".to_owned();
-                return Err(wrong(Some(row as u64 + 1 + rows.lines_above()), message, help));
-            }
-        };
+        let (interval, jitter) = samples.evenly().map_err(|(row, message)| {
+            let help = "expected samples at a constant rate, time growing".to_owned();
+            wrong(&file, Some(row as u64 + 1 + rows.lines_above()), message, help)
+        })?;
+        let Samples { times, columns, carried } = samples;
         let name = path.file_name().map_or(file.clone(), |n| n.to_string_lossy().into_owned());
         Ok(Self {
             path: file,
@@ -268,126 +226,6 @@ impl Recording {
         }
         String::from_utf8(text.into_inner().unwrap_or_default()).unwrap_or_default()
     }
-}
-
-/// Where time stands, where each sensor's column does, and what else there is.
-struct Places {
-    time: usize,
-    places: Vec<Option<usize>>,
-    others: Vec<usize>,
-}
-
-/// Finds the columns by the header; what is wrong with it and what would be right. Time stands in the column that was
-/// `asked` for. A column that no sensor has is left alone, unless it looks like the misspelt name of a sensor's column
-/// that is missing.
-fn choose(
-    heads: &csv::StringRecord,
-    sensors: &[Sensor],
-    efforts: bool,
-    asked: Option<&str>,
-) -> Result<Places, (String, String)> {
-    let known: Vec<&str> = sensors.iter().map(|sensor| sensor.column.as_str()).collect();
-    let named: Vec<&str> = asked.map_or_else(|| TIME.to_vec(), |column| vec![column]);
-    let there = heads.iter().collect::<Vec<_>>().join(", ");
-    let expected =
-        format!("expected `{}` and any of {}; the file has {there}", named[0], known.join(", "));
-    let (mut time, mut places) = (None, vec![None; sensors.len()]);
-    let mut others = Vec::new();
-    for (place, head) in heads.iter().enumerate() {
-        let twice = || (format!("column `{head}` twice"), "keep one of them".to_owned());
-        if let Some(sensor) = known.iter().position(|column| *column == head) {
-            if places[sensor].replace(place).is_some() {
-                return Err(twice());
-            }
-        } else if named.contains(&head) {
-            if time.replace(place).is_some() {
-                return Err(twice());
-            }
-        } else {
-            others.push(place);
-        }
-    }
-    let missing: Vec<&str> =
-        known.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(k, _)| *k).collect();
-    let mut strange = others.iter().map(|place| &heads[*place]);
-    if let Some((head, near)) = strange.find_map(|head| Some((head, nearest(head, &missing)?))) {
-        let help = format!("did you mean `{near}`? no [[sensor]] has it; {expected}");
-        return Err((format!("unknown column `{head}`"), help));
-    }
-    let Some(time) = time else {
-        return Err(match (asked, others.first()) {
-            (None, Some(place)) => {
-                let help = format!("no [[sensor]] has it; {expected}");
-                (format!("unknown column `{}`", &heads[*place]), help)
-            }
-            _ => (format!("no column `{}`", named[0]), expected),
-        });
-    };
-    if places.iter().all(Option::is_none) {
-        let columns = known.iter().map(|column| format!("`{column}`")).collect::<Vec<_>>();
-        return Err((format!("no column {}", columns.join(", ")), expected));
-    }
-    let missing = commands_missing(sensors, &places, efforts);
-    if missing.is_empty() {
-        return Ok(Places { time, places, others });
-    }
-    let help = "without its commands nobody knows what the machine was asked to do".to_owned();
-    Err((format!("no column {}", missing.join(", ")), help))
-}
-
-/// Columns of commands that are not there and that nothing stands in for.
-fn commands_missing(sensors: &[Sensor], places: &[Option<usize>], efforts: bool) -> Vec<String> {
-    // What was measured of a drive's effort stands in for its command.
-    let replaced = |drive: usize| {
-        let mut sensors = sensors.iter().zip(places);
-        efforts
-            && sensors.any(|(s, place)| {
-                place.is_some() && matches!(s.reads, Reads::Effort(of) if of == drive)
-            })
-    };
-    sensors
-        .iter()
-        .zip(places)
-        .filter(|(sensor, place)| {
-            place.is_none() && matches!(sensor.reads, Reads::Command(drive) if !replaced(drive))
-        })
-        .map(|(sensor, _)| format!("`{}`", sensor.column))
-        .collect()
-}
-
-/// Rows that came at times of their own.
-struct Jitter {
-    /// Time between two rows in s: the median.
-    interval: f64,
-    /// Share of the steps that are off it.
-    share: f64,
-}
-
-/// Time stamps that a controller's load shifted now and then: growing, few of their steps off the median
-/// ([`LATE_SHARE`]) and none by more than [`LATE_STEPS`]. None of others.
-fn jittered(times: &[f64]) -> Option<Jitter> {
-    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if steps.len() < 3 || steps.iter().any(|step| *step <= 0.0) {
-        return None;
-    }
-    let sorted = {
-        let mut sorted = steps.clone();
-        sorted.sort_by(f64::total_cmp);
-        sorted
-    };
-    let interval = sorted[sorted.len() / 2];
-    steps.retain(|step| (step / interval - 1.0).abs() > LATE);
-    let share = steps.len() as f64 / sorted.len() as f64;
-    let worst = sorted.last().map_or(0.0, |step| step / interval);
-    (share <= LATE_SHARE && worst <= LATE_STEPS).then_some(Jitter { interval, share })
-}
-
-/// Values at times of their own on a grid from the first time on.
-fn on_grid(times: &[f64], values: &[f64], interval: f64) -> Vec<f64> {
-    let spline = CubicSpline::not_a_knot(times, values);
-    let first = times[0];
-    let rows = times.last().map_or(0, |last| ((last - first) / interval + 1e-6) as usize + 1);
-    (0..rows).map(|row| spline.at(first + row as f64 * interval)[0]).collect()
 }
 
 #[cfg(test)]

@@ -25,6 +25,8 @@ use crate::calibrate::result::{
     CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, to_json,
 };
 use crate::calibrate::unnamed_picture;
+use crate::report::Picture;
+use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError};
 use serde::Serialize;
@@ -124,10 +126,6 @@ pub fn into_folder(
         let stem = stem_of(&run.recording.name);
         files.push((format!("predicted-{stem}.csv"), predicted.to_csv(sensors)));
     }
-    let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
-    let written = files.iter().map(|(name, _)| name.clone());
-    let drawn = pictures.iter().map(|picture| picture.file.clone());
-    let files_list = texts.chain(written).chain(drawn).collect();
     let report = Report {
         provenance: Provenance::of(&problem.rig),
         verdict: outcome.verdict,
@@ -157,16 +155,34 @@ pub fn into_folder(
         },
         simulations: problem.simulations(),
         wall_s: started.elapsed().as_secs_f64(),
-        files: files_list,
+        files: names_of_files(&files, &pictures),
         windows: None,
     };
-    let json = to_json(&report);
     let mut calibrated = problem.rig.clone();
     calibrated.effects = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
-    let (model, page) = (calibrated.to_toml(), page::page(&report, &pictures));
+    written(report, &calibrated, &files, &pictures, folder)
+}
+
+/// Names of all files of a calibration, `files` by name and text among them.
+pub(super) fn names_of_files(files: &[(String, String)], pictures: &[Picture]) -> Vec<String> {
+    let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
+    let written = files.iter().map(|(name, _)| name.clone());
+    texts.chain(written).chain(pictures.iter().map(|picture| picture.file.clone())).collect()
+}
+
+/// Writes a report, the calibrated model, the page and these files and pictures.
+pub(super) fn written(
+    report: Report,
+    calibrated: &Scenario,
+    files: &[(String, String)],
+    pictures: &[Picture],
+    folder: Folder,
+) -> Result<Calibrated, CalibrateError> {
+    let json = to_json(&report);
+    let (model, page) = (calibrated.to_toml(), page::page(&report, pictures));
     let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &model), (PAGE_FILE, &page)];
     texts.extend(files.iter().map(|(name, text)| (name.as_str(), text)));
-    let folder = publish(folder, &texts, &pictures)?;
+    let folder = publish(folder, &texts, pictures)?;
     Ok(Calibrated { report, json, folder })
 }
 

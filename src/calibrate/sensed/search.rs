@@ -84,26 +84,7 @@ impl<'a> Search<'a> {
         // What is no larger than noise as a whole may still be an effect that stands out of it.
         let mut lacks = !self.is_noise(&best) || self.rest(&best).is_some();
         while best.fit.effects.len() < EFFECTS && !self.is_spent() && lacks {
-            let mut next: Vec<Model> = Vec::new();
-            let mut round = Round::default();
-            let mut enough: Option<Setting> = None;
-            for (i, model) in hypotheses.iter().enumerate() {
-                let (own, found) = match &enough {
-                    _ if i > 0 && self.is_spent() => break,
-                    Some(effect) => (Round::default(), self.also(model, effect)?),
-                    None => self.beside(model)?,
-                };
-                if i == 0 {
-                    round = own;
-                }
-                if enough.is_none() {
-                    let last = found.iter().find(|model| self.is_noise(model));
-                    enough = last.and_then(|model| model.fit.effects.last().cloned());
-                }
-                next.extend(found);
-            }
-            next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
-            next.dedup_by(|a, b| same(&a.fit.effects, &b.fit.effects));
+            let (mut round, mut next) = self.beside_all(&hypotheses)?;
             let won = next.first().is_some_and(|first| first.cost() < best.cost() - price(&best));
             if !won {
                 rounds.push(round);
@@ -139,6 +120,32 @@ impl<'a> Search<'a> {
         }
         let (best, rest) = self.borne_out(best, &mut rounds)?;
         Ok(Found { best, declared, rounds, rest })
+    }
+
+    /// What is found beside several hypotheses, the best first, and the round of the first one. Once one effect leaves no more
+    /// than noise beside one of them, it alone is tried beside the others.
+    fn beside_all(&self, hypotheses: &[Model]) -> Result<(Round, Vec<Model>), Stopped> {
+        let mut next: Vec<Model> = Vec::new();
+        let mut round = Round::default();
+        let mut enough: Option<Setting> = None;
+        for (i, model) in hypotheses.iter().enumerate() {
+            let (own, found) = match &enough {
+                _ if i > 0 && self.is_spent() => break,
+                Some(effect) => (Round::default(), self.also(model, effect)?),
+                None => self.beside(model)?,
+            };
+            if i == 0 {
+                round = own;
+            }
+            if enough.is_none() {
+                let last = found.iter().find(|model| self.is_noise(model));
+                enough = last.and_then(|model| model.fit.effects.last().cloned());
+            }
+            next.extend(found);
+        }
+        next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        next.dedup_by(|a, b| same(&a.fit.effects, &b.fit.effects));
+        Ok((round, next))
     }
 
     /// A model that was found with its values settled, without what it does not need, held against its rivals; and, where it

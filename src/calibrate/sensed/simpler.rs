@@ -1,7 +1,7 @@
 //! Simpler variants of the effects that were found, and effects that they contain: values that bring no more than chance does are not given.
 
+use super::certainty::uncertain;
 use super::fit::Fit;
-use super::outcome::uncertain;
 use super::problem::Stopped;
 use super::search::{Search, name};
 use super::settle::Model;

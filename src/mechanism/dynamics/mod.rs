@@ -69,6 +69,34 @@ fn add(wrenches: &mut [Vector3<f64>], body: Option<usize>, wrench: Vector3<f64>)
     }
 }
 
+/// Prismatic joints that alone hold two moving bodies, and the other groups of bodies that rigid joints hold together.
+fn pairs_and_groups(mechanism: &Mechanism) -> (Vec<Pair>, Vec<Group>) {
+    let (mut pairs, mut others) = (Vec::new(), Vec::new());
+    for group in groups(mechanism) {
+        match Pair::of(mechanism, &group) {
+            Some(pair) => pairs.push(pair),
+            None => others.push(Group::new(group)),
+        }
+    }
+    (pairs, others)
+}
+
+/// The drive that prescribes each prismatic joint's length, and whether no drive pushes it.
+fn prescribed_and_passive(mechanism: &Mechanism) -> (Vec<Option<usize>>, Vec<bool>) {
+    let mut prescribed = vec![None; mechanism.prismatics.len()];
+    let mut passive = vec![true; mechanism.prismatics.len()];
+    for (i, actuator) in mechanism.actuators.iter().enumerate() {
+        if let JointIndex::Prismatic(joint) = actuator.joint {
+            if actuator.drive == Drive::Prescribed {
+                prescribed[joint] = Some(i);
+            } else {
+                passive[joint] = false;
+            }
+        }
+    }
+    (prescribed, passive)
+}
+
 impl Dynamics {
     /// The equations of motion of `mechanism`.
     pub fn new(mechanism: &Mechanism) -> Self {
@@ -76,28 +104,12 @@ impl Dynamics {
         let g = mechanism.gravity;
         let starts: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
         let bodies = &mechanism.bodies;
-        let (mut telescopes, mut others) = (Vec::new(), Vec::new());
-        for group in groups(mechanism) {
-            match Pair::of(mechanism, &group) {
-                Some(pair) => telescopes.push(pair),
-                None => others.push(Group::new(group)),
-            }
-        }
+        let (telescopes, others) = pairs_and_groups(mechanism);
         let beside = |joint: &Prismatic| {
             let [base, slider] = joint.points();
             base.y != slider.y && !joint.play
         };
-        let mut prescribed = vec![None; mechanism.prismatics.len()];
-        let mut passive = vec![true; mechanism.prismatics.len()];
-        for (i, actuator) in mechanism.actuators.iter().enumerate() {
-            if let JointIndex::Prismatic(joint) = actuator.joint {
-                if actuator.drive == Drive::Prescribed {
-                    prescribed[joint] = Some(i);
-                } else {
-                    passive[joint] = false;
-                }
-            }
-        }
+        let (prescribed, passive) = prescribed_and_passive(mechanism);
         let angles = mechanism.actuators.iter().map(|actuator| match actuator.joint {
             JointIndex::Revolute(joint) => mechanism.start_angle(joint),
             JointIndex::Prismatic(_) => 0.0,

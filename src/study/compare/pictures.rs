@@ -41,6 +41,28 @@ fn solid(name: String, points: Vec<(f64, f64)>) -> Curve {
     Curve { name, points, style: Style::Solid }
 }
 
+/// A quantity over the step (both as they are drawn), law by law.
+fn quantity_over_step(comparison: &Comparison, key: &str, scale: fn(f64) -> f64) -> Vec<Curve> {
+    let Some(i) = index(key) else { return Vec::new() };
+    let points = |law: Law| -> Vec<(f64, f64)> {
+        let point = |row: &RowResult| Some((row.step_s?.log10(), scale(row.quantities[i].mean)));
+        comparison.rows_of(law).filter_map(point).collect()
+    };
+    let mut curves: Vec<Curve> =
+        [Law::HertzStep, Law::Native].map(|law| solid(law.name().to_owned(), points(law))).into();
+    // The law at its tolerance has no step: a level.
+    let (law, steps) = (comparison.best(Law::HertzStep), points(Law::Native));
+    if let (Some(law), Some(first), Some(last)) = (law, steps.first(), steps.last()) {
+        let level = scale(law.quantities[i].mean);
+        curves.push(Curve {
+            name: "hertz-step at its tolerance".into(),
+            points: vec![(first.0, level), (last.0, level)],
+            style: Style::Reference,
+        });
+    }
+    curves
+}
+
 /// Quantities over the step: the peak force of all, of the first hit, and two that are no forces.
 fn over_step(comparison: &Comparison) -> Result<Picture, ReportError> {
     let panel = |title: &str, y_label: Label, curves: Vec<Curve>| Panel {
@@ -49,28 +71,7 @@ fn over_step(comparison: &Comparison) -> Result<Picture, ReportError> {
         y_label,
         curves,
     };
-    let curves = |key: &str, scale: fn(f64) -> f64| -> Vec<Curve> {
-        let Some(i) = index(key) else { return Vec::new() };
-        let points = |law: Law| -> Vec<(f64, f64)> {
-            let point =
-                |row: &RowResult| Some((row.step_s?.log10(), scale(row.quantities[i].mean)));
-            comparison.rows_of(law).filter_map(point).collect()
-        };
-        let mut curves: Vec<Curve> = [Law::HertzStep, Law::Native]
-            .map(|law| solid(law.name().to_owned(), points(law)))
-            .into();
-        // The law at its tolerance has no step: a level.
-        let (law, steps) = (comparison.best(Law::HertzStep), points(Law::Native));
-        if let (Some(law), Some(first), Some(last)) = (law, steps.first(), steps.last()) {
-            let level = scale(law.quantities[i].mean);
-            curves.push(Curve {
-                name: "hertz-step at its tolerance".into(),
-                points: vec![(first.0, level), (last.0, level)],
-                style: Style::Reference,
-            });
-        }
-        curves
-    };
+    let curves = |key: &str, scale: fn(f64) -> f64| quantity_over_step(comparison, key, scale);
     let mut panels = vec![panel(
         "Peak contact force",
         Label::log("force (N)"),

@@ -110,69 +110,74 @@ fn curve(name: &str, points: Vec<(f64, f64)>, style: Style) -> Curve {
     Curve { name: name.to_owned(), points, style }
 }
 
+/// A panel of a band: title, label of its axis, quantity, and the same of the machine without clearance.
+type BandPanel = (&'static str, &'static str, Item, Option<Item>);
+
+/// Pictures of bands: file, title, panels.
+const BANDS: [(&str, &str, &[BandPanel]); 3] = [
+    (
+        "band-accelerations.svg",
+        "Accelerations over the clearance",
+        &[
+            (
+                "Platform acceleration, peak",
+                "acceleration (m/s²)",
+                Item::PeakAcceleration,
+                Some(Item::IdealPeakAcceleration),
+            ),
+            (
+                "Platform acceleration, rms deviation from ideal",
+                "acceleration (m/s²)",
+                Item::AccelerationDeviation,
+                None,
+            ),
+            (
+                "Angular acceleration, rms deviation from ideal",
+                "alpha (rad/s²)",
+                Item::AngularDeviation,
+                None,
+            ),
+        ],
+    ),
+    (
+        "band-forces.svg",
+        "Forces over the clearance",
+        &[
+            (
+                "Actuator force, peak",
+                "force (N)",
+                Item::PeakActuatorForce,
+                Some(Item::IdealPeakActuatorForce),
+            ),
+            (
+                "Actuator forces, rms deviation from ideal",
+                "force (N)",
+                Item::ActuatorDeviation,
+                None,
+            ),
+            ("Contact force, peak", "force (N)", Item::PeakContactForce, None),
+        ],
+    ),
+    (
+        "band-contact.svg",
+        "Path error and contact over the clearance",
+        &[
+            ("Path error, rms", "distance (m)", Item::PathError, None),
+            ("Share of time in contact", "share", Item::ContactFraction, None),
+        ],
+    ),
+];
+
 /// Quantities over the clearance: the band of all assumptions, and single ones in it.
 fn bands(paper: &Paper) -> Result<Vec<Picture>, ReportError> {
-    let panel = |title: &str, y_label: &str, item: Item, ideal: Option<Item>| Panel {
-        title: title.to_owned(),
+    let panel = |(title, y_label, item, ideal): &BandPanel| Panel {
+        title: (*title).to_owned(),
         x_label: Label::log("clearance (m)"),
-        y_label: Label::log(y_label),
-        curves: band(paper, item, ideal),
+        y_label: Label::log(*y_label),
+        curves: band(paper, *item, *ideal),
     };
-    let (force, acceleration) = ("force (N)", "acceleration (m/s²)");
-    let pictures = [
-        (
-            "band-accelerations.svg",
-            "Accelerations over the clearance",
-            vec![
-                panel(
-                    "Platform acceleration, peak",
-                    acceleration,
-                    Item::PeakAcceleration,
-                    Some(Item::IdealPeakAcceleration),
-                ),
-                panel(
-                    "Platform acceleration, rms deviation from ideal",
-                    acceleration,
-                    Item::AccelerationDeviation,
-                    None,
-                ),
-                panel(
-                    "Angular acceleration, rms deviation from ideal",
-                    "alpha (rad/s²)",
-                    Item::AngularDeviation,
-                    None,
-                ),
-            ],
-        ),
-        (
-            "band-forces.svg",
-            "Forces over the clearance",
-            vec![
-                panel(
-                    "Actuator force, peak",
-                    force,
-                    Item::PeakActuatorForce,
-                    Some(Item::IdealPeakActuatorForce),
-                ),
-                panel(
-                    "Actuator forces, rms deviation from ideal",
-                    force,
-                    Item::ActuatorDeviation,
-                    None,
-                ),
-                panel("Contact force, peak", force, Item::PeakContactForce, None),
-            ],
-        ),
-        (
-            "band-contact.svg",
-            "Path error and contact over the clearance",
-            vec![
-                panel("Path error, rms", "distance (m)", Item::PathError, None),
-                panel("Share of time in contact", "share", Item::ContactFraction, None),
-            ],
-        ),
-    ];
-    let picture = |(file, title, panels): (&str, &str, Vec<Panel>)| {
+    let picture = |(file, title, panels): (&str, &str, &[BandPanel])| {
+        let panels: Vec<Panel> = panels.iter().map(panel).collect();
         Ok(Picture {
             file: file.into(),
             title: title.into(),
@@ -186,7 +191,7 @@ fn bands(paper: &Paper) -> Result<Vec<Picture>, ReportError> {
             svg: panels_svg(&panels)?,
         })
     };
-    pictures.into_iter().map(picture).collect()
+    BANDS.into_iter().map(picture).collect()
 }
 
 /// Variants that are drawn as lines of their own: the scenario as it stands, ADAMS' defaults, and the

@@ -2,7 +2,7 @@
 
 use super::variants::{CLEARANCES, LARGE};
 use crate::report::number;
-use crate::scenario::{DriveMode, Mechanism, Motion, Scenario};
+use crate::scenario::{DriveMode, Mechanism, Motion, Scenario, ThreeRpr};
 use crate::simulate::Machine;
 use serde::Serialize;
 
@@ -59,12 +59,24 @@ fn assumed(name: &'static str, used: String, note: &'static str) -> Parameter {
 
 /// The table of a scenario; `machine` is its machine.
 pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
-    let Mechanism::ThreeRpr(m) = &scenario.mechanism else { return Vec::new() };
-    let (legs, contact, joints) = (&scenario.legs, &scenario.contact, &scenario.joints);
-    let mm = |metres: f64| format!("{} mm", number(1e3 * metres));
-    let stiffness =
-        machine.contact(0, 0.1).and_then(|(law, _)| law.stiffness()).unwrap_or(f64::NAN);
-    let gravity = scenario.environment.gravity;
+    let Mechanism::ThreeRpr(declared) = &scenario.mechanism else { return Vec::new() };
+    [
+        dimensions_and_material(scenario, declared),
+        joints_and_contacts(scenario, machine),
+        motion(scenario),
+        masses_and_shapes(scenario, declared),
+        surroundings_and_drives(scenario),
+    ]
+    .concat()
+}
+
+/// A length in m in mm.
+fn mm(metres: f64) -> String {
+    format!("{} mm", number(1e3 * metres))
+}
+
+fn dimensions_and_material(scenario: &Scenario, m: &ThreeRpr) -> Vec<Parameter> {
+    let (legs, contact) = (&scenario.legs, &scenario.contact);
     vec![
         given("platform, side length", "mm", 100.0, 1e3 * m.platform_side, "table 1"),
         given("platform, mass", "kg", 0.2, m.platform_mass, "table 1"),
@@ -79,6 +91,14 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
             origin: Origin::Assumed,
             note: "table 1 gives the course, not where it begins",
         },
+    ]
+}
+
+fn joints_and_contacts(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
+    let (contact, joints) = (&scenario.contact, &scenario.joints);
+    let stiffness =
+        machine.contact(0, 0.1).and_then(|(law, _)| law.stiffness()).unwrap_or(f64::NAN);
+    vec![
         given("bearing radius", "mm", 10.0, 1e3 * joints.bearing_radius, "section 3.1"),
         Parameter {
             name: "radial clearances",
@@ -114,6 +134,11 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
                 .to_owned(),
             "eq. 4 can pull while the surfaces part; ADAMS' IMPACT never does",
         ),
+    ]
+}
+
+fn motion(scenario: &Scenario) -> Vec<Parameter> {
+    vec![
         Parameter {
             name: "trajectory",
             paper: Some("\"a trajectory with a constant velocity\"".into()),
@@ -130,6 +155,12 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
             },
             "π/6; the machine is singular at 0 and π, wherever the platform is",
         ),
+    ]
+}
+
+fn masses_and_shapes(scenario: &Scenario, m: &ThreeRpr) -> Vec<Parameter> {
+    let legs = &scenario.legs;
+    vec![
         assumed(
             "platform, moment of inertia",
             format!("{} kg·m²", number(m.platform_inertia())),
@@ -145,6 +176,12 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
             format!("{} long, {} thick", mm(legs.rod_length), mm(legs.rod_diameter)),
             "as the cylinders",
         ),
+    ]
+}
+
+fn surroundings_and_drives(scenario: &Scenario) -> Vec<Parameter> {
+    let gravity = scenario.environment.gravity;
+    vec![
         assumed(
             "gravity",
             format!("({}, {}) m/s²", number(gravity[0]), number(gravity[1])),
@@ -152,7 +189,7 @@ pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
         ),
         assumed(
             "friction in the joints",
-            number(joints.friction.values().iter().copied().fold(0.0, f64::max)),
+            number(scenario.joints.friction.values().iter().copied().fold(0.0, f64::max)),
             "the paper has none in its equations",
         ),
         assumed(

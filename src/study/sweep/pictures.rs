@@ -9,9 +9,12 @@ use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, panels_svg
 use csv::StringRecord;
 use std::collections::BTreeMap;
 
-/// What is drawn: column, heading, label of the axis, factor to the axis' unit, and the column of the same of the machine
+/// An output: column, heading, label of the axis, factor to the axis' unit, and the column of the same of the machine
 /// without clearance.
-const OUTPUTS: [(&str, &str, &str, f64, Option<&str>); 8] = [
+type Output = (&'static str, &'static str, &'static str, f64, Option<&'static str>);
+
+/// What is drawn.
+const OUTPUTS: [Output; 8] = [
     ("peak_contact_force_N", "Peak contact force", "force (N)", 1.0, None),
     (
         "peak_platform_acceleration_m_s2",
@@ -92,93 +95,152 @@ fn picture(
     input: usize,
 ) -> Result<Picture, ReportError> {
     let path = &varied[input].path;
-    let declared_log = matches!(&varied[input].values, Values::Range(range) if range.log);
-    let inputs = || rows.iter().filter_map(|row| cell(row, input));
-    let x_log = declared_log || wide(inputs());
-    let groups = groups(varied, rows, input);
-    let over_starts =
-        varied.iter().enumerate().any(|(k, v)| k != input && is_start(&v.path)) && !is_start(path);
-    let mut averaged = false;
-    let panels: Vec<Panel> = OUTPUTS
-        .iter()
-        .filter_map(|output| {
-            let column = identity.columns.iter().position(|name| name == output.0)?;
-            let points = |rows: &[&StringRecord]| -> Vec<(f64, f64)> {
-                let point =
-                    |row: &&StringRecord| Some((cell(row, input)?, output.3 * cell(row, column)?));
-                rows.iter().filter_map(point).collect()
-            };
-            let all = points(rows);
-            if FORCES.contains(&output.0) && all.iter().all(|point| point.1 == 0.0) {
-                return None;
-            }
-            let y_log = wide(all.iter().map(|point| point.1));
-            let scaled = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
-                points.into_iter().map(|(x, y)| (scale(x, x_log), scale(y, y_log))).collect()
-            };
-            let mut curves: Vec<Curve> = groups
-                .iter()
-                .map(|(name, rows)| Curve {
-                    name: name.clone(),
-                    points: scaled(thinned(points(rows))),
-                    style: Style::Dots,
-                })
-                .collect();
-            if over_starts {
-                averaged = true;
-                let starts = groups.iter().flat_map(|(name, rows)| {
-                    let name = if groups.len() == 1 { "mean over starts" } else { name };
-                    interval(points(rows), name, y_log)
-                });
-                let starts = starts.map(|curve| Curve { points: scaled(curve.points), ..curve });
-                // Dots of several groups would hide their means.
-                if groups.len() > 1 {
-                    curves.clear();
-                }
-                curves.extend(starts);
-            } else if let ([_], Some(means)) = (groups.as_slice(), means(all, x_log)) {
-                averaged = true;
-                let points = scaled(means);
-                curves.push(Curve { name: "mean".to_owned(), points, style: Style::Reference });
-            }
-            if let Some(ideal) =
-                output.4.and_then(|name| identity.columns.iter().position(|c| c == name))
-            {
-                let point =
-                    |row: &&StringRecord| Some((cell(row, input)?, output.3 * cell(row, ideal)?));
-                let mut points: Vec<(f64, f64)> = rows.iter().filter_map(point).collect();
-                points.sort_by(|a, b| a.0.total_cmp(&b.0));
-                points.dedup_by(|a, b| a.0 == b.0);
-                let points = scaled(thinned(points));
-                curves.push(Curve {
-                    name: "ideal machine".to_owned(),
-                    points,
-                    style: Style::Reference,
-                });
-            }
-            Some(Panel {
-                title: output.1.to_owned(),
-                x_label: Label::log_if(in_words(path), x_log),
-                y_label: Label::log_if(output.2, y_log),
-                curves,
-            })
-        })
-        .collect();
-    let mut caption = format!("Each dot is a run that reached its end, at its value of {path}.");
-    if over_starts {
-        caption += " Lines join means over the starts; grey: their 95 % intervals.";
-    } else if averaged {
-        caption += " The dashed line joins the means of runs at the same or neighbouring values.";
-    }
-    if rows.len() > DOTS {
-        caption += &format!(" Shown are {DOTS} runs of {}, evenly chosen.", rows.len());
-    }
+    let over = Over::new(identity, varied, rows, input);
+    let drawn: Vec<Drawn> = OUTPUTS.iter().filter_map(|output| over.panel(output)).collect();
+    let averaged = drawn.iter().any(|drawn| drawn.averaged);
+    let panels: Vec<Panel> = drawn.into_iter().map(|drawn| drawn.panel).collect();
     Ok(Picture {
         file: file(path),
         title: format!("Over {path}"),
-        caption,
+        caption: over.caption(averaged),
         svg: panels_svg(&panels)?,
     })
+}
+
+/// What is drawn over one varied number.
+struct Over<'a> {
+    identity: &'a Identity,
+    path: &'a str,
+    rows: &'a [&'a StringRecord],
+    /// Its column.
+    input: usize,
+    x_log: bool,
+    groups: Vec<(String, Vec<&'a StringRecord>)>,
+    /// Whether runs are drawn that differ by how they start.
+    over_starts: bool,
+}
+
+/// A panel, and whether it shows means.
+struct Drawn {
+    panel: Panel,
+    averaged: bool,
+}
+
+impl<'a> Over<'a> {
+    fn new(
+        identity: &'a Identity,
+        varied: &'a [Vary],
+        rows: &'a [&'a StringRecord],
+        input: usize,
+    ) -> Self {
+        let path = varied[input].path.as_str();
+        let declared_log = matches!(&varied[input].values, Values::Range(range) if range.log);
+        let inputs = || rows.iter().filter_map(|row| cell(row, input));
+        let other_start = |(k, v): (usize, &Vary)| k != input && is_start(&v.path);
+        Self {
+            identity,
+            path,
+            rows,
+            input,
+            x_log: declared_log || wide(inputs()),
+            groups: groups(varied, rows, input),
+            over_starts: varied.iter().enumerate().any(other_start) && !is_start(path),
+        }
+    }
+
+    fn column(&self, name: &str) -> Option<usize> {
+        self.identity.columns.iter().position(|column| column == name)
+    }
+
+    /// Values of a column over the varied number.
+    fn points(&self, rows: &[&StringRecord], column: usize, factor: f64) -> Vec<(f64, f64)> {
+        let point =
+            |row: &&StringRecord| Some((cell(row, self.input)?, factor * cell(row, column)?));
+        rows.iter().filter_map(point).collect()
+    }
+
+    /// The same in the units of the axes.
+    fn scaled(&self, points: Vec<(f64, f64)>, y_log: bool) -> Vec<(f64, f64)> {
+        points.into_iter().map(|(x, y)| (scale(x, self.x_log), scale(y, y_log))).collect()
+    }
+
+    fn panel(&self, output: &Output) -> Option<Drawn> {
+        let (name, title, label, factor, ideal) = *output;
+        let column = self.column(name)?;
+        let all = self.points(self.rows, column, factor);
+        if FORCES.contains(&name) && all.iter().all(|point| point.1 == 0.0) {
+            return None;
+        }
+        let y_log = wide(all.iter().map(|point| point.1));
+        let mut curves = Vec::new();
+        let means = self.means(all, column, factor, y_log);
+        // Dots of several groups would hide their means.
+        if !(self.over_starts && self.groups.len() > 1) {
+            curves.extend(self.dots(column, factor, y_log));
+        }
+        let averaged = !means.is_empty();
+        curves.extend(means);
+        if let Some(column) = ideal.and_then(|ideal| self.column(ideal)) {
+            curves.push(self.ideal_machine(column, factor, y_log));
+        }
+        let panel = Panel {
+            title: title.to_owned(),
+            x_label: Label::log_if(in_words(self.path), self.x_log),
+            y_label: Label::log_if(label, y_log),
+            curves,
+        };
+        Some(Drawn { panel, averaged })
+    }
+
+    /// A dot for each run, group by group.
+    fn dots(&self, column: usize, factor: f64, y_log: bool) -> impl Iterator<Item = Curve> {
+        self.groups.iter().map(move |(name, rows)| Curve {
+            name: name.clone(),
+            points: self.scaled(thinned(self.points(rows, column, factor)), y_log),
+            style: Style::Dots,
+        })
+    }
+
+    /// Means over starts with their intervals, group by group, or those of `all` runs of the only group, if there are enough.
+    fn means(&self, all: Vec<(f64, f64)>, column: usize, factor: f64, y_log: bool) -> Vec<Curve> {
+        if self.over_starts {
+            let starts = self.groups.iter().flat_map(|(name, rows)| {
+                let name = if self.groups.len() == 1 { "mean over starts" } else { name };
+                interval(self.points(rows, column, factor), name, y_log)
+            });
+            let scaled = |curve: Curve| Curve { points: self.scaled(curve.points, y_log), ..curve };
+            return starts.map(scaled).collect();
+        }
+        let ([_], Some(means)) = (self.groups.as_slice(), means(all, self.x_log)) else {
+            return Vec::new();
+        };
+        let points = self.scaled(means, y_log);
+        vec![Curve { name: "mean".to_owned(), points, style: Style::Reference }]
+    }
+
+    fn ideal_machine(&self, column: usize, factor: f64, y_log: bool) -> Curve {
+        let mut points = self.points(self.rows, column, factor);
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.dedup_by(|a, b| a.0 == b.0);
+        let points = self.scaled(thinned(points), y_log);
+        Curve { name: "ideal machine".to_owned(), points, style: Style::Reference }
+    }
+
+    fn caption(&self, averaged: bool) -> String {
+        let (path, runs) = (self.path, self.rows.len());
+        let mut caption =
+            format!("Each dot is a run that reached its end, at its value of {path}.");
+        if self.over_starts {
+            caption += " Lines join means over the starts; grey: their 95 % intervals.";
+        } else if averaged {
+            caption +=
+                " The dashed line joins the means of runs at the same or neighbouring values.";
+        }
+        if runs > DOTS {
+            caption += &format!(" Shown are {DOTS} runs of {runs}, evenly chosen.");
+        }
+        caption
+    }
 }
 
 /// What a varied number is, in words, with its unit; of what has no words here the path.

@@ -6,20 +6,17 @@ use crate::calibrate::errors::{ChannelError, judged};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::recording::stem_of;
 use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
-use crate::calibrate::result::{
-    CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, to_json,
-};
+use crate::calibrate::result::{CalibrateError, control};
 use crate::calibrate::sensed::charts::{Drawn, of_run};
 use crate::calibrate::sensed::errors;
-use crate::calibrate::sensed::page;
 use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::report::{Calibrated, Report};
+use crate::calibrate::sensed::report::{Calibrated, Report, names_of_files, written};
 use crate::calibrate::sensed::thresholds::MET;
 use crate::effects::Setting;
 use crate::report::{Picture, Style};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
-use crate::study::{Folder, PAGE_FILE, RunError};
+use crate::study::{Folder, RunError};
 use std::time::Instant as Clock;
 
 impl From<Broken> for CalibrateError {
@@ -81,9 +78,6 @@ pub fn into_folder(
         listed.extend(errors::of_run(&bench.sensing(index), &run.recording, role, &before, &after));
     }
     tell("drawing and writing");
-    let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
-    let written = files.iter().map(|(name, _)| name.clone());
-    let drawn = pictures.iter().map(|picture| picture.file.clone());
     let verdict = verdict(&listed, &outcome);
     let report = Report {
         provenance: Provenance::of(rig),
@@ -106,17 +100,12 @@ pub fn into_folder(
         seeds: Seeds { scenario: rig.seed, replicas: vec![0] },
         simulations: bench.simulations(),
         wall_s: started.elapsed().as_secs_f64(),
-        files: texts.chain(written).chain(drawn).collect(),
+        files: names_of_files(&files, &pictures),
         windows: None,
     };
-    let json = to_json(&report);
     let mut calibrated = bench.rig.clone();
     calibrated.effects.extend(sought);
-    let (model, page) = (calibrated.to_toml(), page::page(&report, &pictures));
-    let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &model), (PAGE_FILE, &page)];
-    texts.extend(files.iter().map(|(name, text)| (name.as_str(), text)));
-    let folder = publish(folder, &texts, &pictures)?;
-    Ok(Calibrated { report, json, folder })
+    written(report, &calibrated, &files, &pictures, folder)
 }
 
 /// On data not used for fits where there are any: whether every column is at its noise.

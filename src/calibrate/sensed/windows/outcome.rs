@@ -89,43 +89,8 @@ pub fn calibrate(
     }
     let priors = vec![names.iter().map(|std| [0.0, *std]).collect(); fits];
     let mut search = Search::new(&bench, priors, tell);
-    let everything = sought(&bench.mechanism, &bench.declared, &bench.runs, without);
-    let first = search.stages(&everything, everything.start.clone(), &WINDOWS);
-    let mut left_out = Vec::new();
-    let mut effects = Vec::new();
-    let mut model = bench.declared.clone();
-    let fitted = first.is_some();
-    let mut known = Vec::new();
-    if let Some(values) = first {
-        let Search { covariance, information, .. } = &search;
-        let Kept { fixed, values, gains } =
-            eliminated(&everything, values, covariance.clone(), information);
-        let named = everything.settings(&values);
-        left_out.extend(gains.iter().map(|&(i, gain)| LeftOut { effect: named[i].clone(), gain }));
-        let rest = everything.with_fixed(&fixed, &values);
-        let longest = search.lengths.last().copied().unwrap_or(WINDOWS[0]);
-        let mut again =
-            search.stages(&rest, rest.start.clone(), &[longest]).unwrap_or(rest.start.clone());
-        known = search.zeros_known();
-        if search.lengths.len() == WINDOWS.len() {
-            // A model that keeps its phase is judged by predictions, and fitted to them.
-            search.predicts = true;
-            again = search.stages(&rest, again.clone(), &[longest]).unwrap_or(again);
-        }
-        let (rest, again) = search.held_or_sliding(rest, again, longest, without);
-        model = rest.settings(&again);
-        let gains = search.gains(&rest, &again);
-        for (i, gain) in gains {
-            let params = rest
-                .names(i)
-                .into_iter()
-                .zip(rest.of(i))
-                .map(|(name, k)| (name, Estimate::new(again[k], search.deviation(k))))
-                .collect();
-            effects.push(Certain { effect: model[i].clone(), params, gain });
-        }
-        model.retain(|effect| !is_nothing(effect));
-    }
+    let Fits { mut effects, mut model, left_out, known, fitted } =
+        fit_and_leave_out(&bench, &mut search, without);
     tell("finding the zeros of runs");
     let found = zeros_of_all(&all, &model, &names, &known);
     effects.extend(found.iter().cloned());
@@ -145,17 +110,8 @@ pub fn calibrate(
     }
     let (judged, zeros) = judge(&calibrated, rig)?;
     let held = |j: &&Judged| j.run >= fits || fits == calibrated.runs.len();
-    let met = |score: &dyn Fn(&Judged) -> &Score| {
-        judged.iter().filter(held).all(|j| {
-            let s = score(j);
-            s.errors.iter().zip(&s.floors).all(|(e, f)| *e <= MET * f)
-        })
-    };
-    let verdict = match (met(&|j| &j.before), met(&|j| &j.after)) {
-        (true, _) if events.is_empty() => Verdict::NothingMissing,
-        (_, true) => Verdict::Explained,
-        (_, false) => Verdict::Unexplained,
-    };
+    let held: Vec<&Judged> = judged.iter().filter(held).collect();
+    let verdict = verdict(&held, &events);
     if verdict == Verdict::NothingMissing {
         effects.clear();
         model.clone_from(&bench.declared);
@@ -164,6 +120,75 @@ pub fn calibrate(
     let outcome =
         Outcome { verdict, effects, events, model, left_out, judged, zeros, lengths, fitted };
     Ok((calibrated, outcome))
+}
+
+/// What fits come to.
+struct Fits {
+    effects: Vec<Certain>,
+    model: Vec<Setting>,
+    left_out: Vec<LeftOut>,
+    /// Zeros of the runs.
+    known: Zeros,
+    /// Whether values could be told at all.
+    fitted: bool,
+}
+
+/// Fits everything that may be wrong at once, leaves out what is not certain, and fits the rest again.
+fn fit_and_leave_out(bench: &Bench, search: &mut Search, without: &[&str]) -> Fits {
+    let everything = sought(&bench.mechanism, &bench.declared, &bench.runs, without);
+    let first = search.stages(&everything, everything.start.clone(), &WINDOWS);
+    let mut fits = Fits {
+        effects: Vec::new(),
+        model: bench.declared.clone(),
+        left_out: Vec::new(),
+        known: Vec::new(),
+        fitted: first.is_some(),
+    };
+    let Some(values) = first else { return fits };
+    let Search { covariance, information, .. } = &*search;
+    let Kept { fixed, values, gains } =
+        eliminated(&everything, values, covariance.clone(), information);
+    let named = everything.settings(&values);
+    fits.left_out.extend(gains.iter().map(|&(i, gain)| LeftOut { effect: named[i].clone(), gain }));
+    let rest = everything.with_fixed(&fixed, &values);
+    let longest = search.lengths.last().copied().unwrap_or(WINDOWS[0]);
+    let mut again =
+        search.stages(&rest, rest.start.clone(), &[longest]).unwrap_or(rest.start.clone());
+    fits.known = search.zeros_known();
+    if search.lengths.len() == WINDOWS.len() {
+        // A model that keeps its phase is judged by predictions, and fitted to them.
+        search.predicts = true;
+        again = search.stages(&rest, again.clone(), &[longest]).unwrap_or(again);
+    }
+    let (rest, again) = search.held_or_sliding(rest, again, longest, without);
+    fits.model = rest.settings(&again);
+    let gains = search.gains(&rest, &again);
+    for (i, gain) in gains {
+        let params = rest
+            .names(i)
+            .into_iter()
+            .zip(rest.of(i))
+            .map(|(name, k)| (name, Estimate::new(again[k], search.deviation(k))))
+            .collect();
+        fits.effects.push(Certain { effect: fits.model[i].clone(), params, gain });
+    }
+    fits.model.retain(|effect| !is_nothing(effect));
+    fits
+}
+
+/// What runs that count say of the declared model and the calibrated one.
+fn verdict(held: &[&Judged], events: &[Event]) -> Verdict {
+    let met = |score: &dyn Fn(&Judged) -> &Score| {
+        held.iter().all(|j| {
+            let s = score(j);
+            s.errors.iter().zip(&s.floors).all(|(e, f)| *e <= MET * f)
+        })
+    };
+    match (met(&|j| &j.before), met(&|j| &j.after)) {
+        (true, _) if events.is_empty() => Verdict::NothingMissing,
+        (_, true) => Verdict::Explained,
+        (_, false) => Verdict::Unexplained,
+    }
 }
 
 /// Zeros of each run's sensors, with their standard deviations.

@@ -8,17 +8,16 @@ use crate::calibrate::errors::ChannelError;
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::recording::stem_of;
 use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
-use crate::calibrate::result::{CALIBRATED_FILE, CalibrateError, REPORT_FILE, publish, to_json};
+use crate::calibrate::result::CalibrateError;
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::events::{self, Event};
-use crate::calibrate::sensed::page;
 use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::report::{Calibrated, Report};
+use crate::calibrate::sensed::report::{Calibrated, Report, names_of_files, written};
 use crate::calibrate::sensed::search::name;
 use crate::report::{Curve, Picture, Style, panels_svg};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
-use crate::study::{Folder, PAGE_FILE, RunError};
+use crate::study::{Folder, RunError};
 use serde::Serialize;
 use std::time::Instant as Clock;
 
@@ -232,9 +231,6 @@ pub fn into_folder(
         horizons.push(HorizonErrors { run: name, role, horizon, windows, errors: of });
     }
     drawn.extend(events_drawn(&outcome.events).map_err(RunError::from)?);
-    let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
-    let names = files.iter().map(|(name, _)| name.clone());
-    let listed = texts.chain(names).chain(drawn.iter().map(|p| p.file.clone())).collect();
     let report = Report {
         provenance: Provenance::of(rig),
         verdict: outcome.verdict,
@@ -256,7 +252,7 @@ pub fn into_folder(
         seeds: Seeds { scenario: rig.seed, replicas: Vec::new() },
         simulations: 0,
         wall_s: started.elapsed().as_secs_f64(),
-        files: listed,
+        files: names_of_files(&files, &drawn),
         windows: Some(Windows {
             note: NOTE,
             fitted_s: outcome.lengths.clone(),
@@ -267,13 +263,7 @@ pub fn into_folder(
             left_out: outcome.left_out.iter().map(|left| name(&left.effect)).collect(),
         }),
     };
-    let json = to_json(&report);
-    let calibrated = with(rig, &outcome.model).to_toml();
-    let page = page::page(&report, &drawn);
-    let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &calibrated), (PAGE_FILE, &page)];
-    texts.extend(files.iter().map(|(name, text)| (name.as_str(), text)));
-    let folder = publish(folder, &texts, &drawn)?;
-    Ok(Calibrated { report, json, folder })
+    written(report, &with(rig, &outcome.model), &files, &drawn, folder)
 }
 
 fn summary(outcome: &Outcome) -> String {

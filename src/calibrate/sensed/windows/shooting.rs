@@ -90,6 +90,11 @@ impl Part {
     }
 }
 
+/// What priors add to Σ of squares.
+fn penalty(priors: &[Option<[f64; 2]>]) -> f64 {
+    priors.iter().flatten().map(|[d, w]| d * d * w).sum::<f64>()
+}
+
 impl Shooting<'_> {
     fn shooter<'b>(
         &'b self,
@@ -181,25 +186,8 @@ impl Shooting<'_> {
         let mut machines = (self.machines)(&fitted.values)?;
         let mut last = false;
         for round in 0..=STEPS {
-            let mut all = vec![machines.clone()];
-            for (k, value) in self.sought.iter().enumerate() {
-                let mut beside = fitted.values.clone();
-                beside[k] += self.step(&fitted, k, value);
-                all.push((self.machines)(&beside)?);
-            }
-            let parts =
-                (0..self.windows.len()).into_par_iter().map(|i| self.part(&all, &fitted, i));
-            let mut parts = parts.collect::<Option<Vec<Part>>>()?;
-            let mut sizes: Vec<f64> = parts.iter().map(|part| part.squares.sqrt()).collect();
-            sizes.sort_by(f64::total_cmp);
-            let typical = OUTLIER * sizes[sizes.len() / 2];
-            for part in &mut parts {
-                part.weight = (typical / part.squares.sqrt().max(f64::MIN_POSITIVE)).min(1.0);
-            }
+            let parts = self.parts(&machines, &fitted)?;
             let priors = self.priors(&fitted);
-            let penalty = |priors: &[Option<[f64; 2]>]| {
-                priors.iter().flatten().map(|[d, w]| d * d * w).sum::<f64>()
-            };
             let data: f64 = parts.iter().map(|part| part.weight * part.squares).sum();
             let before = data + penalty(&priors);
             fitted.squares = data;
@@ -215,24 +203,9 @@ impl Shooting<'_> {
                     damping *= 6.0;
                     continue;
                 };
-                let mut there = fitted.clone();
-                for (k, value) in there.values.iter_mut().enumerate() {
-                    let [low, high] = self.sought[k].bounds;
-                    *value = (*value + change[k]).clamp(low, high);
-                }
-                let zeros = there.zeros.iter_mut().flatten();
-                zeros.zip(change.iter().skip(self.sought.len())).for_each(|(z, c)| *z += c);
-                for (start, step) in there.starts.iter_mut().zip(&steps) {
-                    start.values.iter_mut().zip(step.iter()).for_each(|(v, s)| *v += s);
-                }
+                let there = self.moved(&fitted, &change, &steps);
                 let tried = (self.machines)(&there.values).and_then(|machines| {
-                    let squares = (0..self.windows.len()).into_par_iter().map(|i| {
-                        let (window, start) = (&self.windows[i], &there.starts[i]);
-                        let left =
-                            self.residual(&machines, &there.zeros, window, start, &there.scales)?;
-                        Some(parts[i].weight * left.norm_squared())
-                    });
-                    let squares = squares.sum::<Option<f64>>()?;
+                    let squares = self.squares(&machines, &there, &parts)?;
                     Some((machines, squares))
                 });
                 let after = tried.map(|(m, squares)| (m, squares + penalty(&self.priors(&there))));
@@ -246,6 +219,50 @@ impl Shooting<'_> {
             }
         }
         Some(fitted)
+    }
+
+    /// All windows with their derivatives, weighed: those that miss much more than others count less.
+    fn parts(&self, machines: &[Mechanism], fitted: &Fitted) -> Option<Vec<Part>> {
+        let mut all = vec![machines.to_vec()];
+        for (k, value) in self.sought.iter().enumerate() {
+            let mut beside = fitted.values.clone();
+            beside[k] += self.step(fitted, k, value);
+            all.push((self.machines)(&beside)?);
+        }
+        let parts = (0..self.windows.len()).into_par_iter().map(|i| self.part(&all, fitted, i));
+        let mut parts = parts.collect::<Option<Vec<Part>>>()?;
+        let mut sizes: Vec<f64> = parts.iter().map(|part| part.squares.sqrt()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let typical = OUTLIER * sizes[sizes.len() / 2];
+        for part in &mut parts {
+            part.weight = (typical / part.squares.sqrt().max(f64::MIN_POSITIVE)).min(1.0);
+        }
+        Some(parts)
+    }
+
+    /// Where a change of values and zeros and steps of the starts lead.
+    fn moved(&self, fitted: &Fitted, change: &DVector<f64>, steps: &[DVector<f64>]) -> Fitted {
+        let mut there = fitted.clone();
+        for (k, value) in there.values.iter_mut().enumerate() {
+            let [low, high] = self.sought[k].bounds;
+            *value = (*value + change[k]).clamp(low, high);
+        }
+        let zeros = there.zeros.iter_mut().flatten();
+        zeros.zip(change.iter().skip(self.sought.len())).for_each(|(z, c)| *z += c);
+        for (start, step) in there.starts.iter_mut().zip(steps) {
+            start.values.iter_mut().zip(step.iter()).for_each(|(v, s)| *v += s);
+        }
+        there
+    }
+
+    /// Σ of squares of what is missed, by the weights of these parts.
+    fn squares(&self, machines: &[Mechanism], fitted: &Fitted, parts: &[Part]) -> Option<f64> {
+        let squares = (0..self.windows.len()).into_par_iter().map(|i| {
+            let (window, start) = (&self.windows[i], &fitted.starts[i]);
+            let left = self.residual(machines, &fitted.zeros, window, start, &fitted.scales)?;
+            Some(parts[i].weight * left.norm_squared())
+        });
+        squares.sum()
     }
 
     /// Normal equations of values and zeros alone, damped: matrix and right-hand side.

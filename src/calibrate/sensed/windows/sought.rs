@@ -4,7 +4,7 @@ use super::shooting::Value;
 use crate::calibrate::sensed::estimate::{effort_sensor, position_sensor};
 use crate::calibrate::sensed::recording::Recording;
 use crate::effects::{Setting, Target, named};
-use crate::mechanism::{Drive, JointIndex, Mechanism};
+use crate::mechanism::{Axes, Drive, JointIndex, Mechanism};
 
 /// Shares of the declared ones by which masses and moments, and inertias, are expected to be off: drawings leave
 /// out screws and cables.
@@ -217,15 +217,46 @@ pub fn sought(
         values: Vec::new(),
         start: Vec::new(),
     };
-    let allowed = |kind: &str| !without.contains(&kind);
     let size = mechanism.size();
     let mass: f64 = mechanism.bodies.iter().map(|body| body.mass).sum();
     // Without gravity a machine of its size that turns with 3 rad/s sets the scale.
     let weight = mass * mechanism.gravity.norm().max(9.0 * size);
-    let named_bodies = &mechanism.names.bodies;
-    for (name, axes) in named_bodies {
-        let Some(index) = axes.origin.body else { continue };
-        let body = &mechanism.bodies[index];
+    let expected = Expected { mechanism, recordings, without, size, mass, weight };
+    for (name, axes) in &mechanism.names.bodies {
+        expected.add_body(&mut sought, name, axes);
+    }
+    let joints: Vec<(String, JointIndex)> =
+        mechanism.joints().map(|(name, joint)| (name.to_owned(), joint)).collect();
+    for (name, joint) in joints {
+        expected.add_joint(&mut sought, name, joint);
+    }
+    sought
+}
+
+/// How large effects on a machine are expected to be.
+struct Expected<'a> {
+    mechanism: &'a Mechanism,
+    recordings: &'a [Recording],
+    /// Kinds that are not sought.
+    without: &'a [&'a str],
+    /// The machine's size in m.
+    size: f64,
+    /// Of all bodies in kg.
+    mass: f64,
+    /// What loads the machine, in N.
+    weight: f64,
+}
+
+impl Expected<'_> {
+    fn allows(&self, kind: &str) -> bool {
+        !self.without.contains(&kind)
+    }
+
+    /// Mass and drag of a body that moves.
+    fn add_body(&self, sought: &mut Sought, name: &str, axes: &Axes) {
+        let Some(index) = axes.origin.body else { return };
+        let size = self.size;
+        let body = &self.mechanism.bodies[index];
         let moment = MASS * body.mass * size;
         let inertia = INERTIA * (body.inertia + body.mass * size * size);
         // A centre of mass beside its declared line is no different from wrong zeros of sensors.
@@ -238,48 +269,49 @@ pub fn sought(
                 sizes.push((name, share * moment));
             }
         }
-        if allowed("mass-properties") {
-            sought.add("mass-properties", Target::Body(name.clone()), &sizes, &[]);
+        let target = Target::Body(name.to_owned());
+        if self.allows("mass-properties") {
+            sought.add("mass-properties", target.clone(), &sizes, &[]);
         }
-        if allowed("air-drag") {
+        if self.allows("air-drag") {
             let sizes = [("force_Ns2_m2", AIR * size.powi(2)), ("torque_Nms2", AIR * size.powi(5))];
-            sought.add("air-drag", Target::Body(name.clone()), &sizes, &[]);
+            sought.add("air-drag", target, &sizes, &[]);
         }
     }
-    let joints: Vec<(String, JointIndex)> =
-        mechanism.joints().map(|(name, joint)| (name.to_owned(), joint)).collect();
-    for (name, joint) in joints {
+
+    /// Friction of a joint, and what its drive may have.
+    fn add_joint(&self, sought: &mut Sought, name: String, joint: JointIndex) {
+        let mechanism = self.mechanism;
         let effort = match joint {
-            JointIndex::Revolute(_) => weight * size,
-            JointIndex::Prismatic(_) => weight,
+            JointIndex::Revolute(_) => self.weight * self.size,
+            JointIndex::Prismatic(_) => self.weight,
         };
-        let rate = rate(mechanism, recordings, joint);
+        let rate = rate(mechanism, self.recordings, joint);
         let target = Target::Joints(vec![name]);
         let friction = FRICTION * effort;
         let sizes = [("coulomb", friction), ("viscous", friction / rate)];
-        if allowed("joint-friction") {
+        if self.allows("joint-friction") {
             sought.add("joint-friction", target.clone(), &sizes, &[("velocity", STEEP * rate)]);
         }
         let drive = mechanism.actuators.iter().position(|drive| drive.joint == joint);
         let Some(drive) = drive.filter(|&i| mechanism.actuators[i].drive == Drive::Effort) else {
-            continue;
+            return;
         };
-        if allowed("rotor-inertia") && matches!(joint, JointIndex::Revolute(_)) {
-            let inertia = INERTIA * mass * size * size;
+        if self.allows("rotor-inertia") && matches!(joint, JointIndex::Revolute(_)) {
+            let inertia = INERTIA * self.mass * self.size * self.size;
             sought.add("rotor-inertia", target, &[("inertia_kg_m2", inertia)], &[]);
         }
-        let recorded = |sensor: &usize| recordings.iter().all(|r| r.get(*sensor).is_some());
+        let recorded = |sensor: &usize| self.recordings.iter().all(|r| r.get(*sensor).is_some());
         if let Some(sensor) = effort_sensor(mechanism, drive).filter(recorded) {
             let target = Target::Sensors(vec![mechanism.sensors[sensor].column.clone()]);
-            if allowed("force-scale") {
+            if self.allows("force-scale") {
                 sought.add("force-scale", target.clone(), &[("relative", SCALE)], &[]);
             }
-            if allowed("force-offset") {
+            if self.allows("force-offset") {
                 sought.add("force-offset", target, &[("offset", OFFSET * effort)], &[]);
             }
         }
     }
-    sought
 }
 
 /// Root mean square rate of a joint in recordings; 1 where nobody measured it.

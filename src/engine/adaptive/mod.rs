@@ -11,12 +11,14 @@
 //! the forward half of the last average got wrong is made good in the next, where the path is known
 //! better: `kick = ∫F over the past step − forward part given before + forward part`.
 
+mod ahead;
+
 use super::between;
 use super::energy::{Books, Exchange, Power};
 use super::looks::Looks;
 use super::stepper::Stepper;
 use super::world::{Target, World, joint_advance};
-use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism, Situation};
+use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
 /// Inner nodes of the four-point Lobatto rule on [0, 1]: ½(1 ∓ 1/√5); weights 1, 5, 5, 1 over 12.
@@ -26,11 +28,6 @@ const NODES: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];
 /// stepped over. With steps of 2e-4 s the energy of the paper's machine is off by three times as much at a tolerance of
 /// 1e-3 m/s.
 pub const LONGEST_STEP: f64 = 1.6e-4;
-
-/// Shortest step in s that error control asks for where rigid joints are nearly singular. Joints that are
-/// closed but for rounding ε at a distance c (rad) from such a pose leave a velocity of `ε ω/c²`: a shorter
-/// step ends closer to the pose, and loses more than it wins.
-const SINGULAR_STEP: f64 = 2e-5;
 
 /// Part of the tolerance that the error of a step may reach. With it, paths and drive forces of the paper's machine (both
 /// drives, with gravity and without, ten start phases, 1e-5 and 1e-7 m/s) err no more than with all of the tolerance and
@@ -62,7 +59,7 @@ pub(super) struct Adaptive {
     previous_accelerations: Vec<Vector3<f64>>,
     /// Forward part of the last average, N·s.
     forward: Vec<Vector3<f64>>,
-    next_step: f64,
+    next_length: f64,
     /// Estimated error of the last step in m/s.
     step_error: f64,
     /// Whether the last step was taken although its error exceeds the tolerance.
@@ -137,7 +134,7 @@ impl Adaptive {
             previous_commands: vec![Command::default(); mechanism.actuators.len()],
             previous_accelerations: zeros.clone(),
             forward: zeros.clone(),
-            next_step: FIRST_STEP,
+            next_length: FIRST_STEP,
             step_error: 0.0,
             forced: false,
             books,
@@ -146,18 +143,6 @@ impl Adaptive {
             turns: vec![0.0; bodies],
             looks: Looks::new(NODES.len(), mechanism.revolutes.len()),
             errors: zeros,
-        }
-    }
-
-    /// Makes `path` the forces at `t + tau` on the predicted path.
-    fn look(&mut self, mechanism: &Mechanism, t: f64, tau: f64) {
-        for (i, point) in self.path_states.iter_mut().enumerate() {
-            *point = self.states[i].moved(self.now.accelerations[i], self.jerks[i], tau);
-        }
-        self.dynamics.forces_on_path(mechanism, t + tau, &self.path_states, &mut self.path);
-        if self.coupled {
-            self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
-            self.dynamics.replace_wrenches(&mut self.path);
         }
     }
 
@@ -209,20 +194,28 @@ impl Adaptive {
         }
     }
 
-    /// Error in m/s of a step `h`: the part of the force that a cubic cannot follow, and a guard
-    /// against ends of the path where the acceleration jumps.
-    fn error(&self, h: f64) -> f64 {
-        let mut worst = 0.0f64;
-        for (i, m) in self.dynamics.inverse_masses().iter().enumerate() {
-            let size = |a: Vector3<f64>| {
-                // An angular speed counts with the radius of gyration √(I/m).
-                (a.xy().norm_squared() + a.z * a.z * m.x / m.z).sqrt()
-            };
-            worst = worst.max(size(self.errors[i].component_mul(m)) / 20.0);
-            let a = self.now.accelerations[i];
-            worst = worst.max(0.01 * size(self.ends[i] - a - self.jerks[i] * h));
+    /// Lets rapier take a step of `h` s under the forces of `sums` (N), and joints with it.
+    #[inline]
+    fn step_world(&mut self, mechanism: &Mechanism, h: f64) {
+        for (i, turn) in self.turns.iter_mut().enumerate() {
+            let (a, j) = (self.now.accelerations[i].z, self.jerks[i].z);
+            *turn = (self.states[i].twist.z + (a / 2.0 + j * (h / 6.0)) * h) * h;
         }
-        worst * h
+        // The path was last looked at where the step ends, so its commands and lengths are the
+        // targets.
+        let (turns, now, path) = (&self.turns, &self.now, &self.path);
+        let dynamics = &self.dynamics;
+        let targets = |i: usize| {
+            let joint = &mechanism.prismatics[i];
+            let commanded = dynamics.prescribed(i).map(|drive| path.commands[drive].position);
+            let turn = joint.base.body.map_or(0.0, |body| turns[body]);
+            Some(Target::new(joint, commanded.unwrap_or(path.lengths[i]), now.lengths[i], turn))
+        };
+        let advances = |i: usize| {
+            let advance = path.commands[i].position - now.coordinates[i];
+            joint_advance(advance, mechanism.ring_turn(i, turns))
+        };
+        self.world.step(h, &self.sums, Some(turns), targets, advances);
     }
 }
 
@@ -341,81 +334,11 @@ impl Stepper for Adaptive {
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {
             *sum = *sum * (hp / 12.0) - forward;
         }
-        // The next step, predicted; shortened until it is accurate. No sliver is left before the end:
-        // a prescribed drive would get an endless force.
-        let span = until - t;
-        let at = Situation { t: mechanism.epoch + t, mechanism, states: &self.states };
-        let loads = mechanism.loads.iter().filter_map(|load| load.longest_step_at(at));
-        let contacts = self.dynamics.longest_contact_step(mechanism, &self.now.contacts);
-        let longest = loads.fold(self.longest.min(contacts), f64::min);
-        let mut h = self.next_step.min(longest);
-        let (h, reached) = loop {
-            let last = h >= span * (1.0 - 1e-9);
-            if last {
-                h = span;
-            } else if h > 0.5 * span {
-                h = 0.5 * span;
-            }
-            let root5 = 5.0 * 5f64.sqrt();
-            for i in 0..self.states.len() {
-                self.errors[i] = self.now.wrenches[i] * -5.0;
-                self.forward[i] = self.now.wrenches[i];
-            }
-            for (s, sign) in NODES.into_iter().zip([1.0, -1.0]) {
-                self.look(mechanism, t, s * h);
-                for i in 0..self.states.len() {
-                    self.errors[i] += self.path.wrenches[i] * (sign * root5);
-                    self.forward[i] += self.path.wrenches[i] * (5.0 * (1.0 - s));
-                }
-            }
-            self.look(mechanism, t, h);
-            for i in 0..self.states.len() {
-                self.errors[i] += self.path.wrenches[i] * 5.0;
-                self.forward[i] *= h / 12.0;
-            }
-            self.dynamics.accelerations(mechanism, &self.path_states, &mut self.path);
-            self.ends.copy_from_slice(&self.path.accelerations);
-            self.step_error = self.error(h);
-            let ratio = (self.tolerance / self.step_error).sqrt().sqrt();
-            // Infinite where nothing acts, NaN where the state is none: both end here.
-            if ratio.is_nan() || ratio >= 0.9 {
-                self.next_step = (h * (0.9 * ratio).clamp(0.3, 2.0)).min(longest);
-                break (h, if last { until } else { t + h });
-            }
-            // Shorter steps do not help against the errors of a nearly singular pose.
-            if self.coupled && self.dynamics.was_singular() {
-                if h <= SINGULAR_STEP {
-                    self.forced = true;
-                    self.next_step = h;
-                    break (h, if last { until } else { t + h });
-                }
-                h = (h * (0.85 * ratio).max(0.2)).max(SINGULAR_STEP);
-                continue;
-            }
-            h *= (0.85 * ratio).max(0.2);
-        };
+        let (h, reached) = self.next_step(mechanism, t, until);
         for (sum, forward) in self.sums.iter_mut().zip(&self.forward) {
             *sum = (*sum + forward) / h;
         }
-        for (i, turn) in self.turns.iter_mut().enumerate() {
-            let (a, j) = (self.now.accelerations[i].z, self.jerks[i].z);
-            *turn = (self.states[i].twist.z + (a / 2.0 + j * (h / 6.0)) * h) * h;
-        }
-        // The path was last looked at where the step ends, so its commands and lengths are the
-        // targets.
-        let (turns, now, path) = (&self.turns, &self.now, &self.path);
-        let dynamics = &self.dynamics;
-        let targets = |i: usize| {
-            let joint = &mechanism.prismatics[i];
-            let commanded = dynamics.prescribed(i).map(|drive| path.commands[drive].position);
-            let turn = joint.base.body.map_or(0.0, |body| turns[body]);
-            Some(Target::new(joint, commanded.unwrap_or(path.lengths[i]), now.lengths[i], turn))
-        };
-        let advances = |i: usize| {
-            let advance = path.commands[i].position - now.coordinates[i];
-            joint_advance(advance, mechanism.ring_turn(i, turns))
-        };
-        self.world.step(h, &self.sums, Some(turns), targets, advances);
+        self.step_world(mechanism, h);
         self.previous_states.copy_from_slice(&self.states);
         self.previous_wrenches.copy_from_slice(&self.now.wrenches);
         self.previous_commands.copy_from_slice(&self.now.commands);

@@ -1,0 +1,177 @@
+//! From questions with numbers to the motion that answers them best: searches without clearance, then the best
+//! candidates with clearance, noise of their own and rivals fitted.
+
+use super::instruments::worth;
+use super::motion::{Maker, Motion};
+use super::outcome::{Answer, answered};
+use super::path::Way;
+use super::prepare::Prepared;
+use super::search::{Effort, best};
+use super::separation::{Posed, apart};
+use super::sight::{Seen, Sight};
+use crate::calibrate::result::CalibrateError;
+use crate::calibrate::sensed::estimate::effort_sensor;
+use crate::calibrate::sensed::recording::Recording;
+
+/// Share of what a linearised rival leaves that its full fit may leave for the search to have been right about it.
+const HELD: f64 = 0.7;
+
+/// Shares of a planned motion's size at which drives are strong enough for it with clearances, one after another.
+const GENTLER: [f64; 4] = [1.0, 0.9, 0.75, 0.5];
+
+/// Searches the motion that tells most, once more where rivals turn out nearer; with how many candidates were tried.
+pub fn search_twice(
+    ground: &Ground,
+    mut posed: Vec<Posed>,
+) -> Result<(Chosen, usize), CalibrateError> {
+    let Prepared { effort: all, seed, .. } = ground.prepared;
+    let mut candidates = 0;
+    let mut chosen: Option<Chosen> = None;
+    for round in 0..2 {
+        // The second one refines what the first one found out about rivals.
+        let effort =
+            if round == 0 { *all } else { Effort { generations: all.generations / 2, ..*all } };
+        let search = Search { ground, posed: &posed, effort, before: candidates };
+        let found = search.run(seed + round)?;
+        candidates += effort.candidates();
+        let better = chosen.as_ref().is_none_or(|chosen| found.worth > chosen.worth);
+        let (linear, full) = (found.linear, found.worth);
+        if better {
+            chosen = Some(found);
+        }
+        // A rival that came nearer by other values is searched against with these.
+        if full >= HELD * linear {
+            break;
+        }
+        if let Some(chosen) = &chosen {
+            posed.clone_from(&chosen.posed);
+        }
+    }
+    let chosen = chosen.ok_or_else(|| no_motion(ground.maker, ground.way))?;
+    Ok((chosen, candidates))
+}
+
+/// What to say where the machine can follow nothing.
+pub fn no_motion(maker: &Maker, way: &Way) -> CalibrateError {
+    // At rest, and in a small motion about home.
+    let tried = [0.0, 0.1].map(|share| maker.motion(&vec![1.0; maker.numbers()], share));
+    let blocked =
+        tried.iter().find_map(|motion| way.follows(&way.like(motion), &maker.limits).err());
+    let why = match blocked {
+        Some(blocked) => blocked.words(&maker.limits),
+        None => "none was found that the machine can follow".to_owned(),
+    };
+    let message = format!(
+        "the limits leave no motion: {why}; give wider ones (--stroke, --speed, --acceleration, --drive-force, --gain)"
+    );
+    CalibrateError::Input(vec![message])
+}
+
+/// What all searches work with.
+pub struct Ground<'a> {
+    pub prepared: &'a Prepared,
+    pub way: &'a Way<'a>,
+    pub maker: &'a Maker,
+    /// Noise that stays as it is while motions are searched.
+    pub frozen: &'a Sight,
+    pub tell: &'a (dyn Fn(&str) + Sync),
+}
+
+/// One search.
+struct Search<'a> {
+    ground: &'a Ground<'a>,
+    posed: &'a [Posed],
+    effort: Effort,
+    /// Candidates of searches before it.
+    before: usize,
+}
+
+/// A motion that was chosen.
+pub struct Chosen {
+    pub motion: Motion,
+    pub like: Recording,
+    pub sight: Sight,
+    pub answers: Vec<Answer>,
+    pub posed: Vec<Posed>,
+    pub forces: Vec<Option<f64>>,
+    /// The least separation over what is wanted, with rivals fitted and noise of this motion; and as the search saw it.
+    worth: f64,
+    linear: f64,
+}
+
+impl Search<'_> {
+    fn run(&self, seed: u64) -> Result<Chosen, CalibrateError> {
+        let worth = |numbers: &[f64]| {
+            let (_, like) = self.ground.way.largest(self.ground.maker, numbers)?;
+            let seen =
+                Seen::ideal(self.ground.way.rig, &like, self.ground.prepared.control).ok()?;
+            self.worth(self.ground.frozen, &seen)
+        };
+        let said = |tried: usize, worth: f64| {
+            let all = self.before + self.effort.candidates();
+            let tried = self.before + tried;
+            (self.ground.tell)(&format!(
+                "{tried} of {all} motions; the best has {worth:.2} of what answers all questions"
+            ));
+        };
+        let found = best(self.ground.maker.numbers(), seed, self.effort, &worth, &said);
+        (self.ground.tell)("looking at the best motions with clearance and noise");
+        let mut chosen: Option<Chosen> = None;
+        for candidate in found {
+            let Some(finished) = self.finished(&candidate.numbers)? else { continue };
+            if chosen.as_ref().is_none_or(|chosen| finished.worth > chosen.worth) {
+                chosen = Some(finished);
+            }
+        }
+        chosen.ok_or_else(|| no_motion(self.ground.maker, self.ground.way))
+    }
+
+    fn worth(&self, sight: &Sight, seen: &Seen) -> Option<f64> {
+        let sigma = self.posed.iter().map(|posed| Some(apart(sight, seen, posed)?.sigma));
+        Some(worth(self.posed, &sigma.collect::<Option<Vec<f64>>>()?))
+    }
+
+    /// A candidate with clearances, noise of its own, and rivals fitted with all their values; so much smaller that its
+    /// drives are strong enough. None where that cannot be.
+    fn finished(&self, numbers: &[f64]) -> Result<Option<Chosen>, CalibrateError> {
+        let Prepared { described: rig, control, seed, limits, .. } = self.ground.prepared;
+        let Some((largest, _)) = self.ground.way.largest(self.ground.maker, numbers) else {
+            return Ok(None);
+        };
+        for share in GENTLER {
+            let motion = self.ground.maker.gentler(&largest, share);
+            let like = self.ground.way.like(&motion);
+            if self.ground.way.follows(&like, limits).is_err() {
+                continue;
+            }
+            // What breaks down is no motion for this machine.
+            let Ok(sight) = Sight::new(rig, &like, *control, *seed) else { continue };
+            let forces = forces(&sight);
+            let strong = forces.iter().zip(limits).all(|(force, limit)| {
+                force.zip(limit.force).is_none_or(|(force, most)| force <= most)
+            });
+            if !strong {
+                continue;
+            }
+            let linear = self.worth(&sight, &sight.own()).unwrap_or(0.0);
+            let answers: Vec<(Posed, Answer)> =
+                self.posed.iter().map(|posed| answered(&sight, posed)).collect();
+            let (posed, answers): (Vec<Posed>, Vec<Answer>) = answers.into_iter().unzip();
+            let sigma: Vec<f64> = answers.iter().map(|answer| answer.sigma).collect();
+            let worth = worth(&posed, &sigma);
+            return Ok(Some(Chosen { motion, like, sight, answers, posed, forces, worth, linear }));
+        }
+        Ok(None)
+    }
+}
+
+/// Largest measured force or torque of each drive, noise aside.
+fn forces(sight: &Sight) -> Vec<Option<f64>> {
+    let machine = sight.declared();
+    (0..machine.actuators.len())
+        .map(|drive| {
+            let column = sight.clean.get(effort_sensor(machine, drive)?)?;
+            Some(column.iter().map(|force| force.abs()).fold(0.0, f64::max))
+        })
+        .collect()
+}

@@ -1,0 +1,191 @@
+//! Drives, motions, sensors and sections of mechanism files that cannot be right.
+
+use crate::cli_common::Place;
+use crate::files::{FOUR_BAR, SLIDER_CRANK, line, with};
+use crate::refusals::{four_bar, moved, refuse, wrong};
+
+#[test]
+fn drives_that_ask_too_much() {
+    let second = "[[drive]]\njoint = \"D\"\nkind = \"prescribed\"\n\n[motion]";
+    let twice = "[[drive]]\njoint = \"O\"\nkind = \"prescribed\"\n\n[motion]";
+    let prescribed = |text: &str| {
+        with(text, "kind = \"servo\"\nstiffness = 400.0\ndamping = 1.5", "kind = \"prescribed\"")
+    };
+    refuse(vec![
+        wrong(
+            four_bar("[motion]", twice),
+            "joint = \"O\"\nkind = \"prescribed\"",
+            "drive.1.joint: \"O\" is driven twice",
+            &["keep one drive of each joint"],
+        ),
+        wrong(
+            prescribed(&four_bar("[motion]", second)),
+            "[[drive]]\njoint = \"D\"",
+            "drive.1: O, D are all told where to be, and without clearance the machine has 1 freedom",
+            &["drive as many joints as there are freedoms"],
+        ),
+        wrong(
+            four_bar("[motion]", second),
+            second,
+            "drive.",
+            &["drive as many joints as there are freedoms"],
+        ),
+    ]);
+}
+
+#[test]
+fn motions_that_ask_too_much() {
+    refuse(vec![
+        // The rocker swings between the dead points of the crank.
+        wrong(
+            moved("joint = \"D\"\nkind = \"quintic\"\nto = 2.6\ntime = 0.03\n")
+                .replace("[[drive]]\njoint = \"O\"", "[[drive]]\njoint = \"D\""),
+            "[motion]",
+            "motion: drives the machine beyond its reach at t = 0.0",
+            &["locks near D = 2.", "stretched out or folded", "keep the drive within the toggle"],
+        ),
+        // The piston cannot pass its dead point at 0.2 m.
+        wrong(
+            with(SLIDER_CRANK, "to = 0.15", "to = 0.21"),
+            "[motion]",
+            "motion: drives the machine beyond its reach at t = 0.0",
+            &["locks near slide = 0.2", "stretched out or folded"],
+        ),
+        wrong(
+            with(
+                SLIDER_CRANK,
+                "[simulation]",
+                "[[motion]]\njoint = \"slide\"\nkind = \"line\"\n[simulation]",
+            )
+            .replacen("[motion]", "[[motion]]", 1),
+            "joint = \"slide\"\nkind = \"line\"",
+            "motion.1.joint: \"slide\" is moved twice",
+            &["keep one motion of each joint"],
+        ),
+        wrong(
+            with(SLIDER_CRANK, "kind = \"prescribed\"", "kind = \"force\"\nvalue = 1.0"),
+            "joint = \"slide\"\nkind = \"quintic\"",
+            "motion.joint: \"slide\" is driven by a force: it follows no motion",
+            &["take the motion out"],
+        ),
+        wrong(
+            with(
+                SLIDER_CRANK,
+                "slider = \"piston.P\"\n",
+                "slider = \"piston.P\"\nrange = [0.16, 0.2]\n",
+            ),
+            "range = ",
+            "joint.3.range: slide would have to be 0.1500 m at t = 0.1",
+            &["outside its range"],
+        ),
+    ]);
+}
+
+#[test]
+fn a_singular_pose_ahead_is_refused() {
+    let place = Place::new();
+    let text = "[mechanism]\nkind = \"3rpr\"\n[motion]\nkind = \"quintic\"\nfrom = [0.0, 0.0, 0.4]\n\
+                to = [0.0, 0.0, -0.4]\n";
+    place.write("three.toml", text);
+    place.refused(
+        "run three.toml",
+        &["three.toml:6: motion.to: the platform reaches a singularity"],
+    );
+    // The same machine at a safe angle, expanded, and its motion turned through 0 by hand.
+    let expanded = place.good("expand three.toml --set motion.to=[0,0,0.5]");
+    let expanded = with(&expanded, "to = [0.0, 0.0, 0.5]", "to = [0.0, 0.0, -0.4]");
+    place.write("bad.toml", &expanded);
+    let at = format!(
+        "bad.toml:{}: motion: passes a singular pose at t = 0.5",
+        line(&expanded, "[motion]")
+    );
+    let help = "keep the motion away from there, or drive another joint";
+    place.refused("check bad.toml", &[&at, "although ", " drives hold", help]);
+    place.refused("run bad.toml --out x", &[&at]);
+    let still = with(&expanded, "from = [0.0, 0.0, 0.4]", "from = [0.0, 0.0, 0.0]");
+    let still = with(&still, "to = [0.0, 0.0, -0.4]", "to = [0.01, 0.0, 0.0]");
+    place.write("bad.toml", &still);
+    place.refused("run bad.toml --out x", &["motion: passes a singular pose at t = "]);
+}
+
+#[test]
+fn sensors_and_motions_that_mean_nothing() {
+    let sensor = |keys: &str| format!("{FOUR_BAR}[[sensor]]\n{keys}");
+    refuse(vec![
+        wrong(
+            sensor("column = \"q\"\nquantity = \"position\"\nof = \"Oo\"\n"),
+            "of = \"Oo\"",
+            "sensor.0.of: there is no joint \"Oo\"",
+            &["did you mean \"O\"?"],
+        ),
+        wrong(
+            sensor("column = \"q\"\nquantity = \"force\"\nof = \"A\"\n"),
+            "of = \"A\"",
+            "sensor.0.of: \"A\" has no drive to read",
+            &["write a [[drive]] of this joint"],
+        ),
+        wrong(
+            sensor("column = \"x\"\nquantity = \"x\"\nof = \"rocker.C\"\n"),
+            "of = \"rocker.C\"",
+            "sensor.0.of: \"rocker\" has no point \"C\"",
+            &["B"],
+        ),
+        wrong(
+            sensor(
+                "column = \"q\"\nquantity = \"position\"\nof = \"O\"\n[[sensor]]\ncolumn = \
+                 \"q\"\nquantity = \"command\"\nof = \"O\"\n",
+            ),
+            "column = \"q\"\nquantity = \"command\"",
+            "sensor.1.column: two sensors read the column \"q\"",
+            &["one sensor for each column"],
+        ),
+        wrong(
+            sensor("column = \"q\"\nquantity = \"positon\"\nof = \"O\"\n"),
+            "quantity = \"positon\"",
+            "sensor.0.quantity: unknown value \"positon\"",
+            &["did you mean `position`?"],
+        ),
+        wrong(
+            moved("kind = \"line\"\n"),
+            "[motion]",
+            "motion: does not say what it moves",
+            &["write joint = \"…\", body = \"…\" or point = \"body.point\""],
+        ),
+        wrong(
+            moved("body = \"rocker\"\nkind = \"line\"\n"),
+            "[motion]",
+            "motion: moves x, y and phi of \"rocker\", which takes 3 drives that follow it; 1 do",
+            &["[[drive]]"],
+        ),
+        wrong(
+            moved("kind = \"table\"\nfile = \"none.csv\"\n"),
+            "file = \"none.csv\"",
+            "motion.file: none.csv: No such file",
+            &["t,q_O"],
+        ),
+    ]);
+}
+
+#[test]
+fn sections_without_a_use_are_told() {
+    let place = Place::new();
+    for section in ["legs", "sensors"] {
+        let text = format!("{FOUR_BAR}[{section}]\n");
+        place.write("four-bar.toml", &text);
+        let done = place.freeplay("check four-bar.toml");
+        let at = line(&text, &format!("[{section}]"));
+        let warning = format!("warning: four-bar.toml:{at}: {section}: is not used");
+        assert!(done.code == 0 && done.err.starts_with(&warning), "{}", done.err);
+        assert!(done.err.contains("take it out"), "{}", done.err);
+    }
+}
+
+/// Of a described machine `[columns]` says where time stands, and `[[sensor]]`s the rest.
+#[test]
+fn columns_of_a_described_machine_are_its_sensors() {
+    let place = Place::new();
+    place.write("four-bar.toml", &format!("{FOUR_BAR}[columns]\nt = \"t_s\"\n"));
+    place.good("check four-bar.toml");
+    place.write("four-bar.toml", &format!("{FOUR_BAR}[columns]\nq1 = \"q\"\n"));
+    place.refused("check four-bar.toml", &["columns.q1: is not known", "write a [[sensor]]"]);
+}
