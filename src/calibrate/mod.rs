@@ -7,8 +7,8 @@
 //!   * [`recording`], [`plausibility`], `mistaken`: files in, and everything that speaks against them; nothing is repaired.
 //!   * [`rattle`]: two simulations a hair apart say whether the machine is chaotic, and how many replicas are averaged.
 //!   * [`commands`], [`replica`]: the commands of a recording drive a model, and its sensors look at it.
-//!   * [`lens`]: the residuals (servo, closure, dynamics) of measured data under a model; [`model`] and [`baseline`]
-//!     measure their bias on simulated recordings, [`spectrum`] their noise by frequency.
+//!   * [`lens`], `measured_dynamics`: the residuals (servo, closure, dynamics) of measured data under a model; [`model`] and [`baseline`]
+//!     measure their bias on simulated recordings, [`spectrum`] and `draws` their noise by frequency.
 //!   * [`start`]: the swing with which a recording begins.
 //!   * [`candidates`], [`screen`], [`fit`], [`least_squares`], [`instrument`]: every effect at every joint, fitted to one
 //!     run's residuals and judged on another's.
@@ -17,7 +17,7 @@
 //!     residuals are white.
 //!   * [`needed`], [`evidence`], [`unnamed`]: effects that the model can do without, rivals that explain as much, and a table
 //!     of forces for what no effect explains.
-//!   * [`errors`], [`report`], `charts`, `page`, [`result`], [`predict`]: the folder of results, and that of a prediction.
+//!   * [`errors`], `summary`, [`report`], `charts`, `page`, [`result`], [`predict`]: the folder of results, and that of a prediction.
 //!   * [`self_test`]: how often all of it is right.
 
 pub mod axes;

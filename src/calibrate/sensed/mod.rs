@@ -1,13 +1,21 @@
-//! The loop closed on any mechanism that a file describes, with the sensors that it has.
+//! The loop closed on any mechanism that a file describes, with the sensors that it has. Data pass in this order:
 //!
-//! [`recording`] reads what was measured; [`start`] puts the machine where a recording begins;
-//! [`simulate`] shows what its sensors would have recorded; [`basis`] says how the machine moved, from what [`estimate`] prepares;
-//! [`residual`] what that motion says against the model: laws of drives, closure, dynamics; [`baseline`] what
-//! a right model leaves of them; [`fit`] and [`settle`] give a model its values, [`left`] says what it leaves;
-//! [`search`] finds which effects are missing, by what `screen` finds promising, [`hypotheses`] simulates and `unseen`
-//! tries where residuals are blind; `calm` what shows in a
-//! rattle's size alone, `simpler` which of their values are needed, `rivals` what would explain as much in their place; [`outcome`] is the
-//! whole way, [`report`] what is written of it. [`self_test`] says how often it is right.
+//! * [`recording`], `heads`, `samples`, `prepare`: files in, and everything that speaks against them (`followed`: machines
+//!   that follow commands). [`start`], [`released`]: where a recording begins, driven or let go.
+//! * [`simulate`], `simulated`, `motions`, `shown`: what sensors would have recorded, and along which commands.
+//! * [`noise`]: noise other than declared. [`estimate`]: samples, smoothed as needed. [`basis`]: what says how the machine moved.
+//! * [`residual`]: what that motion says against the model (laws of drives, closure, dynamics, acceleration); [`baseline`]:
+//!   what a right model leaves of them, bias and noise.
+//! * [`candidates`], `periodic`: where to start looking. [`fit`], [`settle`]: a model's values, between residuals and
+//!   simulations. [`left`]: what it leaves.
+//! * [`search`]: one effect after another, several hypotheses at once; `screen`, `linear`: which promise, and what chance makes of
+//!   them; [`hypotheses`]: those simulated; `unseen`, `other_laws`, `calm`: what residuals hardly see.
+//! * `simpler`: which values are needed; `certainty`: how well they are known; `rivals`: what would explain as much, and
+//!   what still stands out. `whole`, [`trajectory`]: values from whole simulations and predictions.
+//! * [`outcome`] is the whole way; [`errors`], [`limits`], [`report`], `charts`, `page` what is written of it; [`predict`] holds a
+//!   model against one recording. [`events`] finds what does not last, [`unnamed`] describes what has no name.
+//! * [`windows`]: machines that nothing holds; [`held`]: those that sampled controllers hold. [`self_test`] says how often it is
+//!   right. Every number that was chosen stands in [`thresholds`] with its reason.
 
 pub mod baseline;
 pub mod basis;
