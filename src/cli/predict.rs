@@ -168,7 +168,12 @@ fn text(
     let effects = if effects.is_empty() { "none".to_owned() } else { effects.join(", ") };
     let name = &model.scenario_name;
     let head = paragraph("", "", &format!("{name} along {run}; effects: {effects}"));
-    let mut text = format!("{head}\n{}", errors_table(errors));
+    let found = match errors {
+        [] => "Nothing was measured to compare with: what the machine would do is written.\n"
+            .to_owned(),
+        _ => errors_table(errors),
+    };
+    let mut text = format!("{head}\n{found}");
     let page = folder.join("index.html");
     // Writing to a string cannot fail.
     let _ = writeln!(text, "\nWritten to {}; open {}", folder.display(), page.display());

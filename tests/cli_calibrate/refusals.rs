@@ -80,6 +80,14 @@ const BROKEN: &[Break] = &[
         ],
     ),
     (
+        "a command exchanged with its length",
+        |t| t.exchange("q1_cmd", "q1"),
+        &[
+            "column `F1` has the opposite sign",
+            "a command and a length that are exchanged look alike",
+        ],
+    ),
+    (
         "forces exchanged",
         |t| t.exchange("F1", "F3"),
         &["columns `F1` and `F3` each hold what the other's drive gives"],
@@ -118,6 +126,8 @@ fn a_broken_validation_run_is_refused() {
         rig("run-a.csv").display()
     );
     place.refused(&format!("{line} --validate bad.csv"), &["bad.csv: column `F1`", "in kN"]);
+    let in_mm = &["times what the declared servo makes", "is drive.stiffness = 5e2 in N/m"];
+    place.refused(&format!("{line} --set drive.stiffness=500"), in_mm);
     let copied = &["copy.csv: holds the same samples as", "run-a.csv", "another run"];
     place.refused(&format!("{line} --validate copy.csv"), copied);
     place.refused(&format!("{line} --validate none.csv"), &["none.csv: cannot be read"]);

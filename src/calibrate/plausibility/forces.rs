@@ -31,7 +31,8 @@ pub fn mixed_up(path: &str, log: &Log, drive: &Drive) -> Vec<LogError> {
         let (message, help) = match mistake {
             Mistake::Sign(i) => (
                 format!("column `{}` has the opposite sign of what its drive's law gives", name(i)),
-                "a force is positive where it lengthens the leg",
+                "a force is positive where it lengthens the leg; a command and a length that are \
+                 exchanged look alike",
             ),
             Mistake::Exchanged(i, j) => (
                 format!(
@@ -80,7 +81,35 @@ pub fn forces(path: &str, log: &Log, declared: &Log, drive: &Drive) -> Vec<LogEr
             });
         }
     }
+    if found.is_empty() {
+        found.extend(stiffness(path, log, drive, &size));
+    }
     found
+}
+
+/// A servo's stiffness in another unit: forces are what the machine takes, and each of them far from what the declared
+/// servo makes of its command and length.
+fn stiffness(
+    path: &str,
+    log: &Log,
+    drive: &Drive,
+    size: &dyn Fn(&[f64]) -> f64,
+) -> Option<LogError> {
+    let times = |leg: usize| {
+        let (force, law) = (log.get(Channel::Force(leg))?, servo(log, drive, leg)?);
+        Some(size(force) / size(&law))
+    };
+    let times: Vec<f64> = (0..3).filter_map(times).collect();
+    let least = times.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = times.iter().copied().fold(0.0, f64::max);
+    let beyond = least > BEYOND_LAW || most < 1.0 / BEYOND_LAW;
+    (beyond && !times.is_empty()).then(|| LogError {
+        place: path.to_owned(),
+        message: format!(
+            "forces are {least:.2e} to {most:.2e} times what the declared servo makes of commands and lengths"
+        ),
+        help: format!("is drive.stiffness = {:e} in N/m, and drive.damping in N s/m?", drive.stiffness),
+    })
 }
 
 /// The force of a servo in N by its own law, `k_p (q_cmd − q)`; its damping is small where motion is slow.

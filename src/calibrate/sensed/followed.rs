@@ -112,7 +112,9 @@ fn mistaken(
         let (message, help) = match mistake {
             Mistake::Sign(i) => (
                 format!("column `{}` has the opposite sign of what {against} says", head(i)),
-                "turn its sign: it counts in the direction of its joint's coordinate".to_owned(),
+                "turn its sign: it counts in the direction of its joint's coordinate; a command and an encoder that \
+                 are exchanged look alike"
+                    .to_owned(),
             ),
             Mistake::Unit(i, factor) => {
                 let (_, scale) = scaled_by(rig, machine, sensor(i), factor);
