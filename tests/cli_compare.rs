@@ -84,6 +84,23 @@ fn other_motions_and_their_text() {
     place.refused("compare --steps 1e-5 --out c", &["`c` already holds a result", "--force"]);
 }
 
+/// Zero against zero is no agreement: verdicts said that native contacts may be used.
+#[test]
+fn contacts_that_never_were_are_not_approved() {
+    let place = Place::new();
+    let line =
+        "compare --set mechanism.kind=four-bar --duration 0.02 --starts 2 --steps 2e-5,1e-5,5e-6";
+    let json: Value = serde_json::from_str(&place.good(&format!("{line} --json --out c"))).unwrap();
+    for verdict in json["verdicts"].as_array().unwrap() {
+        assert_eq!(verdict["use"], "unclear", "{verdict}");
+    }
+    assert!(
+        json["answer"].to_string().contains("No journal touched its ring"),
+        "{}",
+        json["answer"]
+    );
+}
+
 #[test]
 fn bad_steps_are_refused() {
     let place = Place::new();

@@ -108,6 +108,7 @@ fn thresholds_and_unlike_machines_are_told() {
     let done = place.freeplay("diff a b --out d");
     assert!(done.code == 0 && done.out.contains("by more than 3 × their floors"), "{}", done.out);
     assert!(done.err.contains("warning: The machines are unlike"), "{}", done.err);
+    place.refused("diff a b --starts 2", &["--starts: two results"]);
     let text = place.good("diff a/scenario.toml a/scenario.toml --starts 2 --out e");
     assert!(text.replace('\n', " ").contains("by more than 1.5 × their floors"), "{text}");
 }

@@ -50,7 +50,7 @@ pub(super) struct Arguments {
     without: Vec<String>,
     /// Instead of all this: hide known effects of random size in synthetic recordings of several machines,
     /// calibrate each, and print how often the answer is right, and every wrong one (a minute a trial)
-    #[arg(long, conflicts_with_all = ["rig", "data", "validate", "without"])]
+    #[arg(long, conflicts_with_all = ["rig", "data", "validate", "without", "sets", "engine", "out", "force"])]
     self_test: bool,
     /// Hide this kind of effect only, or `nothing`, `noise`, or `a+b`; may be given many times
     #[arg(long, value_name = "KIND", requires = "self_test", conflicts_with = "rig")]

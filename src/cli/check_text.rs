@@ -52,7 +52,7 @@ impl Text {
     }
 
     fn entry(&mut self, label: &str, value: &str) {
-        self.0 += &paragraph(&format!("  {label:<22}"), &" ".repeat(24), value);
+        self.0 += &paragraph(&format!("  {label:<21} "), &" ".repeat(24), value);
     }
 }
 
@@ -133,7 +133,7 @@ fn motion(text: &mut Text, m: &CheckedMachine) {
 }
 
 fn joints(text: &mut Text, m: &CheckedMachine) {
-    text.line("\nJoints");
+    text.line(if m.joints.is_empty() { "\nSteps" } else { "\nJoints" });
     for joint in &m.joints {
         let mut value = match joint.clearance_m {
             Some(clearance) => format!("clearance {}", length(clearance)),
@@ -147,7 +147,7 @@ fn joints(text: &mut Text, m: &CheckedMachine) {
         }
         text.entry(&joint.joint, &value);
     }
-    if m.law.kind().is_some() {
+    if m.law.kind().is_some() && !m.joints.is_empty() {
         text.line(&format!("  (hits taken at {} m/s)", number(m.impact_speed_m_s)));
     }
     let step = match (m.step_s, m.tolerance_m_s) {

@@ -50,6 +50,7 @@ fn rates_of_a_table_are_told_without_trying_anything() {
 #[test]
 fn a_self_test_refuses_what_it_cannot_do() {
     let place = Place::new();
+    place.refused("calibrate --self-test --set joints.clearance=1e-4", &["'--set <PATH=VALUE>'"]);
     place.refused("calibrate --self-test --hidden payloads", &["--hidden: payloads", "expected"]);
     place.refused(
         "calibrate --self-test --machine five-bars",

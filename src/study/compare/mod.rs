@@ -31,6 +31,7 @@ use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
 use plan::{Plan, plan};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use statrs::statistics::{Data, OrderStatistics};
 use std::fs;
 use std::path::PathBuf;
 use std::time::Instant as Clock;
@@ -193,10 +194,9 @@ fn chaos_result(looks: &[Chaos]) -> Option<ChaosResult> {
         return None;
     }
     let rate = Mean::of(lyapunov.iter().copied());
-    let mut horizons: Vec<f64> =
+    let horizons: Vec<f64> =
         looks.iter().map(|look| look.horizon().unwrap_or(f64::INFINITY)).collect();
-    horizons.sort_by(f64::total_cmp);
-    let median = horizons[horizons.len() / 2];
+    let median = Data::new(horizons).median();
     Some(ChaosResult {
         lyapunov_exponent_1_s: rate,
         e_folding_s: (rate.mean > 3.0 * rate.sem).then_some(1.0 / rate.mean),

@@ -1,7 +1,7 @@
 //! What native contacts may be used for, by stated criteria.
 
-use super::quantities::{QUANTITIES, Quantity};
-use super::result::Comparison;
+use super::quantities::{QUANTITIES, Quantity, index};
+use super::result::{Comparison, RowResult};
 use super::statistics::{Behaviour, Mean, Trend};
 use crate::report::{length, number};
 use crate::scenario::Law;
@@ -61,6 +61,10 @@ pub fn verdicts(comparison: &Comparison) -> Vec<Verdict> {
     let judge = |(i, quantity): (usize, &Quantity)| {
         comparison.rows.iter().find(|row| row.quantities[i].mean.is_finite())?;
         let law = comparison.best(Law::HertzStep)?.quantities[i];
+        if !touches(comparison) {
+            let reason = "no journal touched its ring: nothing can be told".to_owned();
+            return Some(Verdict { quantity: quantity.key, usable: Use::Unclear, reason });
+        }
         let native: Vec<(f64, Mean)> = comparison
             .rows_of(Law::Native)
             .filter_map(|row| Some((row.step_s?, row.quantities[i])))
@@ -70,6 +74,14 @@ pub fn verdicts(comparison: &Comparison) -> Vec<Verdict> {
         Some(Verdict { quantity: quantity.key, usable, reason })
     };
     QUANTITIES.iter().enumerate().filter_map(judge).collect()
+}
+
+/// Whether journals touch their rings at all, under the law or in native contacts; no figure of it is none that says no.
+fn touches(comparison: &Comparison) -> bool {
+    let share =
+        |row: &RowResult| index("contact_fraction").map_or(f64::NAN, |i| row.quantities[i].mean);
+    let law = comparison.best(Law::HertzStep).into_iter();
+    law.chain(comparison.rows_of(Law::Native)).any(|row| share(row) != 0.0)
 }
 
 fn verdict(quantity: &Quantity, law: Mean, native: &[(f64, Mean)], trend: &Trend) -> (Use, String) {
@@ -126,6 +138,11 @@ pub fn in_words(quantity: &Quantity, value: f64) -> String {
 
 /// The answer: one sentence for each kind of use, one about the cost, one about what can be predicted.
 pub fn answer(comparison: &Comparison) -> Vec<String> {
+    if !touches(comparison) {
+        return vec![
+            "No journal touched its ring: nothing can be told of native contacts (a longer --duration may show hits).".to_owned(),
+        ];
+    }
     let named = |usable: Use| -> Vec<&str> {
         let verdicts = comparison.verdicts.iter().filter(|v| v.usable == usable);
         verdicts

@@ -8,6 +8,7 @@ use super::statistics::{self, Spread, groups, has_starts, shared};
 use crate::report::{self, Fact, Part, Picture, Table, number};
 use crate::study::compare::QUANTITIES;
 use crate::study::run::SCENARIO_FILE;
+use statrs::statistics::{Data, OrderStatistics};
 
 /// The page as HTML.
 pub(super) fn page(record: &Record, rows: &Rows, pictures: &[Picture]) -> String {
@@ -49,7 +50,8 @@ fn lead(record: &Record, rows: &Rows) -> String {
             + " Means over the starts, with their 95 % intervals, stand in statistics.csv.";
     }
     lead + " Where joints rattle, the peaks and counts of a run are one draw: what differs from run to run may be \
-            chaos. --vary motion.phase=0..5.5:12 gives each value twelve starts, and means with intervals."
+            chaos. Varying where the motion starts (--vary motion.phase=0..5.5:12 of a circle, motion.start of a crank) \
+            gives each value twelve starts, and means with intervals."
 }
 
 /// Groups of a page's table: more are in the file.
@@ -151,8 +153,8 @@ fn facts(record: &Record, rows: &Rows) -> Vec<Fact> {
             }
             Some(Fact {
                 label: in_words(name),
-                value: number(values[values.len() / 2]),
                 note: format!("median; from {} to {}", number(*least), number(*most)),
+                value: number(Data::new(values).median()),
             })
         })
         .collect()

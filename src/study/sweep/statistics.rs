@@ -11,9 +11,10 @@ use std::collections::BTreeMap;
 /// The table of statistics.
 pub(super) const FILE: &str = "statistics.csv";
 
-/// Whether a varied number chooses a start alone: a phase of the motion. The seed does not: runs draw no random numbers.
+/// Whether a varied number chooses a start alone: a phase of the motion, or the angle from which a crank turns. The seed does
+/// not: runs draw no random numbers.
 pub(super) fn is_start(path: &str) -> bool {
-    path.ends_with(".phase")
+    path.ends_with(".phase") || path == "motion.start"
 }
 
 /// Whether there is a number of each kind among the varied ones, so that means over starts say something.
