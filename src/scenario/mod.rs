@@ -74,7 +74,7 @@ impl Source {
         let text = bounded::text(path, bounded::SCENARIO).map_err(|error| Problem {
             path: String::new(),
             message: format!("cannot be read: {error}"),
-            help: "a scenario is a text file in TOML".to_owned(),
+            help: help_of_unreadable(path),
             location: Location::File { name: name.clone(), line: None, column: None },
         })?;
         Ok(Source { text, name, folder: path.parent().unwrap_or(Path::new("")).to_owned() })
@@ -109,6 +109,15 @@ impl Source {
         scenario.folder.clone_from(&self.folder);
         Ok(scenario)
     }
+}
+
+/// What would be right in place of a file that cannot be read: of a folder with a result, the scenario in it.
+fn help_of_unreadable(path: &Path) -> String {
+    let inside = path.join("scenario.toml");
+    if inside.is_file() {
+        return format!("a result's scenario is the file `{}`", inside.display());
+    }
+    "a scenario is a text file in TOML".to_owned()
 }
 
 /// A validated scenario: what the file and the overrides say, the rest filled with defaults.
