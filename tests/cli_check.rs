@@ -73,7 +73,38 @@ fn doubtful_scenarios_are_warned_about() {
             "--set effect.0.kind=payload",
             "effect.0: payload has no values, and does nothing without",
         ),
-        ("--set mechanism.kind=pendulum --set mechanism.angle=30", "30 degrees are 0.5236"),
+        ("--set effect.0.kind=gravity", "effect.0: gravity has no values, and does nothing"),
+        (
+            "--set effect.0.kind=base-vibration --set effect.0.frequency_Hz=12",
+            "base-vibration has no ax_m_s2 and no ay_m_s2, and does nothing without",
+        ),
+        (
+            "--set effect.0.kind=payload --set effect.0.mass_kg=0",
+            "effect.0: payload does nothing: with mass_kg = 0 all is as declared",
+        ),
+        (
+            "--set effect.0.kind=joint-wear --set effect.0.joint=A1 --set effect.0.clearance_m=5e-4",
+            "joint-wear at A1 does nothing: with clearance_m = 0.0005 all is as declared",
+        ),
+        ("--set mechanism.platform_inertia=1", "platform_inertia: of 1 kg m² makes the radius"),
+        ("--set motion.phase=90", "--set motion.phase: has an angle of 90 rad"),
+        ("--set contact.stiffness=1", "contact.stiffness: is 1 N/m^n, softer than any rubber"),
+        ("--set sensors.pose_std=4", "sensors.pose_std: is 4 m, and more than 0.066 m tells"),
+        ("--set sensors.angle_std=0.03", "sensors.angle_std: is 0.03 rad, and more than 0.020 rad"),
+        (
+            "--set sensors.force_std=150",
+            "sensors.force_std: is 150 N, and more than 76.707 N tells",
+        ),
+        (
+            "--set mechanism.kind=pendulum --set mechanism.inertia=109",
+            "mechanism.inertia: of 109 kg m² makes the radius of gyration of \"arm\"",
+        ),
+        ("--set mechanism.kind=pendulum --set mechanism.length=147", "147 mm are 0.147"),
+        (
+            "--set mechanism.kind=pendulum --set mechanism.angle=30",
+            "--set mechanism.angle: has an angle of 30 rad, more than a whole turn; angles are in rad: 30 \
+             degrees are 0.5236",
+        ),
         (
             "--set mechanism.kind=pendulum --set motion.radius=0.1",
             "--set motion.radius: is not used: it means nothing to this machine",
@@ -84,6 +115,10 @@ fn doubtful_scenarios_are_warned_about() {
         assert!(done.err.starts_with("warning: ") && done.err.contains(fragment), "{}", done.err);
         assert_eq!(done.err.lines().count(), 1, "told once: {}", done.err);
     }
+    // Runs are not told of a zero that is written: who sweeps over it means it.
+    let run =
+        "run --duration 0.01 --quiet --out r --set effect.0.kind=payload --set effect.0.mass_kg=0";
+    assert_eq!(place.freeplay(run).err, "");
     let plain = place.freeplay("check");
     assert_eq!((plain.code, plain.err.as_str()), (0, ""));
 

@@ -5,12 +5,16 @@
 //! it before anything is simulated; [`TimeSeries`] and [`Recorder`] take the instants of a run, one
 //! by one and in constant memory.
 
+mod bodies;
 mod checks;
 mod conformal;
+mod idle;
+mod instruments;
 mod measured;
 mod oil;
 mod plausible;
 mod provenance;
+mod restraints;
 mod summary;
 mod three_rpr;
 mod timeseries;
@@ -21,6 +25,7 @@ pub use crate::model::{
     radial_clearance,
 };
 pub use checks::{Finding, Severity, doubts, driven_path, findings, findings_along};
+pub use idle::neutral;
 pub use measured::{measured, measured_until};
 pub use provenance::Provenance;
 pub use summary::{JointSummary, Recorder, Summary};
