@@ -70,6 +70,17 @@ fn doubtful_scenarios_are_warned_about() {
         ("--set mechanism.platform_mass=200", "mechanism.platform_mass: makes \"platform\""),
         ("--set motion.phi=44.9", "44.9 degrees are 0.7837"),
         (
+            "--set drive.stiffness=1e5",
+            "--set drive.stiffness: changes nothing: no drive is a servo; set drive.mode=servo, or leave it out",
+        ),
+        ("--set native.frequency=30", "--set native.frequency: changes nothing: no contact is the"),
+        ("--set contact.friction_velocity=1e-2", "no joint with a contact law has friction"),
+        ("--set contact.law=ideal --set joints.clearance=1e-4", "all joints are ideal"),
+        (
+            "--set contact.stiffness=1e9 --set contact.youngs_modulus=1e11",
+            "contact.youngs_modulus: changes nothing: contact.stiffness is given",
+        ),
+        (
             "--set effect.0.kind=payload",
             "effect.0: payload has no values, and does nothing without",
         ),

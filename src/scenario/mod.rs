@@ -290,6 +290,12 @@ impl Scenario {
         Scenario { mechanism, motion, target, ..self.clone() }
     }
 
+    /// The path that an override gave a value, if one did: `key`, or one in the section of that name.
+    pub(crate) fn set_by_override<'a>(&'a self, key: &'a str) -> Option<&'a str> {
+        let itself = matches!(self.origins.locate(key), Location::Set { path } if path == key);
+        if itself { Some(key) } else { self.origins.set_in(key) }
+    }
+
     /// What is there and has no meaning for this machine; what the built-in default says beside it is nobody's
     /// mistake.
     pub fn unused(&self) -> Vec<Problem> {

@@ -18,6 +18,7 @@ mod restraints;
 mod summary;
 mod three_rpr;
 mod timeseries;
+mod unacting;
 mod watched;
 
 pub use crate::model::{
@@ -30,4 +31,5 @@ pub use measured::{measured, measured_until};
 pub use provenance::Provenance;
 pub use summary::{JointSummary, Recorder, Summary};
 pub use timeseries::{Columns, TimeSeries};
+pub use unacting::unacting;
 pub use watched::{Balance, OwnError, Watched};

@@ -8,7 +8,7 @@ use crate::model::DrivenPath;
 use crate::scenario::{self, Law, Problem, Scenario};
 use crate::simulate::{
     Finding, Machine, OwnError, Severity, driven_path, findings_along, leg_use, neutral,
-    radial_clearance,
+    radial_clearance, unacting,
 };
 use serde::Serialize;
 
@@ -248,6 +248,7 @@ pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
     let path = driven_path(scenario, machine);
     let mut findings = findings_along(scenario, machine, path.as_ref());
     findings.extend(neutral(scenario));
+    findings.extend(unacting(scenario, machine));
     let ok = findings.iter().all(|finding| finding.severity != Severity::Error);
     let kind = match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(kind) => Some(kind),
