@@ -1,6 +1,7 @@
 //! Effects that change nothing.
 
 use super::checks::Finding;
+use super::restraints;
 use crate::effects::{Parameter, Setting};
 use crate::mechanism::Mechanism;
 use crate::model::assemble;
@@ -29,48 +30,54 @@ const SHAPES: [&str; 14] = [
 pub(super) fn findings(scenario: &Scenario, declared: &Mechanism) -> Vec<Finding> {
     let effects = scenario.effects.iter().enumerate();
     let idle =
-        effects.filter(|(_, setting)| !has_size(setting) && changes_nothing(setting, declared));
-    let found = idle.map(|(i, setting)| {
-        let without = if setting.values().next().is_none() {
-            "values".to_owned()
-        } else {
-            sizes(setting).collect::<Vec<_>>().join(" and no ")
-        };
-        let message = format!("{setting} has no {without}, and does nothing without");
-        let names: Vec<&str> = setting.kind.parameters.iter().map(|p| p.name).collect();
-        let help = format!("give it {}, or leave it out", names.join(", "));
-        Finding::warning(scenario.problem(&format!("effect.{i}"), message, &help))
-    });
-    found.collect()
+        effects.filter(|(_, setting)| forgotten(setting) && changes_nothing(setting, declared));
+    idle.map(|(i, setting)| idle_effect(scenario, i, setting)).collect()
 }
 
-/// Effects whose values, as written, leave the machine as it is declared: told to who asks what a scenario says,
-/// not in runs, whose sweeps begin at such values.
+/// Effects and springs whose values, as written, leave the machine as it is declared: told to who asks what a
+/// scenario says, not in runs, whose sweeps begin at such values.
 pub fn neutral(scenario: &Scenario) -> Vec<Finding> {
-    let sized = scenario.effects.iter().enumerate().filter(|(_, setting)| has_size(setting));
-    let sized: Vec<(usize, &Setting)> = sized.collect();
-    if sized.is_empty() {
-        return Vec::new();
+    let mut found = restraints::idle(scenario);
+    let effects = scenario.effects.iter().enumerate();
+    let meant: Vec<(usize, &Setting)> =
+        effects.filter(|(_, setting)| !forgotten(setting)).collect();
+    if meant.is_empty() {
+        return found;
     }
     let mut plain = scenario.clone();
     plain.effects.clear();
-    let Ok(declared) = assemble(&plain) else { return Vec::new() };
-    let idle = sized.iter().filter(|(_, setting)| changes_nothing(setting, &declared.mechanism));
-    let found = idle.map(|(i, setting)| {
-        let values: Vec<String> = setting
-            .values()
-            .filter(|(name, _)| sizes(setting).any(|size| size == *name))
-            .map(|(name, value)| format!("{name} = {value}"))
-            .collect();
-        let message =
-            format!("{setting} does nothing: with {} all is as declared", values.join(", "));
-        Finding::warning(scenario.problem(
-            &format!("effect.{i}"),
-            message,
-            "give it another value, or leave it out",
-        ))
-    });
-    found.collect()
+    if let Ok(declared) = assemble(&plain) {
+        let idle =
+            meant.iter().filter(|(_, setting)| changes_nothing(setting, &declared.mechanism));
+        found.extend(idle.map(|(i, setting)| idle_effect(scenario, *i, setting)));
+    }
+    found
+}
+
+/// What is said of an effect that changes nothing.
+fn idle_effect(scenario: &Scenario, place: usize, setting: &Setting) -> Finding {
+    let message = if setting.values().next().is_none() {
+        format!("{setting} has no values, and does nothing without")
+    } else if !has_size(setting) {
+        let without = sizes(setting).collect::<Vec<_>>().join(" and no ");
+        format!("{setting} has no {without}, and does nothing without")
+    } else {
+        let given = setting.values().filter(|(name, _)| sizes(setting).any(|size| size == *name));
+        let values: Vec<String> = given.map(|(name, value)| format!("{name} = {value}")).collect();
+        format!("{setting} does nothing: with {} all is as declared", values.join(", "))
+    };
+    let help = if has_size(setting) {
+        "give it another value, or leave it out".to_owned()
+    } else {
+        let names: Vec<&str> = setting.kind.parameters.iter().map(|p| p.name).collect();
+        format!("give it {}, or leave it out", names.join(", "))
+    };
+    Finding::warning(scenario.problem(&format!("effect.{place}"), message, &help))
+}
+
+/// Whether an effect is given no size and has defaults for all; a kind without them takes what is declared.
+fn forgotten(setting: &Setting) -> bool {
+    !has_size(setting) && sizes(setting).all(|name| setting.value(name).is_some())
 }
 
 /// The parameters that say how large an effect is.

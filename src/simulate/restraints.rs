@@ -22,11 +22,6 @@ pub(super) fn findings(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Findin
         found.push(Finding::warning(scenario.problem(&key, message, help)));
     };
     for (i, spring) in described.springs.iter().enumerate() {
-        if spring.stiffness == 0.0 && spring.damping == 0.0 {
-            let message = "is 0, and damping is too: this spring does nothing".to_owned();
-            let help = "give it a stiffness in N/m, of a revolute joint in N m/rad".to_owned();
-            doubt(format!("spring.{i}.stiffness"), message, help);
-        }
         let reach = mechanism.size().max(distance(mechanism, spring));
         if let Some(length) = spring.free_length.filter(|l| l.abs() > LONGEST_SPRING * reach) {
             let message = format!("is {length} m, in a machine of {reach:.3} m");
@@ -58,6 +53,19 @@ pub(super) fn findings(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Findin
         }
     }
     found
+}
+
+/// Springs that do nothing, as they are written.
+pub(super) fn idle(scenario: &Scenario) -> Vec<Finding> {
+    let springs = scenario.mechanism.described().map_or(&[][..], |described| &described.springs);
+    let idle = springs.iter().enumerate();
+    let idle = idle.filter(|(_, spring)| spring.stiffness == 0.0 && spring.damping == 0.0);
+    let found = idle.map(|(i, _)| {
+        let message = "is 0, and damping is too: this spring does nothing";
+        let help = "give it a stiffness in N/m, of a revolute joint in N m/rad";
+        Finding::warning(scenario.problem(&format!("spring.{i}.stiffness"), message, help))
+    });
+    found.collect()
 }
 
 /// Distance in m at the start of the two points of a spring, 0 of one in a joint.

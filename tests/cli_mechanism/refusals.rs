@@ -506,7 +506,10 @@ fn what_is_hardly_meant_is_told_with_its_key() {
     let shape =
         "shape = { kind = \"bar\", from = \"O\", to = \"A\", diameter = 0.6, density = 7850.0 }\n";
     for (text, says) in [
-        (added("[[spring]]\njoint = \"D\""), "spring.0.stiffness: is 0, and damping is too"),
+        (
+            added("[[spring]]\njoint = \"D\"\nstiffness = 0.0"),
+            "spring.0.stiffness: is 0, and damping is too",
+        ),
         (
             added(&format!("{spring}stiffness = 10.0\nfree_length = 100.0")),
             "spring.0.free_length: is 100 m",
