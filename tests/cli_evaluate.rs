@@ -109,9 +109,11 @@ fn parameters_that_are_missing_or_given_twice_are_refused() {
     let place = Place::new();
     place.write("empty", "# nothing\n");
     place.write("one", "joints.clearance = 1e-4\n");
+    place.write("strange", "foo = 1\n");
     for (line, reason) in [
         ("--parameters empty", "empty: holds no parameter; expected lines"),
         ("--parameters one --set joints.clearance=2e-4", "joints.clearance: is given twice"),
+        ("--parameters strange", "--parameters strange: foo: unknown key `foo`"),
     ] {
         let done = place.freeplay(&format!("evaluate --figures impacts {SHORT} {line}"));
         assert_eq!((done.code, done.out.as_str()), (2, "FAIL\n"), "{line}\n{}", done.err);

@@ -71,9 +71,15 @@ fn what_cannot_be_recorded_is_refused() {
     let place = Place::new();
     place.refused("record", &["sensor: is missing", "--set sensors.pose_std=4e-6"]);
     // Limits of recordings are told by the options that break them.
-    let says = ["--rate: is 100 Hz", "at least 200", "--duration: is 0.5 s", "at least 1 s"];
+    let says = ["--rate: is 100 Hz", "at least 300", "--duration: is 0.5 s", "at least 1 s"];
     place.refused(&format!("record {RIG} --rate 100 --duration 0.5"), &says);
+    place.refused(&format!("record {PLANAR} --rate 100"), &["--rate: is 100 Hz", "at least 200"]);
     place.refused(&format!("record {RIG} --duration 0"), &["--duration: is 0"]);
+    let says = ["--set simulation.duration: is not how long recordings are", "--duration"];
+    place.refused(&format!("record {RIG} --set simulation.duration=2"), &says);
+    place.write("four-bar.toml", &place.good("init four-bar"));
+    place
+        .refused("record four-bar.toml", &["sensor: is missing", "`freeplay init four-bar --rig`"]);
     // More than anybody reads again, and than memory holds.
     for rows in ["--rate 1e12", "--rate 1e300", "--duration 86400", "--duration 100 --rate 1e5"] {
         let says = ["12 sensors", "numbers; expected at most 1e7", "--rate or --duration"];

@@ -117,6 +117,7 @@ fn what_is_missing_or_impossible_is_told() {
     let place = Place::new();
     place.write("pin.toml", &pin("ground.O", "disc.O"));
     place.refused("wear pin.toml --cycles 0", &["--cycles: is 0; expected above 0"]);
+    place.refused("wear pin.toml --cycles -5", &["--cycles: is -5; expected above 0"]);
     place.refused("wear pin.toml --cycles 1 --tolerance 2", &["--tolerance: is 2"]);
     place.refused(
         "wear pin.toml --cycles 1 --period 0.4",

@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     /// What its maker declares: a scenario file (TOML) with [sensors]
     #[arg(long, value_name = "RIG.toml", required_unless_present = "self_test")]
     rig: Option<PathBuf>,
-    /// Recorded run to calibrate on (CSV; t in s, q1_cmd… q1… in m, F1… in N, x y in m, phi in rad)
+    /// Recorded run to calibrate on (CSV; t in s, q1_cmd… q1… in m, F1… in N, x y in m, phi in rad);
     /// of a machine that nothing holds it may be given many times, all are fitted together
     #[arg(long, value_name = "RUN.csv", required_unless_present = "self_test")]
     data: Vec<PathBuf>,

@@ -3,10 +3,11 @@
 use super::failure::{Failure, refuse_errors, warn_of_seed};
 use super::options::ScenarioOptions;
 use super::output;
+use crate::scenario::{Location, Problem, Problems};
 use crate::simulate::{assemble, findings};
 use crate::study::evaluate::{self, EvaluateError, Parameters};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 /// Simulate once for a program that drives many runs: parameters in, one line of figures out
@@ -72,13 +73,29 @@ fn figures(arguments: &Arguments) -> Result<String, Failure> {
     if let Some(file) = &arguments.parameters {
         sets.extend(Parameters::read(file)?.sets());
     }
-    let scenario = arguments.scenario.source()?.scenario(&sets)?;
+    let own = arguments.scenario.sets().len();
+    let read = arguments.scenario.source()?.scenario(&sets);
+    let scenario = read.map_err(|problems| match &arguments.parameters {
+        Some(file) => named(problems, &sets[own..], file),
+        None => problems.into(),
+    })?;
     warn_of_seed(&scenario);
     let mut machine = assemble(&scenario)?;
     refuse_errors(findings(&scenario, &mut machine))?;
     // A signal ends the process: there is nothing to be kept.
     let never = AtomicBool::new(false);
     Ok(evaluate::figures(&scenario, &mut machine, &arguments.figures, &never)?.join(" "))
+}
+
+/// Problems with a scenario; those of keys that a file of parameters sets name that file.
+fn named(problems: Problems, sets: &[String], file: &Path) -> Failure {
+    let text = |problem: &Problem| match &problem.location {
+        Location::Set { path } if sets.iter().any(|set| set.starts_with(&format!("{path}="))) => {
+            problem.to_string().replacen("--set", &format!("--parameters {}:", file.display()), 1)
+        }
+        _ => problem.to_string(),
+    };
+    Failure::Input(problems.0.iter().map(text).collect())
 }
 
 impl From<EvaluateError> for Failure {

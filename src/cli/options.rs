@@ -52,7 +52,8 @@ impl Sets {
 /// # Errors
 /// What would be right, of what is no number.
 pub(super) fn seconds(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "expected a number of seconds without a unit, such as 0.5".to_owned())
+    let seconds = text.parse().ok().filter(|seconds: &f64| !seconds.is_nan());
+    seconds.ok_or_else(|| "expected a number of seconds without a unit, such as 0.5".to_owned())
 }
 
 /// What is changed in a scenario.

@@ -4,10 +4,11 @@ use super::failure::{Failure, refuse_errors};
 use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::table::{paragraph, table};
+use crate::calibrate::plausibility::CALIBRATE;
 use crate::calibrate::quantity;
 use crate::calibrate::record::{Done, RECORD_FILE, RIG_FILE, Rows, into_folder, prepare};
 use crate::calibrate::sensed::thresholds::{LOWEST_RATE, SHORTEST};
-use crate::scenario::Scenario;
+use crate::scenario::{Mechanism, Scenario};
 use crate::simulate::{assemble, findings};
 use clap::Args;
 use std::path::PathBuf;
@@ -67,11 +68,16 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
             return Err(Failure::Input(vec![message]));
         }
     }
-    refuse_short(rows)?;
+    let mut sets = arguments.sets.all();
+    if sets.iter().any(|set| set.split('=').next().map(str::trim) == Some("simulation.duration")) {
+        let message =
+            "--set simulation.duration: is not how long recordings are; give --duration instead";
+        return Err(Failure::Input(vec![message.to_owned()]));
+    }
     // What is looked at beforehand is the motion up to the recordings' end.
-    let end = format!("simulation.duration={:?}", rows.duration);
-    let sets: Vec<String> = arguments.sets.all().into_iter().chain([end]).collect();
+    sets.push(format!("simulation.duration={:?}", rows.duration));
     let scenario = Scenario::load(arguments.file.as_deref(), &sets)?;
+    refuse_short(rows, &scenario)?;
     let mut machine = assemble(&scenario)?;
     refuse_errors(findings(&scenario, &mut machine))?;
     let prepared = prepare(&scenario, &machine, rows)?;
@@ -91,7 +97,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Recordings that no calibration would take are not made.
-fn refuse_short(rows: Rows) -> Result<(), Failure> {
+fn refuse_short(rows: Rows, scenario: &Scenario) -> Result<(), Failure> {
     let mut wrong = Vec::new();
     if rows.duration < SHORTEST {
         wrong.push(format!(
@@ -99,9 +105,14 @@ fn refuse_short(rows: Rows) -> Result<(), Failure> {
             rows.duration
         ));
     }
-    if rows.rate < LOWEST_RATE {
+    // A 3-RPR is recorded with every column that it has instruments for.
+    let lowest = match scenario.mechanism {
+        Mechanism::ThreeRpr(_) => CALIBRATE.rate,
+        _ => LOWEST_RATE,
+    };
+    if rows.rate < lowest {
         wrong.push(format!(
-            "--rate: is {} Hz; expected at least {LOWEST_RATE} Hz, the least that calibrate takes",
+            "--rate: is {} Hz; expected at least {lowest} Hz, the least that calibrate takes of this machine",
             rows.rate
         ));
     }

@@ -8,7 +8,7 @@ use super::signals;
 use super::table::paragraph;
 use crate::report::{length, number};
 use crate::scenario::Motion;
-use crate::simulate::{Summary, assemble, findings};
+use crate::simulate::{Summary, assemble, findings, unacting};
 use crate::study::{self, Outcome, RunError, SUMMARY_FILE, Terms};
 use clap::Args;
 use std::fmt::Write as _;
@@ -57,7 +57,9 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.load()?;
     warn_of_seed(&scenario);
     let mut machine = assemble(&scenario)?;
-    refuse_errors(findings(&scenario, &mut machine))?;
+    let mut found = findings(&scenario, &mut machine);
+    found.extend(unacting(&scenario, &machine));
+    refuse_errors(found)?;
     let folder = arguments.folder.prepare("run", &scenario.name, SUMMARY_FILE)?;
 
     let mut progress = Progress::new(scenario.simulation.duration, arguments.print.quiet);

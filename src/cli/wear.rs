@@ -29,14 +29,14 @@ pub(super) struct Arguments {
     #[command(flatten)]
     scenario: ScenarioOptions,
     /// Cycles of the motion
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     cycles: f64,
     /// Time of one cycle in s [default: the period of a circle, or one turn of the joint that turns
     /// at a constant rate; runs become that long where the scenario's count less]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     period: Option<f64>,
     /// Largest error of a jump over cycles, as a share of a joint's clearance
-    #[arg(long, value_name = "SHARE", default_value_t = 0.01)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.01, allow_negative_numbers = true)]
     tolerance: f64,
     #[command(flatten)]
     cost: CostOptions,

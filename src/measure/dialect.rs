@@ -117,6 +117,18 @@ impl Rows {
     /// # Errors
     /// What the system says, a table that is none, units that are not those of numbers here.
     pub fn begin(opened: Bounded) -> Result<Self, csv::Error> {
+        Self::begun(opened, ", or no row of units and a scale in the rig")
+    }
+
+    /// The same of a table whose reader knows no scales.
+    ///
+    /// # Errors
+    /// As of [`begin`](Self::begin).
+    pub fn begin_unscaled(opened: Bounded) -> Result<Self, csv::Error> {
+        Self::begun(opened, "")
+    }
+
+    fn begun(opened: Bounded, otherwise: &str) -> Result<Self, csv::Error> {
         let (text, wide, rest) = begun(opened)?;
         let dialect = Dialect::of(&text, wide);
         let mut reader = csv::ReaderBuilder::new()
@@ -134,8 +146,7 @@ impl Rows {
             };
             if let Some(place) = units.iter().position(|unit| !plain(unit)) {
                 let message = format!(
-                    "line 2: column `{}` is in `{}`; expected SI units and radians, or no row of units and a \
-                     scale in the rig",
+                    "line 2: column `{}` is in `{}`; expected SI units and radians{otherwise}",
                     rows.heads.get(place).unwrap_or_default(),
                     &units[place]
                 );

@@ -271,7 +271,7 @@ fn load(
     let opened = bounded::open(path, bounded::TABLE).map_err(|error| {
         wrong(None, format!("cannot be read: {error}"), "is this the right file?")
     })?;
-    let mut rows = Rows::begin(opened)
+    let mut rows = Rows::begin_unscaled(opened)
         .map_err(|error| wrong(Some(1), format!("cannot be read: {error}"), expected))?;
     let header = rows.heads().clone();
     let (time, chosen) = no_header(&header)

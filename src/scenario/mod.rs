@@ -77,7 +77,7 @@ impl Source {
         let text = bounded::text(path, bounded::SCENARIO).map_err(|error| Problem {
             path: String::new(),
             message: format!("cannot be read: {error}"),
-            help: "a scenario is a text file in TOML".to_owned(),
+            help: help_of_unreadable(path),
             location: Location::File { name: name.clone(), line: None, column: None },
         })?;
         Ok(Source { text, name, folder: path.parent().unwrap_or(Path::new("")).to_owned() })
@@ -112,6 +112,15 @@ impl Source {
         scenario.folder.clone_from(&self.folder);
         Ok(scenario)
     }
+}
+
+/// What would be right in place of a file that cannot be read: of a folder with a result, the scenario in it.
+fn help_of_unreadable(path: &Path) -> String {
+    let inside = path.join("scenario.toml");
+    if inside.is_file() {
+        return format!("a result's scenario is the file `{}`", inside.display());
+    }
+    "a scenario is a text file in TOML".to_owned()
 }
 
 /// A validated scenario: what the file and the overrides say, the rest filled with defaults.
@@ -282,6 +291,12 @@ impl Scenario {
     ) -> Scenario {
         let mechanism = Mechanism::Described(Box::new(described));
         Scenario { mechanism, motion, target, ..self.clone() }
+    }
+
+    /// The path that an override gave a value, if one did: `key`, or one in the section of that name.
+    pub(crate) fn set_by_override<'a>(&'a self, key: &'a str) -> Option<&'a str> {
+        let itself = matches!(self.origins.locate(key), Location::Set { path } if path == key);
+        if itself { Some(key) } else { self.origins.set_in(key) }
     }
 
     /// What is there and has no meaning for this machine; what the built-in default says beside it is nobody's

@@ -196,9 +196,12 @@ impl Checks<'_> {
             match (&output.body, &output.point) {
                 (Some(body), None) => self.body(&format!("{path}.body"), body),
                 (None, Some(point)) => self.point(&format!("{path}.point"), point),
-                _ => {
+                (body, _) => {
+                    let both = body.is_some();
+                    let message =
+                        if both { "gives both body and point" } else { "does not say of what" };
                     let help = "write body = \"…\" or point = \"body.point\"";
-                    self.complain(&path, "does not say of what".to_owned(), help);
+                    self.complain(&path, message.to_owned(), help);
                 }
             }
             // There is no body called ground.

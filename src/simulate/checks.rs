@@ -1,6 +1,6 @@
 //! What can be said against a machine before it is simulated.
 
-use super::{conformal, oil, plausible, three_rpr};
+use super::{bodies, conformal, oil, plausible, three_rpr};
 use crate::engine::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism};
 use crate::model::{DrivenPath, Machine, Singular, assemble};
@@ -55,10 +55,6 @@ const REFUSED_GAIN: f64 = 200.0;
 /// The gain beyond which a pose is doubtful: forces grow with it.
 const DOUBTFUL_GAIN: f64 = 50.0;
 
-/// Radius of gyration, in sizes of the mechanism, beyond which no body can have it: a ring of its mass would
-/// reach five times as far as the machine.
-const LARGEST_GYRATION: f64 = 5.0;
-
 /// Error in m or rad of a table of the inverse kinematics beyond which it is told: a thousandth of the smallest
 /// clearance that is common.
 const LARGEST_TABLE_ERROR: f64 = 1e-9;
@@ -106,7 +102,7 @@ pub fn findings_along(
     }
     found.extend(floating(scenario));
     found.extend(table_error(scenario, machine));
-    found.extend(inertias(scenario, machine));
+    found.extend(bodies::findings(scenario, &machine.mechanism));
     found.extend(redundant(scenario, machine));
     found.extend(step(scenario, machine));
     found.extend(rows(scenario));
@@ -202,7 +198,11 @@ fn along(scenario: &Scenario, machine: &Machine, path: &DrivenPath, found: &mut 
         let help = "make sure that the motion only repeats itself from there on";
         found.push(Finding::warning(scenario.problem("motion", message, help)));
     }
-    found.extend(path.singular.and_then(|singular| singular_pose(scenario, mechanism, singular)));
+    // A centre of mass out of this world is moved out of this world, whatever the pose.
+    if bodies::findings(scenario, mechanism).is_empty() {
+        let singular = path.singular;
+        found.extend(singular.and_then(|singular| singular_pose(scenario, mechanism, singular)));
+    }
     for (of, t) in &path.turned {
         let names: Vec<&str> = of.joints.iter().map(|&joint| mechanism.joint_name(joint)).collect();
         let message = format!(
@@ -261,26 +261,6 @@ fn table_error(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
     );
     let help = "a shorter run, or a smoother motion";
     Some(Finding::warning(scenario.problem("motion", message, help)))
-}
-
-/// Inertias that no body of this machine can have.
-fn inertias(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
-    let Some(described) = scenario.mechanism.described() else { return Vec::new() };
-    let size = machine.mechanism.size();
-    let bodies = machine.mechanism.bodies.iter().filter_map(|body| {
-        let gyration = (body.inertia / body.mass).sqrt();
-        let place = described.bodies.iter().position(|described| described.name == body.name)?;
-        (gyration > LARGEST_GYRATION * size).then(|| {
-            let message = format!(
-                "of {} kg m² makes the radius of gyration of \"{}\" {gyration:.3} m, in a machine of \
-                 {size:.3} m",
-                body.inertia, body.name
-            );
-            let help = "expected kg m² about the body's own centre of mass: 1 kg mm² is 1e-6 kg m²";
-            Finding::error(scenario.problem(&format!("body.{place}.inertia"), message, help))
-        })
-    });
-    bodies.collect()
 }
 
 /// Joints that say the same twice.

@@ -5,15 +5,20 @@
 //! it before anything is simulated; [`TimeSeries`] and [`Recorder`] take the instants of a run, one
 //! by one and in constant memory.
 
+mod bodies;
 mod checks;
 mod conformal;
+mod idle;
+mod instruments;
 mod measured;
 mod oil;
 mod plausible;
 mod provenance;
+mod restraints;
 mod summary;
 mod three_rpr;
 mod timeseries;
+mod unacting;
 mod watched;
 
 pub use crate::model::{
@@ -21,8 +26,10 @@ pub use crate::model::{
     radial_clearance,
 };
 pub use checks::{Finding, Severity, doubts, driven_path, findings, findings_along};
+pub use idle::neutral;
 pub use measured::{measured, measured_until};
 pub use provenance::Provenance;
 pub use summary::{JointSummary, Recorder, Summary};
 pub use timeseries::{Columns, TimeSeries};
+pub use unacting::unacting;
 pub use watched::{Balance, OwnError, Watched};

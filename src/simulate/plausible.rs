@@ -2,21 +2,21 @@
 
 use super::checks::Finding;
 use super::three_rpr::angle_key;
+use super::{bodies, idle, instruments, restraints};
 use crate::contact::Clearance;
-use crate::effects::Setting;
-use crate::mechanism::{Attachment, Bearing, Mechanism};
+use crate::mechanism::{Bearing, Mechanism};
 use crate::model::Machine;
-use crate::scenario::{self, Joint, Revolute, Scenario, Shape};
+use crate::scenario::{self, Joint, JointPath, Motion, Revolute, Scenario, Shape};
 use std::f64::consts::TAU;
 
 /// Gravity in m/s² beyond which no machine stands on: ten times the earth's, four times Jupiter's.
 const LARGEST_GRAVITY: f64 = 100.0;
 
-/// Density in kg/m³ that no body has: ten times that of lead, for bodies reach farther than their joints.
-const LARGEST_DENSITY: f64 = 1.1e5;
-
 /// Young's moduli in Pa: of a soft rubber, and more than that of diamond, 1.2e12.
 const MODULI: [f64; 2] = [1e5, 2e12];
+
+/// Stiffness in N/m^n that no contact has: that of a millimetre of the softest rubber, 1e5 Pa.
+const SMALLEST_STIFFNESS: f64 = 100.0;
 
 /// Friction coefficient beyond those of rubber, and of clean metals in vacuum.
 const LARGEST_FRICTION: f64 = 2.0;
@@ -32,9 +32,12 @@ pub(super) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
     let mut found = Vec::new();
     found.extend(gravity(scenario));
     found.extend(angle(scenario, machine));
-    found.extend(starts(scenario, &machine.mechanism));
-    found.extend(masses(scenario, &machine.mechanism));
-    found.extend(idle(scenario, machine.ideal.mechanism()));
+    found.extend(starts(scenario));
+    found.extend(bodies::doubts(scenario, &machine.mechanism));
+    found.extend(phases(scenario));
+    found.extend(idle::findings(scenario, machine.ideal.mechanism()));
+    found.extend(instruments::findings(scenario, &machine.mechanism));
+    found.extend(restraints::findings(scenario, &machine.mechanism));
     found.extend(written(scenario));
     found.extend(rings(scenario, &machine.mechanism));
     found
@@ -51,6 +54,14 @@ fn written(scenario: &Scenario) -> Vec<Finding> {
         let message = format!("is {modulus:e} Pa, and no solid has that");
         doubt("contact.youngs_modulus".to_owned(), message, "expected Pa: 206 GPa are 206e9");
     }
+    for (key, stiffness) in stiffnesses(scenario).filter(|(_, k)| *k < SMALLEST_STIFFNESS) {
+        let message = format!("is {stiffness} N/m^n, softer than any rubber");
+        doubt(
+            key,
+            message,
+            "expected N/m^1.5 (N/m^n for another exponent): steel on steel is 1e9 and more",
+        );
+    }
     for (key, friction) in frictions(scenario).filter(|(_, value)| *value > LARGEST_FRICTION) {
         let message = format!("is {friction}, more than rubber has");
         doubt(key, message, "expected a coefficient, such as 0.1; 10 % are 0.1");
@@ -64,6 +75,20 @@ fn written(scenario: &Scenario) -> Vec<Finding> {
         doubt(key, message, &format!("expected kg/m³: {density} g/cm³ are {}", density * 1e3));
     }
     found
+}
+
+fn stiffnesses(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
+    let all = scenario.contact.stiffness.map(|k| ("contact.stiffness".to_owned(), k));
+    let joints = scenario.mechanism.described().map_or(&[][..], |described| &described.joints);
+    let own = joints.iter().enumerate().filter_map(|(i, joint)| {
+        let stiffness = match joint {
+            Joint::Revolute(joint) => joint.stiffness,
+            Joint::Prismatic(joint) => joint.stiffness,
+            Joint::Fixed(_) => None,
+        };
+        Some((format!("joint.{i}.stiffness"), stiffness?))
+    });
+    all.into_iter().chain(own)
 }
 
 fn frictions(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
@@ -116,19 +141,41 @@ pub(super) fn own_key(
 }
 
 fn lengths(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
-    let template: Vec<(String, f64)> = match &scenario.mechanism {
+    let template: Vec<(&str, f64)> = match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(kind) => {
-            let keys = [("base_side", kind.base_side), ("platform_side", kind.platform_side)];
-            keys.map(|(key, side)| (format!("mechanism.{key}"), side)).into()
+            vec![("base_side", kind.base_side), ("platform_side", kind.platform_side)]
         }
-        _ => Vec::new(),
+        scenario::Mechanism::Pendulum(kind) => vec![("length", kind.length)],
+        scenario::Mechanism::DoublePendulum(kind) => {
+            kind.lengths.iter().map(|length| ("lengths", *length)).collect()
+        }
+        scenario::Mechanism::SliderCrank(kind) => {
+            vec![("crank", kind.crank), ("rod", kind.rod), ("offset", kind.offset)]
+        }
+        scenario::Mechanism::FourBar(kind) => vec![
+            ("ground", kind.ground),
+            ("crank", kind.crank),
+            ("coupler", kind.coupler),
+            ("rocker", kind.rocker),
+        ],
+        scenario::Mechanism::FiveBar(kind) => {
+            vec![("ground", kind.ground), ("crank", kind.crank), ("rod", kind.rod)]
+        }
+        scenario::Mechanism::ThreeRrr(kind) => vec![
+            ("base_side", kind.base_side),
+            ("platform_side", kind.platform_side),
+            ("crank", kind.crank),
+            ("rod", kind.rod),
+        ],
+        scenario::Mechanism::DriveStage(_) | scenario::Mechanism::Described(_) => Vec::new(),
     };
+    let template = template.into_iter().map(|(key, l)| (format!("mechanism.{key}"), l));
     let bodies = scenario.mechanism.described().map_or(&[][..], |described| &described.bodies);
     let bodies = bodies.iter().enumerate().map(|(i, body)| {
         let far = body.points.values().flatten().fold(0.0f64, |far, x| far.max(x.abs()));
         (format!("body.{i}.points"), far)
     });
-    template.into_iter().chain(bodies)
+    template.chain(bodies)
 }
 
 fn densities(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
@@ -142,30 +189,6 @@ fn densities(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
         Some((format!("body.{i}.shape.density"), *density))
     });
     legs.into_iter().chain(bodies)
-}
-
-/// Effects without values, whose defaults change nothing on the machine as declared: a payload of no mass. (Who
-/// writes a zero, or varies from one, means it.)
-fn idle(scenario: &Scenario, declared: &Mechanism) -> Vec<Finding> {
-    let effects = scenario.effects.iter().enumerate();
-    let silent = effects.filter(|(_, setting)| setting.values().next().is_none());
-    let idle = silent.filter(|(_, setting)| {
-        let variants = setting.kind.variants_of(declared, &setting.target);
-        let neutral = |variant: &&[&'static str]| {
-            let neutral = Setting::neutral(setting.kind, setting.target.clone(), variant, declared);
-            neutral.is_some_and(|neutral| {
-                neutral.values().all(|(name, value)| setting.value(name) == Some(value))
-            })
-        };
-        !variants.is_empty() && variants.iter().all(neutral)
-    });
-    let found = idle.map(|(i, setting)| {
-        let message = format!("{setting} has no values, and does nothing without");
-        let names: Vec<&str> = setting.kind.parameters.iter().map(|p| p.name).collect();
-        let help = format!("give it {}, or leave it out", names.join(", "));
-        Finding::warning(scenario.problem(&format!("effect.{i}"), message, &help))
-    });
-    found.collect()
 }
 
 /// Millimetres for metres.
@@ -186,57 +209,55 @@ fn angle(scenario: &Scenario, machine: &Machine) -> Option<Finding> {
     (phi.abs() > TAU).then(|| turned(scenario, angle_key(scenario), phi))
 }
 
-/// Degrees for radians in where bodies start; a 3-RPR's start where their motion does, and [`angle`] tells of that.
-fn starts(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
-    if let scenario::Mechanism::ThreeRpr(_) = scenario.mechanism {
-        return Vec::new();
-    }
-    let far = mechanism.bodies.iter().filter(|body| body.angle.abs() > TAU);
-    far.map(|body| turned(scenario, &key_of(scenario, &body.name, "start"), body.angle)).collect()
+/// Degrees for radians in where on its way a motion starts.
+fn phases(scenario: &Scenario) -> Vec<Finding> {
+    let phases: Vec<(String, f64)> = match &scenario.motion {
+        Motion::Circle(circle) => vec![("motion.phase".to_owned(), circle.phase)],
+        Motion::Multisine(sines) => {
+            let terms = sines.terms.iter().enumerate();
+            terms.map(|(i, term)| (format!("motion.terms.{i}.phase"), term.phase)).collect()
+        }
+        Motion::Joints(motions) if scenario.is_list("motion") => {
+            let terms = motions.iter().enumerate().flat_map(|(m, motion)| {
+                let JointPath::Multisine(sines) = &motion.path else { return Vec::new() };
+                let terms = sines.terms.iter().enumerate();
+                let key = |i| format!("motion.{m}.terms.{i}.phase");
+                terms.map(|(i, term)| (key(i), term.phase)).collect()
+            });
+            terms.collect()
+        }
+        _ => Vec::new(),
+    };
+    let far = phases.into_iter().filter(|(_, phase)| phase.abs() > TAU);
+    far.map(|(key, phase)| turned(scenario, &key, phase)).collect()
 }
 
-/// The key of a body in the file; of the mechanism where a template made the body.
-fn key_of(scenario: &Scenario, body: &str, key: &str) -> String {
-    let bodies = scenario.mechanism.described().map_or(&[][..], |described| &described.bodies);
-    let place = bodies.iter().position(|described| described.name == body);
-    place.map_or_else(|| "mechanism".to_owned(), |place| format!("body.{place}.{key}"))
+/// Degrees for radians in where bodies start, as it is written; a 3-RPR's start where their motion does, and
+/// [`angle`] tells of that.
+fn starts(scenario: &Scenario) -> Vec<Finding> {
+    let one = |angle: f64| vec![("mechanism.angle".to_owned(), angle)];
+    let angles: Vec<(String, f64)> = match &scenario.mechanism {
+        scenario::Mechanism::Pendulum(kind) => one(kind.angle),
+        scenario::Mechanism::SliderCrank(kind) => one(kind.angle),
+        scenario::Mechanism::FourBar(kind) => one(kind.angle),
+        scenario::Mechanism::DoublePendulum(kind) => {
+            kind.angles.iter().map(|angle| ("mechanism.angles".to_owned(), *angle)).collect()
+        }
+        scenario::Mechanism::Described(described) => {
+            let bodies = described.bodies.iter().enumerate();
+            bodies.map(|(i, body)| (format!("body.{i}.start"), body.start[2])).collect()
+        }
+        scenario::Mechanism::ThreeRpr(_)
+        | scenario::Mechanism::FiveBar(_)
+        | scenario::Mechanism::ThreeRrr(_)
+        | scenario::Mechanism::DriveStage(_) => Vec::new(),
+    };
+    let far = angles.into_iter().filter(|(_, angle)| angle.abs() > TAU);
+    far.map(|(key, angle)| turned(scenario, &key, angle)).collect()
 }
 
 fn turned(scenario: &Scenario, key: &str, angle: f64) -> Finding {
     let message = format!("has an angle of {angle} rad, more than a whole turn");
     let help = format!("angles are in rad: {angle} degrees are {:.4}", angle.to_radians());
     Finding::warning(scenario.problem(key, message, &help))
-}
-
-/// Grams for kilograms: bodies heavier than any solid as large as they are between their joints.
-fn masses(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
-    let bodies = mechanism.bodies.iter().enumerate().filter_map(|(i, body)| {
-        let extent = extent(mechanism, i);
-        if extent <= 0.0 || body.mass <= LARGEST_DENSITY * extent.powi(3) {
-            return None;
-        }
-        let key = match &scenario.mechanism {
-            scenario::Mechanism::ThreeRpr(_) if body.name == "platform" => {
-                "mechanism.platform_mass".to_owned()
-            }
-            scenario::Mechanism::ThreeRpr(_) => "legs.density".to_owned(),
-            _ => key_of(scenario, &body.name, "mass"),
-        };
-        let message = format!(
-            "makes \"{}\", {extent} m from joint to joint, {} kg heavy: more than ten times a cube of lead of \
-             that size",
-            body.name, body.mass
-        );
-        Some(Finding::warning(scenario.problem(&key, message, "expected kg: 200 g are 0.2")))
-    });
-    bodies.collect()
-}
-
-/// The largest distance in m between two joints of a body.
-fn extent(mechanism: &Mechanism, body: usize) -> f64 {
-    let revolutes = mechanism.revolutes.iter().flat_map(|joint| [joint.ring, joint.journal]);
-    let points: Vec<Attachment> = revolutes.filter(|point| point.body == Some(body)).collect();
-    let pairs =
-        points.iter().enumerate().flat_map(|(i, a)| points[..i].iter().map(move |b| (a, b)));
-    pairs.map(|(a, b)| (a.point - b.point).norm()).fold(0.0, f64::max)
 }

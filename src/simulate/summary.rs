@@ -44,12 +44,12 @@ pub struct Summary {
     /// Largest torque of a drive of a revolute joint in N·m, over all steps; none without such drives.
     #[serde(rename = "peak_actuator_torque_Nm", skip_serializing_if = "Option::is_none")]
     pub peak_actuator_torque: Option<f64>,
-    /// The same of the ideal machine, over all rows.
+    /// The same of the ideal machine, over all rows and, where these are far apart, between them.
     #[serde(rename = "ideal_peak_actuator_torque_Nm", skip_serializing_if = "Option::is_none")]
     pub ideal_peak_actuator_torque: Option<f64>,
-    /// The same of the ideal machine, over all rows.
+    /// The same of the ideal machine, over all rows and, where these are far apart, between them.
     pub ideal_peak_platform_acceleration_m_s2: f64,
-    /// The same of the ideal machine, over all rows.
+    /// The same of the ideal machine, over all rows and, where these are far apart, between them.
     #[serde(rename = "ideal_peak_actuator_force_N")]
     pub ideal_peak_actuator_force: f64,
     /// Root mean square over the rows of the distance from the ideal position, in m.
@@ -227,10 +227,6 @@ impl Recorder {
             let count = drives.clone().count().max(1) as f64;
             drives.map(square).sum::<f64>() / count
         };
-        let largest = |of_revolute: bool| {
-            let drives = (0..now.drive_forces.len()).filter(|&i| turns(i) == of_revolute);
-            drives.fold(0.0f64, |peak, i| peak.max(ideal.drive_forces[i].abs()))
-        };
         let deviations = [
             path_error * path_error,
             acceleration.norm_squared(),
@@ -245,9 +241,7 @@ impl Recorder {
         let known = known + ideal.drive_forces.iter().sum::<f64>();
         self.rows_without_ideal += u64::from(!known.is_finite());
         self.max_path_error = self.max_path_error.max(path_error);
-        self.ideal_peaks[0] = self.ideal_peaks[0].max(ideal.acceleration.xy().norm());
-        self.ideal_peaks[1] = self.ideal_peaks[1].max(largest(false));
-        self.ideal_peaks[2] = self.ideal_peaks[2].max(largest(true));
+        self.ideal(mechanism, instant.t, ideal);
 
         for ((joint, contact), tally) in
             self.joints.iter_mut().zip(&now.contacts).zip(instant.tallies)
@@ -266,6 +260,22 @@ impl Recorder {
             for (joint, tally) in self.joints.iter_mut().zip(instant.tallies) {
                 joint.peak = joint.peak.max(tally.peak);
             }
+        }
+    }
+
+    /// Takes an instant `t` (s) of the machine without clearance: that of a row, or one between two.
+    pub fn ideal(&mut self, mechanism: &Mechanism, t: f64, ideal: &IdealInstant) {
+        if t < self.settle {
+            return;
+        }
+        let turns = |i: usize| matches!(mechanism.actuators[i].joint, JointIndex::Revolute(_));
+        let largest = |of_revolute: bool| {
+            let drives = (0..ideal.drive_forces.len()).filter(|&i| turns(i) == of_revolute);
+            drives.fold(0.0f64, |peak, i| peak.max(ideal.drive_forces[i].abs()))
+        };
+        let now = [ideal.acceleration.xy().norm(), largest(false), largest(true)];
+        for (peak, now) in self.ideal_peaks.iter_mut().zip(now) {
+            *peak = peak.max(now);
         }
     }
 

@@ -208,7 +208,8 @@ fn apart(track: &[Look], rows: &[Look], schedule: Schedule) -> OwnError {
         position_m: good.iter().map(|(p, q)| p.distance(q)).fold(0.0, f64::max),
         contact_force: differences.fold(0.0, f64::max),
         largest_contact_force: own.iter().copied().fold(0.0, f64::max),
-        hits: good.last().map_or(0, |(_, q)| q.hits),
+        // Up to the same row: where rows are few and far between, all hits before it may be in its interval.
+        hits: end.map_or(0, |row| pairs[row].1.hits),
     }
 }
 

@@ -7,7 +7,8 @@ use crate::mechanism::{Actuator, Body, BodyState, Drive, JointIndex, Loop, Mecha
 use crate::model::DrivenPath;
 use crate::scenario::{self, Law, Problem, Scenario};
 use crate::simulate::{
-    Finding, Machine, OwnError, Severity, driven_path, findings_along, leg_use, radial_clearance,
+    Finding, Machine, OwnError, Severity, driven_path, findings_along, leg_use, neutral,
+    radial_clearance, unacting,
 };
 use serde::Serialize;
 
@@ -245,7 +246,9 @@ fn found(finding: Finding) -> Found {
 /// Looks at a machine from all sides.
 pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
     let path = driven_path(scenario, machine);
-    let findings = findings_along(scenario, machine, path.as_ref());
+    let mut findings = findings_along(scenario, machine, path.as_ref());
+    findings.extend(neutral(scenario));
+    findings.extend(unacting(scenario, machine));
     let ok = findings.iter().all(|finding| finding.severity != Severity::Error);
     let kind = match &scenario.mechanism {
         scenario::Mechanism::ThreeRpr(kind) => Some(kind),

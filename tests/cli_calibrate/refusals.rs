@@ -195,6 +195,8 @@ fn recordings_as_other_programs_write_them_are_read() {
     place.write("mm.csv", &millimetres);
     let line = format!("predict {} --data mm.csv", rig.display());
     place.refused(&line, &["mm.csv:1", "column `q1_cmd` is in `[mm]`", "expected SI units"]);
+    // A 3-RPR's rig takes no scale.
+    assert!(!place.freeplay(&line).err.contains("scale in the rig"));
 }
 
 fn unit(column: &str) -> &'static str {

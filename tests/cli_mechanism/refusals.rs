@@ -256,6 +256,12 @@ fn numbers_that_no_body_or_drive_can_have() {
             &["1 kg mm² is 1e-6 kg m²"],
         ),
         wrong(
+            four_bar("center_of_mass = [0.02, 0.0]", "center_of_mass = [20.0, 0.0]"),
+            "center_of_mass = [20.0, 0.0]",
+            "body.0.center_of_mass: lies 19.940 m from the nearest joint of \"crank\", in a machine of 0.200 m",
+            &["30 mm are 0.03"],
+        ),
+        wrong(
             four_bar("mass = 0.2\n", "mass = nan\n"),
             "mass = nan",
             "body.1.mass: is NaN",

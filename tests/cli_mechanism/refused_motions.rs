@@ -146,6 +146,12 @@ fn sensors_and_motions_that_mean_nothing() {
             &["did you mean `position`?"],
         ),
         wrong(
+            format!("{FOUR_BAR}[[output]]\nbody = \"crank\"\npoint = \"crank.A\"\n"),
+            "[[output]]\nbody = \"crank\"\npoint",
+            "output.0: gives both body and point",
+            &["write body = \"…\" or point = \"body.point\""],
+        ),
+        wrong(
             moved("kind = \"line\"\n"),
             "[motion]",
             "motion: does not say what it moves",
@@ -188,4 +194,43 @@ fn columns_of_a_described_machine_are_its_sensors() {
     place.good("check four-bar.toml");
     place.write("four-bar.toml", &format!("{FOUR_BAR}[columns]\nq1 = \"q\"\n"));
     place.refused("check four-bar.toml", &["columns.q1: is not known", "write a [[sensor]]"]);
+}
+
+/// Springs, stops, shapes and starts in another unit, or against the start: a run goes on.
+#[test]
+fn what_is_hardly_meant_is_told_with_its_key() {
+    let place = Place::new();
+    let added = |section: &str| format!("{FOUR_BAR}{section}\n");
+    let spring = "[[spring]]\nbetween = [\"ground.O\", \"rocker.B\"]\n";
+    let mass = "mass = 0.15\ninertia = 1.5e-4\ncenter_of_mass = [0.02, 0.0]\n";
+    let shape =
+        "shape = { kind = \"bar\", from = \"O\", to = \"A\", diameter = 0.6, density = 7850.0 }\n";
+    for (text, says) in [
+        (
+            added("[[spring]]\njoint = \"D\"\nstiffness = 0.0"),
+            "spring.0.stiffness: is 0, and damping is too",
+        ),
+        (
+            added(&format!("{spring}stiffness = 10.0\nfree_length = 100.0")),
+            "spring.0.free_length: is 100 m",
+        ),
+        (
+            added("[[stop]]\njoint = \"D\"\nrange = [-90.0, 90.0]\nstiffness = 1e3"),
+            "stop.0.range: has an end at -90 rad, more than a whole turn",
+        ),
+        (
+            added("[[stop]]\njoint = \"D\"\nrange = [-0.1, 0.1]\nstiffness = 1e3"),
+            "stop.0.range: goes from -0.1 to 0.1 rad, and D starts at 1.57",
+        ),
+        (four_bar(mass, shape), "body.0.shape: makes \"crank\""),
+        (
+            four_bar("start = [0.0, 0.0, 0.8]", "start = [0.0, 0.0, 50.0]"),
+            "body.0.start: has an angle of 50 rad, more than a whole turn; angles are in rad: 50 degrees are 0.8727",
+        ),
+    ] {
+        place.write("four-bar.toml", &text);
+        let done = place.freeplay("check four-bar.toml");
+        assert!(done.err.starts_with("warning: four-bar.toml:"), "{says}\n{}", done.err);
+        assert!(done.err.contains(says), "{says}\n{}", done.err);
+    }
 }

@@ -19,7 +19,7 @@ use super::sensed::start::machine;
 use super::sensed::thresholds::PREDICTING;
 use crate::mechanism::Mechanism;
 use crate::report::{Picture, Style};
-use crate::scenario::{Law, Scenario};
+use crate::scenario::{self, Law, Scenario};
 use crate::simulate::{Machine, Provenance};
 use crate::study::{Folder, Forecast, PAGE_FILE, RunError};
 pub(super) use run::{Made, like};
@@ -152,8 +152,15 @@ pub fn prepare(
     let mechanism = &assembled.mechanism;
     if mechanism.sensors.is_empty() {
         let message = "is missing: nobody knows what is recorded";
-        let help = "add a [[sensor]] for each column; of a machine with a kind, [sensors], such as --set \
-                    sensors.pose_std=4e-6 --set sensors.force_std=0.15";
+        let help = match scenario.mechanism {
+            scenario::Mechanism::ThreeRpr(_) => {
+                "add [sensors], such as --set sensors.pose_std=4e-6 --set sensors.force_std=0.15"
+            }
+            _ => {
+                "add a [[sensor]] for each column; `freeplay init four-bar --rig` prints a rig that has them, and \
+                 so does every other kind"
+            }
+        };
         wrong.push(scenario.problem("sensor", message, help).to_string());
     }
     if scenario.contact.law == Law::Native {

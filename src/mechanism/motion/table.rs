@@ -59,7 +59,7 @@ pub enum TableError {
 /// A file that is no such table.
 pub fn read_columns(path: &Path, names: &[&str]) -> Result<Vec<CubicSpline>, TableError> {
     let file = bounded::open_plain(path, bounded::TABLE).map_err(csv::Error::from)?;
-    let mut rows = Rows::begin(file)?;
+    let mut rows = Rows::begin_unscaled(file)?;
     let headers = rows.heads().clone();
     let missing =
         |name: &&str| TableError::Column { missing: (*name).to_owned(), needed: names.join(",") };

@@ -15,7 +15,7 @@ pub struct Drive {
     /// Velocity gain k_d of the servo, N s/m. Default 300: assumed, with `stiffness`. Unused by
     /// `prescribed`.
     pub damping: f64,
-    /// `[drive.sampled]`: the controller of `mode = "sampled"`; see [`Drive::sampled`].
+    /// `[drive.sampled]`: the controller of `mode = "sampled"`. Default: that of the EMPS benchmark.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sampled: Option<Sampled>,
 }

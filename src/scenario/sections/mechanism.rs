@@ -186,7 +186,8 @@ pub struct ThreeRpr {
     pub platform_side: f64,
     /// Mass of the platform, kg. Default 0.2: the paper.
     pub platform_mass: f64,
-    /// Inertia of the platform about its centre, kg m²; see [`ThreeRpr::platform_inertia`].
+    /// Inertia of the platform about its centre, kg m². Default m s²/12, of a triangular
+    /// plate of mass m and side s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub platform_inertia: Option<f64>,
 }

@@ -20,17 +20,18 @@ pub struct Simulation {
     pub duration: f64,
     /// Time between two rows of output, s. Default 5e-4: resolves the rattle's forces up to 1 kHz.
     pub output_interval: f64,
-    /// Start left out of peaks, rms and fractions, s; see [`Simulation::settle`].
+    /// Start left out of peaks, rms and fractions, s. Default 0.2, at most half of the duration: the
+    /// largest hits of the centred start come within 40 ms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settle: Option<f64>,
     /// What steps the machine. Default: the physics engine.
     #[serde(skip_serializing_if = "Engine::is_default")]
     pub engine: Engine,
-    /// Fixed step, s; see [`Simulation::step_control`].
+    /// Fixed step, s, in place of `tolerance`. Default none: steps follow the tolerance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<f64>,
     /// Velocity error that one step may make, m/s, for clearances of 0.5 mm and more, in proportion
-    /// less for smaller ones, down to a fiftieth at 10 µm; see [`Simulation::step_control`].
+    /// less for smaller ones, down to a fiftieth at 10 µm. Default 1e-5, unless `step` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
 }
