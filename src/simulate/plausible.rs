@@ -15,8 +15,8 @@ const LARGEST_GRAVITY: f64 = 100.0;
 /// Young's moduli in Pa: of a soft rubber, and more than that of diamond, 1.2e12.
 const MODULI: [f64; 2] = [1e5, 2e12];
 
-/// Stiffness in N/m^n that no contact has: that of a millimetre of the softest rubber, 1e5 Pa.
-const SMALLEST_STIFFNESS: f64 = 100.0;
+/// Stiffness in N/m^n that no contact has: that of a tenth of a millimetre of the softest rubber, 1e5 Pa.
+const SMALLEST_STIFFNESS: f64 = 10.0;
 
 /// Friction coefficient beyond those of rubber, and of clean metals in vacuum.
 const LARGEST_FRICTION: f64 = 2.0;
