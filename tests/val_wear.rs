@@ -132,6 +132,8 @@ fn what_is_missing_or_impossible_is_told() {
     assert!(done.err.contains("warning: runs take 0.13 s"), "{}", done.err);
     let quintic = "wear --cycles 1 --set contact.wear_coefficient=1e-13 --set motion.kind=quintic";
     place.refused(quintic, &["--period: is missing"]);
+    let swings = "wear --cycles 10 --set mechanism.kind=pendulum --set environment.gravity=[0,-9.81] --set effect=[]";
+    place.refused(swings, &["--period: is missing"]);
     place.refused(
         "wear --cycles 1 --period 0.5",
         &["contact.wear_coefficient", "is missing", "1/Pa"],

@@ -113,7 +113,7 @@ impl Mechanism {
     }
 
     /// The sections beside those of every machine that this one has a use for.
-    pub(in crate::scenario) fn uses(&self, section: &str) -> bool {
+    pub(crate) fn uses(&self, section: &str) -> bool {
         match section {
             "legs" => matches!(self, Mechanism::ThreeRpr(_)),
             "motion" | "drive" => {

@@ -116,6 +116,10 @@ pub(super) fn worn(expanded: &Scenario, rings: &[Ring], stages: &[Stage]) -> Sce
 
 /// See [`period_of`](super::period_of).
 pub(super) fn period(scenario: &Scenario) -> Option<f64> {
+    // What nothing drives falls and swings: a motion stands in the scenario by default only.
+    if !scenario.mechanism.uses("motion") {
+        return None;
+    }
     match &scenario.motion {
         Motion::Circle(circle) => Some(circle.period),
         Motion::Joints(motions) => match motions.as_slice() {
