@@ -107,11 +107,11 @@ pub(super) fn page(summary: &WearSummary, pictures: &[Picture]) -> String {
     let most = summary.joints.iter().max_by(by_growth);
     let most = most.map_or(String::new(), |joint| {
         format!(
-            " Joint {} wears most: by {} where it is deepest, its mean clearance grows from {} to {}.",
+            " Joint {} wears most: by {} where it is deepest, its mean clearance of {} grows by {}.",
             joint.joint,
             length(joint.worn.depth_m),
             length(joint.new_clearance_m),
-            length(joint.worn.clearance_m)
+            length(joint.worn.clearance_m - joint.new_clearance_m)
         )
     });
     let lead = format!(
@@ -160,9 +160,11 @@ fn table(summary: &WearSummary) -> Table {
         title: "Rings".to_owned(),
         header: header.map(str::to_owned).to_vec(),
         rows: summary.joints.iter().map(row).collect(),
-        note: format!(
-            "The error is what halving the jumps over cycles changes, of all {} jumps together.",
-            summary.stages.len() - 1
-        ),
+        note: match summary.stages.len() - 1 {
+            1 => "The error is what halving the one jump over cycles changes.".to_owned(),
+            jumps => format!(
+                "The error is what halving the jumps over cycles changes, of all {jumps} jumps together."
+            ),
+        },
     }
 }
