@@ -109,6 +109,14 @@ fn thresholds_and_unlike_machines_are_told() {
     assert!(done.code == 0 && done.out.contains("by more than 3 × their floors"), "{}", done.out);
     assert!(done.err.contains("warning: The machines are unlike"), "{}", done.err);
     place.refused("diff a b --starts 2", &["--starts: two results"]);
+    let longer = place.read("a/scenario.toml").replacen("duration = 0.05", "duration = 0.06", 1);
+    place.write("longer.toml", &longer);
+    let done = place.freeplay("diff a/scenario.toml longer.toml --starts 2 --out t");
+    assert!(
+        done.code == 0 && done.err.starts_with("warning: The times that count are unlike"),
+        "{}",
+        done.err
+    );
     let text = place.good("diff a/scenario.toml a/scenario.toml --starts 2 --out e");
     assert!(text.replace('\n', " ").contains("by more than 1.5 × their floors"), "{text}");
 }

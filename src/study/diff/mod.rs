@@ -77,6 +77,21 @@ fn unlike(sides: &[Side; 2]) -> Result<Option<String>, DiffError> {
     }))
 }
 
+/// A warning where other times count: sums, shares and quantiles over them then differ whatever the machines are.
+fn unlike_times(sides: &[Side; 2]) -> Option<String> {
+    let [a, b] = sides.each_ref().map(|side| {
+        let simulation = &side.scenario().simulation;
+        [simulation.settle(), simulation.duration]
+    });
+    (a != b).then(|| {
+        format!(
+            "The times that count are unlike: {} to {} s in the first, {} to {} s in the second (simulation.settle, \
+             simulation.duration). Peaks, sums, shares and quantiles differ for that alone.",
+            a[0], a[1], b[0], b[1]
+        )
+    })
+}
+
 /// A finished comparison of two.
 #[derive(Debug)]
 pub struct Done {

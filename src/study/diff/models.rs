@@ -3,7 +3,7 @@
 use super::page::{self, RUNS_FILE};
 use super::result::{Diff, Row};
 use super::series::{Series, overlaid};
-use super::{DiffError, Done, Side, unlike};
+use super::{DiffError, Done, Side, unlike, unlike_times};
 use crate::measure::student::t95;
 use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
 use crate::scenario::{Problem, Scenario};
@@ -54,7 +54,7 @@ pub fn diff_models(
         predictable_until_s: None,
         sure: SURE,
         rows,
-        warnings: broken(&runs),
+        warnings: unlike_times(sides).into_iter().chain(broken(&runs)).collect(),
         answer: String::new(),
         wall_s: 0.0,
         files: Vec::new(),

@@ -3,7 +3,7 @@
 use super::page;
 use super::result::{Diff, Row};
 use super::series::{Series, overlaid};
-use super::{DiffError, Done, Side, unlike};
+use super::{DiffError, Done, Side, unlike, unlike_times};
 use crate::measure::bounded;
 use crate::report::{Panel, Picture, panels_svg};
 use crate::simulate::Provenance;
@@ -74,6 +74,7 @@ pub fn diff_results(
     let mut rows = figures(&both, chaotic);
     rows.extend(columns(&both, horizon));
     let of = |i: usize| Provenance::of(sides[i].scenario());
+    let times = unlike_times(sides).into_iter();
     let mut diff = Diff {
         provenance: of(0),
         second: of(1),
@@ -82,7 +83,7 @@ pub fn diff_results(
         predictable_until_s: horizon,
         sure: SURE,
         rows,
-        warnings: warnings(chaotic, horizon, folders),
+        warnings: times.chain(warnings(chaotic, horizon, folders)).collect(),
         answer: String::new(),
         wall_s: 0.0,
         files: Vec::new(),
