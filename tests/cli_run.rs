@@ -436,4 +436,8 @@ fn a_chaotic_run_advises_what_its_machine_has() {
     let pendulum =
         place.good(&format!("run {chaotic} --set mechanism.kind=pendulum --set effect=[] --out b"));
     assert!(pendulum.contains("chaotic") && !pendulum.contains("motion.phase"), "{pendulum}");
+    let rest = place.good("run --duration 0.1 --set motion.radius=0 --out c");
+    assert!(!rest.contains("chaotic"), "{rest}");
+    let page = place.read("c/index.html");
+    assert!(page.contains("beyond 0.1 s") && page.contains("small differences hardly grow"));
 }

@@ -9,6 +9,7 @@ use super::table::paragraph;
 use crate::report::{length, number};
 use crate::scenario::Motion;
 use crate::simulate::{Summary, assemble, findings, unacting};
+use crate::study::chaos::chaotic;
 use crate::study::{self, Outcome, RunError, SUMMARY_FILE, Terms};
 use clap::Args;
 use std::fmt::Write as _;
@@ -116,7 +117,7 @@ fn text(outcome: &Outcome, has_phase: bool) -> String {
     if s.has_figures() && s.settle_s > 0.0 {
         let _ = writeln!(text, "\n  (the first {} s left out)", number(s.settle_s));
     }
-    if s.lyapunov_exponent_1_s.is_some_and(|rate| rate > 0.0) {
+    if s.lyapunov_exponent_1_s.is_some_and(|rate| chaotic(rate, s.simulated_s)) {
         text += &format!("\n{}", paragraph("  ", "  ", &one_draw(has_phase)));
     }
     let folder = outcome.folder.display();

@@ -23,6 +23,12 @@ pub const DISPLACEMENT: f64 = 1e-12;
 /// contact's give, and of what a tracker of a real machine resolves.
 pub const HORIZON_ERROR: f64 = 1e-6;
 
+/// Whether small differences grow: by a factor of e at least while they are watched. The rate in 1/s of less than that is
+/// what rounding and the scatter of the fitted slope make of a machine at rest.
+pub fn chaotic(rate: f64, simulated_s: f64) -> bool {
+    rate * simulated_s.min(WINDOW) > 1.0
+}
+
 /// Share of the smallest clearance from which on distances are no longer small.
 const LARGE: f64 = 0.01;
 

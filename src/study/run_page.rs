@@ -1,5 +1,6 @@
 //! The page of a run: the main result in words, the figures in a table, the pictures.
 
+use super::chaos;
 use super::run::{PLAYER_FILE, SCENARIO_FILE};
 use crate::report::{self, Fact, Part, Picture, length, number};
 use crate::scenario::Law;
@@ -222,18 +223,23 @@ fn prediction(s: &Summary, rate: f64) -> Fact {
     let horizon = s.predictability_horizon_s;
     fact(
         "Prediction holds",
-        horizon.map_or_else(|| "beyond 0.2 s".to_owned(), |t| format!("for {} s", number(t))),
-        if rate > 0.0 {
+        horizon.map_or_else(
+            || format!("beyond {} s", number(chaos::WINDOW.min(s.simulated_s))),
+            |t| format!("for {} s", number(t)),
+        ),
+        if chaos::chaotic(rate, s.simulated_s) {
             format!(
                 "until then the path is exact to 1 µm; small differences grow like e^({} t/s), \
                  and later digits are one of many possible motions",
                 number(rate)
             )
-        } else {
+        } else if rate < 0.0 {
             format!(
                 "until then the path is exact to 1 µm; small differences die out like e^({} t/s)",
                 number(rate)
             )
+        } else {
+            "until then the path is exact to 1 µm; small differences hardly grow".to_owned()
         },
     )
 }

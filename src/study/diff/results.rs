@@ -7,6 +7,7 @@ use super::{DiffError, Done, Side, unlike, unlike_times};
 use crate::measure::bounded;
 use crate::report::{Panel, Picture, panels_svg};
 use crate::simulate::Provenance;
+use crate::study::chaos;
 use crate::study::compare::QUANTITIES;
 use crate::study::folder::Folder;
 use crate::study::run::{RunError, SUMMARY_FILE, TIME_SERIES_FILE};
@@ -52,7 +53,8 @@ impl Read {
 
     /// Whether pairs of runs part exponentially.
     fn chaotic(&self) -> bool {
-        self.number("/lyapunov_exponent_1_s").is_some_and(|rate| rate > 0.0)
+        let simulated = self.number("/simulated_s").unwrap_or(chaos::WINDOW);
+        self.number("/lyapunov_exponent_1_s").is_some_and(|rate| chaos::chaotic(rate, simulated))
     }
 }
 
