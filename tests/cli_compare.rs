@@ -88,8 +88,8 @@ fn other_motions_and_their_text() {
 #[test]
 fn contacts_that_never_were_are_not_approved() {
     let place = Place::new();
-    let line =
-        "compare --set mechanism.kind=four-bar --duration 0.02 --starts 2 --steps 2e-5,1e-5,5e-6";
+    place.write("four-bar.toml", &place.good("init four-bar"));
+    let line = "compare four-bar.toml --duration 0.02 --starts 2 --steps 2e-5,1e-5,5e-6";
     let json: Value = serde_json::from_str(&place.good(&format!("{line} --json --out c"))).unwrap();
     for verdict in json["verdicts"].as_array().unwrap() {
         assert_eq!(verdict["use"], "unclear", "{verdict}");
