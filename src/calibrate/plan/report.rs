@@ -262,9 +262,17 @@ fn summary(questions: &[QuestionReport], open: &[String]) -> String {
     let all: Vec<String> = questions.iter().map(one).collect();
     let open = match open {
         [] => String::new(),
-        open => format!(" Not answered within these limits: {}.", open.join("; ")),
+        open => format!(" Not answered by a new motion within these limits: {}.", open.join("; ")),
     };
-    all.join(" ") + &open
+    let better = |question: &QuestionReport| {
+        question.before.as_ref().is_some_and(|before| before.sigma > question.after.sigma)
+    };
+    let kept = if questions.iter().any(better) {
+        " The present motion does better than any that was found: keep it."
+    } else {
+        ""
+    };
+    all.join(" ") + &open + kept
 }
 
 fn drives(prepared: &Prepared, outcome: &Outcome) -> Vec<DriveReport> {
