@@ -21,7 +21,30 @@ pub struct Parameter {
     pub default: Option<f64>,
 }
 
+/// Beginnings of the names of parameters that only say where, when or how fast what the others are the size of.
+const SHAPES: [&str; 14] = [
+    "phase",
+    "frequency",
+    "at_s",
+    "per_turn",
+    "pitch",
+    "direction",
+    "com_",
+    "anchor_",
+    "rest_length",
+    "velocity",
+    "speed",
+    "presliding",
+    "lobes",
+    "stribeck",
+];
+
 impl Parameter {
+    /// Whether it only says where, when or how fast an effect acts whose size others say.
+    pub fn is_shape(&self) -> bool {
+        SHAPES.iter().any(|shape| self.name.starts_with(shape))
+    }
+
     /// A value, or the nearest one that makes sense.
     pub fn clamped(&self, value: f64) -> f64 {
         value.clamp(self.bounds[0], self.bounds[1])

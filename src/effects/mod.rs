@@ -171,6 +171,14 @@ mod tests {
         assert_eq!(neutral([0.1, 0.2]), [of(" at A", 0.1), of(" at B", 0.2)]);
     }
 
+    /// What has parameters has one that says how large it is.
+    #[test]
+    fn every_effect_has_a_size() {
+        for kind in ALL.iter().filter(|kind| !kind.parameters.is_empty()) {
+            assert!(!kind.parameters.iter().all(Parameter::is_shape), "{}", kind.name);
+        }
+    }
+
     /// A search needs the catalogue alone: every target of a mechanism, every variant, values that change
     /// nothing.
     #[test]

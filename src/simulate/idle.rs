@@ -7,24 +7,6 @@ use crate::mechanism::Mechanism;
 use crate::model::assemble;
 use crate::scenario::Scenario;
 
-/// Beginnings of the names of parameters that only say where, when or how fast what the others are the size of.
-const SHAPES: [&str; 14] = [
-    "phase",
-    "frequency",
-    "at_s",
-    "per_turn",
-    "pitch",
-    "direction",
-    "com_",
-    "anchor_",
-    "rest_length",
-    "velocity",
-    "speed",
-    "presliding",
-    "lobes",
-    "stribeck",
-];
-
 /// Effects without a size, whose defaults change nothing on the machine as declared: a payload of no mass, a
 /// frequency without an amplitude. (Who writes a zero, or varies from one, means it: [`neutral`] is for who asks.)
 pub(super) fn findings(scenario: &Scenario, declared: &Mechanism) -> Vec<Finding> {
@@ -82,12 +64,7 @@ fn forgotten(setting: &Setting) -> bool {
 
 /// The parameters that say how large an effect is.
 fn sizes(setting: &Setting) -> impl Iterator<Item = &'static str> {
-    setting
-        .kind
-        .parameters
-        .iter()
-        .map(|p| p.name)
-        .filter(|name| !SHAPES.iter().any(|shape| name.starts_with(shape)))
+    setting.kind.parameters.iter().filter(|p| !p.is_shape()).map(|p| p.name)
 }
 
 fn has_size(setting: &Setting) -> bool {
