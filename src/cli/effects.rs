@@ -99,8 +99,11 @@ fn example(kind: &Kind) -> String {
         Targets::Sensor(Senses::Effort) => "    sensor = \"T_O\"\n",
         Targets::Sensor(_) => "    sensor = \"q_O\"\n",
     };
-    let names = kind.variants.first().copied().unwrap_or_default();
-    for parameter in names.iter().filter_map(|name| kind.parameter(name)) {
+    // Of an effect that no calibration seeks in some form of it all parameters.
+    let shown = |parameter: &&Parameter| {
+        kind.variants.first().is_none_or(|variant| variant.contains(&parameter.name))
+    };
+    for parameter in kind.parameters.iter().filter(shown) {
         let assignment = format!("{} = {:?}", parameter.name, telling(parameter));
         let comment = if parameter.unit.is_empty() { "" } else { parameter.unit };
         let line =
