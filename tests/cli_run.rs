@@ -426,6 +426,22 @@ fn a_key_that_is_set_twice_is_refused() {
     }
 }
 
+/// The peak of the machine without clearance was that of its rows, a fifth too small where ten of them make a second.
+#[test]
+fn ideal_peaks_are_those_of_the_motion_not_of_rows() {
+    let place = Place::new();
+    place.write("four-bar.toml", &place.good("init four-bar"));
+    let peak = |interval: &str| {
+        let line =
+            "run four-bar.toml --json --quiet --force --out r --set simulation.output_interval=";
+        let summary: Value =
+            serde_json::from_str(&place.good(&format!("{line}{interval}"))).unwrap();
+        summary["ideal_peak_actuator_torque_Nm"].as_f64().unwrap()
+    };
+    let (few, many) = (peak("0.1"), peak("5e-4"));
+    assert!((few - many).abs() < 1e-2 * many, "{few} {many}");
+}
+
 /// Machines without a phase are not advised to sweep over it.
 #[test]
 fn a_chaotic_run_advises_what_its_machine_has() {

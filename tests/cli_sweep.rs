@@ -357,7 +357,19 @@ fn starts_give_means_with_intervals_group_by_group() {
     // Without starts there are no means, and the page says what that is worth.
     place.good("sweep --vary joints.clearance=1e-4,5e-4 --duration 0.1 --quiet --out t");
     assert!(!place.path("t/statistics.csv").exists());
-    assert!(place.read("t/index.html").contains("are one draw"));
+    let page = place.read("t/index.html");
+    assert!(page.contains("are one draw"));
+    // The median of two is their mean.
+    let table = place.read("t/sweep.csv");
+    let mut rows = csv::Reader::from_reader(table.as_bytes());
+    let peak = rows.headers().unwrap().iter().position(|h| h == "peak_contact_force_N").unwrap();
+    let peaks: Vec<f64> = rows.records().map(|row| row.unwrap()[peak].parse().unwrap()).collect();
+    let middle = freeplay::report::number(0.5 * (peaks[0] + peaks[1]));
+    let [low, high] =
+        [peaks[0].min(peaks[1]), peaks[0].max(peaks[1])].map(freeplay::report::number);
+    let facts: String =
+        page.split('<').filter_map(|part| part.split_once('>')).map(|(_, t)| t).collect();
+    assert!(facts.contains(&format!("{middle}median; from {low} to {high}")), "{facts}");
 }
 
 /// Runs draw no random numbers: rows that differ in their seed alone are equal and no starts of their own.

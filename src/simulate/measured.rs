@@ -9,10 +9,6 @@ use std::ops::ControlFlow;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant as Clock;
 
-/// Longest time in s between two looks at the machine without clearance: ten rows by default. Peaks between rows
-/// that are farther apart would be missed.
-const LONGEST_LOOK: f64 = 5e-3;
-
 /// Simulates a machine for its figures, its energy balanced, and writes nothing. `observe` is shown the
 /// machine and each row, beside the same instant without clearance.
 pub fn measured(
@@ -35,18 +31,8 @@ pub fn measured_until(
     let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
     let ideal = &mut machine.ideal;
     let (control, schedule) = (machine.control, machine.schedule);
-    let mut before = 0.0;
     let ended = engine::run_balanced(mechanism, control, schedule, stop, &mut |instant| {
-        if ideal.is_kinematic() {
-            // 1e-9 forgives rounding.
-            let looks = ((instant.t - before) / LONGEST_LOOK * (1.0 - 1e-9)).ceil();
-            for k in 1..looks as usize {
-                let t = before + (instant.t - before) * k as f64 / looks;
-                recorder.ideal(mechanism, t, &ideal.at(t));
-            }
-            before = instant.t;
-        }
-        let ideal = ideal.at(instant.t);
+        let ideal = recorder.ideal_at(mechanism, ideal, instant.t);
         recorder.row(mechanism, instant, &ideal);
         observe(mechanism, instant, &ideal);
         ControlFlow::Continue(())

@@ -4,7 +4,7 @@ use super::provenance::Provenance;
 use super::watched::Watched;
 use crate::engine::{Instant, Work};
 use crate::mechanism::{Bearing, JointIndex, Mechanism};
-use crate::model::{IdealInstant, Machine, radial_clearance};
+use crate::model::{Ideal, IdealInstant, Machine, radial_clearance};
 use crate::scenario::{Law, Scenario};
 use serde::Serialize;
 
@@ -163,6 +163,9 @@ pub struct Recorder {
     rubbed: Vec<Vec<f64>>,
 }
 
+/// Longest time in s between two looks at the machine without clearance: ten rows by default.
+const LONGEST_LOOK: f64 = 5e-3;
+
 #[derive(Clone, Debug)]
 struct JointRecord {
     name: String,
@@ -241,7 +244,7 @@ impl Recorder {
         let known = known + ideal.drive_forces.iter().sum::<f64>();
         self.rows_without_ideal += u64::from(!known.is_finite());
         self.max_path_error = self.max_path_error.max(path_error);
-        self.ideal(mechanism, instant.t, ideal);
+        self.ideal_peaks(mechanism, ideal);
 
         for ((joint, contact), tally) in
             self.joints.iter_mut().zip(&now.contacts).zip(instant.tallies)
@@ -263,11 +266,27 @@ impl Recorder {
         }
     }
 
-    /// Takes an instant `t` (s) of the machine without clearance: that of a row, or one between two.
-    pub fn ideal(&mut self, mechanism: &Mechanism, t: f64, ideal: &IdealInstant) {
-        if t < self.settle {
-            return;
+    /// The machine without clearance at the next row, of time `t` (s), after looks at it since the last one: peaks between
+    /// rows that are far apart would be missed.
+    pub fn ideal_at<'i>(
+        &mut self,
+        mechanism: &Mechanism,
+        ideal: &'i mut Ideal,
+        t: f64,
+    ) -> IdealInstant<'i> {
+        if ideal.is_kinematic() && t >= self.settle {
+            let last = self.span.map_or(self.settle, |[_, last]| last);
+            // 1e-9 forgives rounding.
+            let looks = ((t - last) / LONGEST_LOOK * (1.0 - 1e-9)).ceil();
+            for k in 1..looks as usize {
+                let between = ideal.at(last + (t - last) * k as f64 / looks);
+                self.ideal_peaks(mechanism, &between);
+            }
         }
+        ideal.at(t)
+    }
+
+    fn ideal_peaks(&mut self, mechanism: &Mechanism, ideal: &IdealInstant) {
         let turns = |i: usize| matches!(mechanism.actuators[i].joint, JointIndex::Revolute(_));
         let largest = |of_revolute: bool| {
             let drives = (0..ideal.drive_forces.len()).filter(|&i| turns(i) == of_revolute);

@@ -140,7 +140,7 @@ pub fn recorded(
     let ideal = &mut machine.ideal;
     let (control, schedule) = (machine.control, machine.schedule);
     let ended = engine::run_balanced(mechanism, control, schedule, stop, &mut |instant| {
-        let ideal = ideal.at(instant.t);
+        let ideal = recorder.ideal_at(mechanism, ideal, instant.t);
         recorder.row(mechanism, instant, &ideal);
         gallery.row(mechanism, instant, &ideal);
         film.row(mechanism, instant, &ideal);
