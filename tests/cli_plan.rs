@@ -190,6 +190,11 @@ fn what_cannot_be_planned_is_told() {
     place.write("fall.toml", "[mechanism]\nkind = \"pendulum\"\n[sensors]\n");
     let done = place.freeplay("plan --rig fall.toml --detect payload");
     assert_eq!(done.code, 2, "{}", done.err);
+    place.write("stage.toml", "[mechanism]\nkind = \"drive-stage\"\n");
+    place.refused(
+        "plan --rig stage.toml --detect payload",
+        &["q1, F1: has neither noise nor resolution", "freeplay expand"],
+    );
 }
 
 /// An effect that leaves every residual as it is: what an encoder that nobody reads gets wrong.

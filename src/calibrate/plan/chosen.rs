@@ -117,8 +117,10 @@ impl Search<'_> {
         let found = best(self.ground.maker.numbers(), seed, self.effort, &worth, &said);
         (self.ground.tell)("looking at the best motions with clearance and noise");
         let mut chosen: Option<Chosen> = None;
-        for candidate in found {
-            let Some(finished) = self.finished(&candidate.numbers)? else { continue };
+        // The present motion as it is, too: a planned one is never worse.
+        let all = self.ground.maker.as_present().into_iter();
+        for numbers in all.chain(found.into_iter().map(|candidate| candidate.numbers)) {
+            let Some(finished) = self.finished(&numbers)? else { continue };
             if chosen.as_ref().is_none_or(|chosen| finished.worth > chosen.worth) {
                 chosen = Some(finished);
             }

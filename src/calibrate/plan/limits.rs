@@ -162,20 +162,24 @@ fn range(rig: &Scenario, joint: &str) -> Option<[f64; 2]> {
     })
 }
 
-/// What a drive was told in the recordings, and the largest force that was measured of it.
-fn used(mechanism: &Mechanism, drive: usize, recordings: &[Recording]) -> Option<Used> {
+/// What a drive was told, row by row, in m or rad; none where a recording does not say.
+pub fn positions(mechanism: &Mechanism, drive: usize, recording: &Recording) -> Option<Vec<f64>> {
     let told = |sensor: &crate::mechanism::Sensor| matches!(sensor.reads, Reads::Command(of) if of == drive);
     mechanism.sensors.iter().position(told)?;
+    let source = commands(mechanism, recording);
+    let mut now = vec![Command::default(); mechanism.actuators.len()];
+    let rows = (0..recording.samples).map(|row| {
+        source.at(row as f64 * recording.interval, &mut now);
+        now[drive].position
+    });
+    Some(rows.collect())
+}
+
+/// What a drive was told in the recordings, and the largest force that was measured of it.
+fn used(mechanism: &Mechanism, drive: usize, recordings: &[Recording]) -> Option<Used> {
     let mut all: Option<Used> = None;
     for recording in recordings {
-        let source = commands(mechanism, recording);
-        let mut now = vec![Command::default(); mechanism.actuators.len()];
-        let position: Vec<f64> = (0..recording.samples)
-            .map(|row| {
-                source.at(row as f64 * recording.interval, &mut now);
-                now[drive].position
-            })
-            .collect();
+        let position = positions(mechanism, drive, recording)?;
         // Differences of rows, not the spline's curvature: commands are rounded to nine decimals.
         let rate = derivative(&position, recording.interval);
         let acceleration = derivative(&rate, recording.interval);

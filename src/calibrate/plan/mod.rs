@@ -1,9 +1,9 @@
 //! What to record next: a motion that tells rivals apart, or shows an effect, as well as the machine's limits allow.
 //!
 //! [`prepare`](prepare::prepare) reads what is asked ([`asked`]) and within which [`limits`]; [`series`] and [`motion`] make
-//! motions out of numbers, [`path`] says whether the machine can follow them; [`sight`] is what a calibration would see
-//! along one, [`separation`] how far apart models are there; `posing` gives questions their numbers, [`search`] finds those of
-//! motions, `chosen` looks at the best with clearance; [`outcome`] is the whole way,
+//! motions out of numbers and the `present` one, [`path`] says whether the machine can follow them; [`sight`] is what a
+//! calibration would see along one, [`separation`] how far apart models are there; `posing` gives questions their numbers,
+//! [`search`] finds those of motions, `chosen` looks at the best with clearance; [`outcome`] is the whole way,
 //! [`instruments`] what one more sensor would bring, [`report`] what is written.
 
 pub mod asked;
@@ -16,6 +16,7 @@ mod page;
 pub mod path;
 mod posing;
 pub mod prepare;
+mod present;
 pub mod report;
 pub mod search;
 pub mod separation;

@@ -1,6 +1,7 @@
 //! Motions of all drives of a machine, made of numbers so that whatever the numbers are, no limit is left.
 
 use super::limits::Limit;
+use super::present::Present;
 use super::series::Series;
 use crate::calibrate::sensed::recording::Recording;
 use crate::mechanism::{JointIndex, Mechanism, Reads};
@@ -23,6 +24,10 @@ const NEAR: f64 = 0.5;
 /// half of it.
 const DRIFT: f64 = 0.5;
 
+/// Slope of the number that says how much of a motion is new beside the present one: four tenths of what is drawn keep
+/// three quarters of one of the two.
+const MIXED: f64 = 4.0;
+
 /// A motion of all drives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
@@ -39,23 +44,38 @@ pub struct Maker {
     pub limits: Vec<Limit>,
     /// Coordinates (m, rad) around which motions are made smaller where they meet something else than these limits.
     pub home: Vec<f64>,
+    /// The present motion, if planned ones may be made of it.
+    pub present: Option<Vec<Present>>,
 }
 
 impl Maker {
-    /// How many numbers make a motion.
+    /// How many numbers make a motion: those of each drive, and how much of it is new.
     pub fn numbers(&self) -> usize {
-        self.limits.len() * NUMBERS
+        self.limits.len() * NUMBERS + usize::from(self.present.is_some())
+    }
+
+    /// The numbers of the present motion and nothing else; none where it is no part of what is made.
+    pub fn as_present(&self) -> Option<Vec<f64>> {
+        let mut numbers = vec![0.0; self.numbers()];
+        self.present.as_ref()?;
+        *numbers.last_mut()? = f64::NEG_INFINITY;
+        Some(numbers)
     }
 
     /// The motion that numbers (of the order of one) stand for, `share` (0 to 1) of its size about home: within strokes,
     /// speeds and accelerations whatever they are.
     pub fn motion(&self, numbers: &[f64], share: f64) -> Motion {
         let drives = numbers.chunks(NUMBERS).zip(&self.limits).zip(&self.home);
-        Motion {
-            drives: drives
-                .map(|((numbers, limit), home)| self.series(numbers, limit, *home, share))
-                .collect(),
-        }
+        let all = drives.map(|((numbers, limit), home)| self.series(numbers, limit, *home, share));
+        let Some(present) = &self.present else { return Motion { drives: all.collect() } };
+        let new = logistic(MIXED * numbers.last().copied().unwrap_or_default());
+        let mixed = all.zip(present).zip(&self.home).map(|((series, present), home)| {
+            let start = home + share * (present.start - home);
+            series
+                .scaled(new, new * series.start + (1.0 - new) * start)
+                .beside((1.0 - new) * share * present.share, &present.rows)
+        });
+        Motion { drives: mixed.collect() }
     }
 
     /// A motion of `share` of another one's size, about home.
@@ -114,6 +134,11 @@ fn logistic(x: f64) -> f64 {
 }
 
 impl Motion {
+    /// Whether it is the present one.
+    pub fn is_present(&self) -> bool {
+        self.drives.iter().all(Series::is_present)
+    }
+
     /// What a machine is recorded like along this motion: its commands, to nine decimals as logs have them, and for what
     /// sensors will show where the machine stands at the start.
     pub fn like(
@@ -171,16 +196,43 @@ mod tests {
                 limit([0.25, 0.35], 1.0, 0.3),
             ],
             home: vec![0.1, 0.0, 0.3],
+            present: None,
         }
+    }
+
+    /// The same beside a present motion that goes to the limits.
+    fn maker_beside_another() -> Maker {
+        let wave = |low: f64, high: f64| -> Vec<f64> {
+            let at =
+                |row: i32| 0.5 * (1.0 - (std::f64::consts::TAU * f64::from(row) / 750.0).cos());
+            (0..=3000).map(|row| low + (high - low) * at(row)).collect()
+        };
+        let told = [wave(-0.3, 0.5), wave(0.0, 3.0), wave(0.26, 0.268)];
+        let present = told.iter().map(|told| Present {
+            rows: std::sync::Arc::new(Rows::new(told, 1e-3)),
+            start: told[0],
+            share: 1.0,
+        });
+        Maker { present: Some(present.collect()), ..maker() }
+    }
+
+    #[test]
+    fn the_present_motion_is_one_of_those_that_are_made() {
+        let maker = maker_beside_another();
+        let motion = maker.motion(&maker.as_present().unwrap(), 1.0);
+        assert!(motion.is_present());
+        assert!((motion.drives[0].at(0.375)[0] - 0.5).abs() < 1e-12);
+        let most = maker.motion(&vec![0.5; maker.numbers()], 1.0);
+        assert!(!most.is_present());
     }
 
     /// 10 000 motions of random numbers, small and absurd ones: none leaves a limit at any of 4000 instants, nor between
     /// rows that are written to nine decimals, by second differences of these.
     #[test]
     fn no_numbers_make_a_motion_outside_the_limits() {
-        let maker = maker();
         let mut random = ChaCha8Rng::seed_from_u64(7);
-        for trial in 0..10_000 {
+        let makers = [maker(), maker_beside_another()];
+        for (trial, maker) in (0..10_000).zip(makers.iter().cycle()) {
             let size = [0.1, 1.0, 10.0, 1e3][trial % 4];
             let draw = |random: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(random) };
             let numbers: Vec<f64> =
@@ -224,5 +276,6 @@ mod tests {
         }
     }
 
+    use super::super::present::Rows;
     use super::super::series::Extremes;
 }

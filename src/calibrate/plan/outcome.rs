@@ -6,6 +6,7 @@ use super::motion::{Maker, Motion};
 use super::path::Way;
 use super::posing::pose_all;
 use super::prepare::Prepared;
+use super::present::present;
 use super::separation::{Apart, Posed, apart, detectable, named, nearest};
 use super::sight::Sight;
 use crate::calibrate::result::CalibrateError;
@@ -76,6 +77,10 @@ pub fn plan(prepared: &Prepared, tell: &(dyn Fn(&str) + Sync)) -> Result<Outcome
         period: (*samples - 1) as f64 * interval,
         limits: prepared.limits.clone(),
         home: prepared.home.clone(),
+        present: prepared
+            .present
+            .as_ref()
+            .and_then(|like| present(declared, like, &prepared.limits, *samples)),
     };
     tell("looking for motions that the machine can follow");
     let random = random(&maker, &way, *seed);

@@ -86,6 +86,7 @@ pub fn prepare(rig: Scenario, request: &Request) -> Result<Prepared, CalibrateEr
     let way = Way::of(&declared);
     refuse(against_rig(&described, &declared, way, 1))?;
     refuse(not_driven(&rig, &declared, way).into_iter().collect())?;
+    refuse(without_noise(&rig, &declared).into_iter().collect())?;
     let paths: Vec<&Path> = request.data.iter().map(PathBuf::as_path).collect();
     let recordings = match paths.is_empty() {
         true => own_motion(&described)?.into_iter().collect(),
@@ -174,6 +175,30 @@ fn not_driven(rig: &Scenario, declared: &Mechanism, way: Way) -> Option<String> 
     };
     let help = "a drive of kind \"servo\" or \"prescribed\" follows a planned motion";
     Some(rig.problem(key, message, help).to_string())
+}
+
+/// Which sensors a machine is not to be planned with, because anything would show in what has no noise.
+fn without_noise(rig: &Scenario, declared: &Mechanism) -> Option<String> {
+    let exact = |sensor: &&crate::mechanism::Sensor| {
+        !sensor.tells() && sensor.std == 0.0 && sensor.resolution == 0.0
+    };
+    let exact: Vec<&str> =
+        declared.sensors.iter().filter(exact).map(|sensor| sensor.column.as_str()).collect();
+    if exact.is_empty() {
+        return None;
+    }
+    let message = format!(
+        "{}: has neither noise nor resolution, so that anything would show",
+        exact.join(", ")
+    );
+    let help = match rig.mechanism {
+        scenario::Mechanism::Described(_) => "write the std of its [[sensor]], or its resolution",
+        scenario::Mechanism::ThreeRpr(_) => "write its noise in [sensors], or its resolution",
+        _ => {
+            "`freeplay expand FILE` writes this machine with its [[sensor]]s: declare the std of each, or its resolution"
+        }
+    };
+    Some(rig.problem("sensor", &message, help).to_string())
 }
 
 /// The motion of a rig's own file as a recording of its commands; none where it only holds still.

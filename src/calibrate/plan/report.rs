@@ -180,7 +180,7 @@ pub fn into_folder(
     });
     let mut planned = Planned {
         provenance: Provenance::of(&prepared.rig),
-        summary: summary(&questions, &open),
+        summary: summary(&questions, &open, outcome.motion.is_present()),
         seed: prepared.seed,
         questions,
         present: prepared.present.as_ref().map(|present| present.name.clone()),
@@ -244,7 +244,7 @@ fn question(answered: &Answered) -> QuestionReport {
     }
 }
 
-fn summary(questions: &[QuestionReport], open: &[String]) -> String {
+fn summary(questions: &[QuestionReport], open: &[String], same: bool) -> String {
     let one = |question: &QuestionReport| {
         let after = number(question.after.sigma);
         let wanted = number(question.wanted_sigma);
@@ -264,13 +264,13 @@ fn summary(questions: &[QuestionReport], open: &[String]) -> String {
         [] => String::new(),
         open => format!(" Not answered by a new motion within these limits: {}.", open.join("; ")),
     };
+    // A present motion of another length is no candidate.
     let better = |question: &QuestionReport| {
         question.before.as_ref().is_some_and(|before| before.sigma > question.after.sigma)
     };
-    let kept = if questions.iter().any(better) {
-        " The present motion does better than any that was found: keep it."
-    } else {
-        ""
+    let kept = match same || questions.iter().all(better) {
+        true => " The present motion does better than any other that was found: keep it.",
+        false => "",
     };
     all.join(" ") + &open + kept
 }
