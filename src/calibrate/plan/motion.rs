@@ -204,7 +204,7 @@ mod tests {
     fn maker_beside_another() -> Maker {
         let wave = |low: f64, high: f64| -> Vec<f64> {
             let at =
-                |row: i32| 0.5 * (1.0 - (std::f64::consts::TAU * f64::from(row) / 750.0).cos());
+                |row: i32| 0.5 * (1.0 - (std::f64::consts::TAU * f64::from(row) / 1000.0).cos());
             (0..=3000).map(|row| low + (high - low) * at(row)).collect()
         };
         let told = [wave(-0.3, 0.5), wave(0.0, 3.0), wave(0.26, 0.268)];
@@ -221,7 +221,7 @@ mod tests {
         let maker = maker_beside_another();
         let motion = maker.motion(&maker.as_present().unwrap(), 1.0);
         assert!(motion.is_present());
-        assert!((motion.drives[0].at(0.375)[0] - 0.5).abs() < 1e-12);
+        assert!((motion.drives[0].at(0.5)[0] - 0.5).abs() < 1e-12);
         let most = maker.motion(&vec![0.5; maker.numbers()], 1.0);
         assert!(!most.is_present());
     }

@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn rows_are_met_and_chords_lie_between() {
         let rows = Rows::new(&[0.5, 0.5, 0.75, 1.25], 0.25);
-        assert_eq!(rows.at(0.5), [0.25, 1.5, 2.0]);
+        assert_eq!(rows.at(0.5), [0.25, 1.5, 3.0]);
         assert_eq!(rows.at(0.625)[0], 0.5);
         assert_eq!(rows.at(9.0)[0], 0.75);
         assert_eq!(rows.range(0), [0.0, 0.75]);
