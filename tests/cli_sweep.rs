@@ -382,6 +382,24 @@ fn a_varied_seed_is_told_and_counts_as_no_start() {
     assert!(!place.path("s/statistics.csv").exists());
 }
 
+/// A key that no run looks at is told, one that some runs look at is not.
+#[test]
+fn keys_that_act_in_no_run_are_told() {
+    let place = Place::new();
+    let idle = "--set drive.stiffness=1e6";
+    let done = place.freeplay(&format!(
+        "sweep {SHORT} {idle} --vary joints.clearance=1e-4,2e-4 --out a --quiet"
+    ));
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(
+        done.err.starts_with("warning: --set drive.stiffness: changes nothing"),
+        "{}",
+        done.err
+    );
+    assert_eq!(done.err.lines().count(), 1, "{}", done.err);
+    place.good(&format!("sweep {SHORT} {idle} --vary drive.mode=servo,prescribed --out b --quiet"));
+}
+
 #[test]
 fn values_and_parts_that_are_given_twice_are_refused() {
     let place = Place::new();

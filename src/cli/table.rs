@@ -96,7 +96,8 @@ fn blocks(width: usize, heads: &[&str], rows: &[Vec<String>]) -> String {
         let first = first.map(|first| filled(width, "  ", "  ", first)).unwrap_or_default();
         let others = others.filter(|(_, cell)| !cell.trim().is_empty());
         let line = |(head, cell): (&&str, &String)| {
-            filled(width, "    ", "      ", &format!("{head}: {cell}"))
+            let named = if head.is_empty() { cell.clone() } else { format!("{head}: {cell}") };
+            filled(width, "    ", "      ", &named)
         };
         first + &others.map(line).collect::<String>()
     };
@@ -159,11 +160,10 @@ mod tests {
 
     #[test]
     fn rows_whose_words_do_not_fit_side_by_side_stand_below_each_other() {
-        let heads = ["machine", "explained-by-itself", "explained-by-others", "misunderstood"];
-        let row = ["six-bar", "3.5 % to 4.5 %", "", "1.5 µm"].map(str::to_owned);
-        let text = of_width(40, "lrrr", &heads, [row.to_vec()].into_iter());
-        let expected =
-            "  six-bar\n    explained-by-itself: 3.5 % to 4.5 %\n    misunderstood: 1.5 µm\n";
+        let heads = ["machine", "explained-by-itself", "explained-by-others", "misunderstood", ""];
+        let row = ["six-bar", "3.5 % to 4.5 %", "", "1.5 µm", "too long"].map(str::to_owned);
+        let text = of_width(40, "lrrrl", &heads, [row.to_vec()].into_iter());
+        let expected = "  six-bar\n    explained-by-itself: 3.5 % to 4.5 %\n    misunderstood: 1.5 µm\n    too long\n";
         assert_eq!(text, expected);
     }
 

@@ -6,6 +6,7 @@ use super::output;
 use super::progress::Progress;
 use super::table::table;
 use crate::report::{length, number};
+use crate::scenario::Scenario;
 use crate::simulate::{assemble, findings};
 use crate::study::wear::{Predicted, Request, WEAR_PREDICTED_FILE, WearError, period_of, wear};
 use clap::Args;
@@ -92,6 +93,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         );
         return Err(wrong(message));
     }
+    warn_of_part_cycles(period, &scenario);
     if !whole {
         let settle = scenario.simulation.settle();
         scenario.simulation.settle = Some(settle);
@@ -110,6 +112,18 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         progress.watched(arguments.cost.yes, |watch| wear(&scenario, request, folder, watch))?;
     arguments.print.result(&predicted.json, || text(&predicted))?;
     Ok(())
+}
+
+/// Says that a cycle is not a whole number of the motion's own.
+fn warn_of_part_cycles(period: f64, scenario: &Scenario) {
+    let Some(own) = period_of(scenario) else { return };
+    let times = period / own;
+    if (times - times.round()).abs() > 1e-6 * times {
+        output::complain(&format!(
+            "warning: --period: is {period} s, which is no whole number of the motion's own {own} s: a cycle wears what \
+             the run wears on average in that time, whatever part of the motion it is; expected {own} s or a multiple"
+        ));
+    }
 }
 
 /// The result for people.

@@ -51,7 +51,7 @@ impl Document {
     /// from 0, and the number after the last makes a new one if its `kind` is what is set. A new `kind` starts its section afresh: what the file gave for the old kind (but
     /// not what earlier overrides gave) is dropped, because it means nothing to the new one. A new contact
     /// `law` drops the file's keys that belong to other laws, unless joints have laws of their own, which may
-    /// use them.
+    /// use them. A fixed step drops the file's tolerance, and the other way round.
     pub(super) fn set(&mut self, assignment: &str) -> Result<(), Problem> {
         let (path, value) = assignment.split_once('=').unwrap_or((assignment, ""));
         let path = path.trim();
@@ -83,6 +83,11 @@ impl Document {
         }
         if let Some(section) = path.strip_suffix(".law") {
             self.forget_other_law(section, &value);
+        }
+        for [one, other] in [["step", "tolerance"], ["tolerance", "step"]] {
+            if path.strip_prefix("simulation.") == Some(one) {
+                self.forget_beside("simulation", other);
+            }
         }
         let mut node = child_of_table(&mut self.table, keys[0], &keys[1..]);
         let mut so_far = keys[0].to_owned();
@@ -133,6 +138,13 @@ impl Document {
             return;
         }
         self.origins.drop_file_keys(section, table, |_| true);
+    }
+
+    /// Drops what a file gave for a key that goes with no other value of its section.
+    fn forget_beside(&mut self, section: &str, other: &str) {
+        if let Some(Value::Table(table)) = self.table.get_mut(section) {
+            self.origins.drop_file_keys(section, table, |key| key == other);
+        }
     }
 
     fn forget_other_law(&mut self, section: &str, law: &Value) {

@@ -1,6 +1,6 @@
 //! What can be said against a machine before it is simulated.
 
-use super::{bodies, conformal, oil, plausible, three_rpr};
+use super::{bodies, conformal, oil, plausible, three_rpr, unacting};
 use crate::engine::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism};
 use crate::model::{DrivenPath, Machine, Singular, assemble};
@@ -64,6 +64,9 @@ pub fn doubts(scenario: &Scenario) -> Vec<Finding> {
     let mut found: Vec<Finding> = scenario.unused().into_iter().map(Finding::warning).collect();
     if let Ok(machine) = assemble(scenario) {
         found.extend(plausible::findings(scenario, &machine));
+        // Of a joint's friction that is looked for it does matter how fast it sets in.
+        let acts = |finding: &Finding| finding.problem.path == "contact.friction_velocity";
+        found.extend(unacting(scenario, &machine).into_iter().filter(|finding| !acts(finding)));
     }
     found
 }

@@ -148,8 +148,11 @@ fn growth(mechanism: &Mechanism, distances: &Distances) -> Option<f64> {
         let dt = p.0 - mean.0;
         (s.0 + dt * (p.1 - mean.1), s.1 + dt * dt)
     });
+    let (span, rate) = (points.last()?.0 - points.first()?.0, covariance / variance);
+    // Where a distance stays what it is, rounding is no growth.
+    let rate = if (rate * span).abs() < 1e-9 { 0.0 } else { rate };
     // Fewer than ten points (1 ms) are no range.
-    (points.len() >= 10).then_some(covariance / variance)
+    (points.len() >= 10).then_some(rate)
 }
 
 /// Largest Lyapunov exponent in 1/s of a mechanism, from one pair of runs of `duration` s that starts

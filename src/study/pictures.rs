@@ -70,7 +70,7 @@ impl Gallery {
             name: joint.name.clone(),
             title: format!("Actuator {}", joint.name),
             label: match joint.joint {
-                JointIndex::Revolute(_) => "torque (N m)",
+                JointIndex::Revolute(_) => TORQUE,
                 JointIndex::Prismatic(_) => "force (N)",
             },
             force: envelope(),
@@ -241,14 +241,29 @@ impl Gallery {
                 curves: vec![solid(&drive.name, &drive.force), ideal(drive.ideal.points())],
             })
             .collect();
+        let turning = self.drives.iter().filter(|drive| drive.label == TORQUE).count();
+        let (title, what) = match self.drives.len() - turning {
+            0 => (
+                "Actuator torques",
+                "Torque of each actuator on its joint, counterclockwise positive",
+            ),
+            sliding if sliding == self.drives.len() => (
+                "Actuator forces",
+                "Force of each actuator on its rod, positive when it pushes outward",
+            ),
+            _ => (
+                "Actuator forces and torques",
+                "Force of each actuator that slides, positive when it pushes outward, and torque of each that turns, \
+                 counterclockwise positive",
+            ),
+        };
         Ok(Picture {
             file: "actuator-forces.svg".into(),
-            title: "Actuator forces".into(),
-            caption:
-                "Force of each actuator on its rod, positive when it pushes outward, and what \
-                      the ideal machine needs for the same motion (dashed). The hits in the joints \
+            title: title.into(),
+            caption: format!(
+                "{what}, and what the ideal machine needs for the same motion (dashed). The hits in the joints \
                       pass straight through to the actuators."
-                    .into(),
+            ),
             svg: panels_svg(&panels)?,
         })
     }
@@ -314,6 +329,9 @@ fn largest(points: &[(f64, f64)]) -> f64 {
 }
 
 const TIME: &str = "time (s)";
+
+/// Label of an axis of torques.
+const TORQUE: &str = "torque (N m)";
 
 fn solid(name: &str, envelope: &Envelope) -> Curve {
     Curve { name: name.to_owned(), points: envelope.points(), style: Style::Solid }

@@ -118,6 +118,20 @@ fn the_hash_follows_the_meaning_not_the_spelling() {
     assert_ne!(hash, good(MINIMAL, &["joints.clearance=5.000001e-4"]).hash());
 }
 
+/// A file that `init` wrote, or a result's, says one of them: an override means the other instead.
+#[test]
+fn a_step_that_is_set_takes_the_place_of_a_files_tolerance() {
+    let with = |line: &str, set: &[&str]| {
+        let text = format!("[mechanism]\nkind = \"3rpr\"\n[simulation]\n{line}\n");
+        Scenario::from_text(&text, "my.toml", &sets(set)).map(|scenario| scenario.simulation)
+    };
+    let fixed = with("tolerance = 1e-6", &["simulation.step=1e-5"]).unwrap();
+    assert_eq!((fixed.step, fixed.tolerance), (Some(1e-5), None));
+    let adaptive = with("step = 1e-5", &["simulation.tolerance=1e-6"]).unwrap();
+    assert_eq!((adaptive.step, adaptive.tolerance), (None, Some(1e-6)));
+    assert!(with("", &["simulation.tolerance=1e-6", "simulation.step=1e-5"]).is_err());
+}
+
 #[test]
 fn overrides_take_toml_or_a_bare_word() {
     let scenario = built_in(&[

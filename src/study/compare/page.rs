@@ -105,7 +105,7 @@ fn chaos_facts(chaos: &ChaosResult) -> [Fact; 2] {
                 |time| format!("{} s", number(time)),
             ),
             note: format!(
-                "until then the law's runs at their tolerance are exact to {} at the platform{}",
+                "until then the law's runs at their tolerance are exact to {} at the output body{}",
                 length(chaos.horizon_error_m),
                 if chaos.e_folding_s.is_some() {
                     "; later digits are one of many motions"

@@ -154,8 +154,8 @@ fn beginnings(scenario: &Scenario, plan: &Plan) -> Result<Vec<Beginning>, Compar
 
 fn side_by_side(beginnings: Vec<Beginning>) -> Result<Picture, ReportError> {
     let labels = [
-        ("Distance of the platform from its ideal position", "distance (mm)"),
-        ("Acceleration of the platform, peak since the row before", "|a| (m/s²)"),
+        ("Distance of the output body from its ideal position", "distance (mm)"),
+        ("Acceleration of the output body, peak since the row before", "|a| (m/s²)"),
         ("Contact force, largest of all joints, peak since the row before", "force (N)"),
     ];
     let panels: Vec<Panel> = labels
@@ -240,7 +240,7 @@ fn parting(looks: &[Chaos]) -> Result<Picture, ReportError> {
         file: "chaos.svg".into(),
         title: "What chaos leaves".into(),
         caption: format!(
-            "Distance of the platforms of two runs under the law whose starts differ by {} m. A \
+            "Distance between the output bodies of two runs under the law whose starts differ by {} m. A \
              straight rise is exponential growth; its slope is the largest Lyapunov exponent.",
             number(chaos::DISPLACEMENT)
         ),

@@ -25,15 +25,15 @@ pub const QUANTITIES: [Quantity; COUNT] = [
     quantity("max_path_error_m", "path error, largest", "m"),
     quantity(
         "rms_smooth_acceleration_deviation_m_s2",
-        "platform acceleration, 10 ms means, rms deviation from ideal",
+        "output acceleration, 10 ms means, rms deviation from ideal",
         "m/s²",
     ),
     quantity(
         "rms_acceleration_deviation_m_s2",
-        "platform acceleration, rms deviation from ideal",
+        "output acceleration, rms deviation from ideal",
         "m/s²",
     ),
-    quantity("peak_platform_acceleration_m_s2", "platform acceleration, peak", "m/s²"),
+    quantity("peak_platform_acceleration_m_s2", "output acceleration, peak", "m/s²"),
     quantity("rms_actuator_force_deviation_N", "actuator forces, rms deviation from ideal", "N"),
     quantity("peak_actuator_force_N", "actuator force, peak", "N"),
     quantity("median_contact_force_N", "contact force while touching, median", "N"),

@@ -9,6 +9,7 @@
 //! there is.
 
 mod design;
+mod doubts;
 mod forecast;
 mod journal;
 mod merge;

@@ -3,7 +3,7 @@
 use super::Record;
 use super::journal::Rows;
 use super::pictures;
-use super::row::{FORCES, Status, status};
+use super::row::{FORCES, Status, of_joint, status};
 use super::statistics::{self, Spread, groups, has_starts, shared};
 use crate::report::{self, Fact, Part, Picture, Table, number};
 use crate::study::compare::QUANTITIES;
@@ -112,11 +112,12 @@ fn short(value: &str) -> String {
 }
 
 /// Figures that no comparison has.
-const OTHERS: [(&str, &str); 8] = [
-    ("ideal_peak_platform_acceleration_m_s2", "ideal machine: platform acceleration, peak (m/s²)"),
+const OTHERS: [(&str, &str); 9] = [
+    ("ideal_peak_platform_acceleration_m_s2", "ideal machine: output acceleration, peak (m/s²)"),
     ("ideal_peak_actuator_force_N", "ideal machine: actuator force, peak (N)"),
     ("ideal_peak_actuator_torque_Nm", "ideal machine: actuator torque, peak (N m)"),
     ("peak_actuator_torque_Nm", "actuator torque, peak (N m)"),
+    ("rms_actuator_torque_deviation_Nm", "actuator torques, rms deviation from ideal (N m)"),
     ("smallest_step_s", "shortest step (s)"),
     ("largest_step_s", "longest step (s)"),
     ("step_error_m_s", "error of a step (m/s)"),
@@ -131,7 +132,8 @@ fn in_words(column: &str) -> String {
         Some(quantity) => format!("{} ({})", quantity.label, quantity.unit),
         None => {
             let other = OTHERS.iter().find(|(name, _)| *name == column);
-            other.map_or_else(|| column.replace('_', " "), |(_, words)| (*words).to_owned())
+            let words = other.map(|(_, words)| (*words).to_owned());
+            words.or_else(|| of_joint(column)).unwrap_or_else(|| column.replace('_', " "))
         }
     }
 }

@@ -18,7 +18,7 @@ const OUTPUTS: [Output; 8] = [
     ("peak_contact_force_N", "Peak contact force", "force (N)", 1.0, None),
     (
         "peak_platform_acceleration_m_s2",
-        "Peak platform acceleration",
+        "Peak output acceleration",
         "|a| (m/s²)",
         1.0,
         Some("ideal_peak_platform_acceleration_m_s2"),

@@ -1,10 +1,13 @@
 //! A sweep before it is run: every run's scenario, checked; and one of its runs made.
 
+use super::doubts::doubts;
 use super::record::{hexadecimal, sha256};
 use super::{Design, Identity, Shard, SweepError, Vary, row};
 use crate::measure::bounded;
 use crate::scenario::{Location, Problem, Scenario, Source};
-use crate::simulate::{Machine, Provenance, Severity, assemble, findings, measured_until};
+use crate::simulate::{
+    Machine, Provenance, Severity, assemble, findings, measured_until, unacting,
+};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::io::Read as _;
@@ -34,6 +37,8 @@ struct Checked {
     refused: Option<String>,
     /// What is doubtful about it.
     warning: Option<String>,
+    /// Keys that were set or varied and that its machine does not look at, in words.
+    idle: Vec<String>,
 }
 
 impl Plan {
@@ -183,31 +188,25 @@ impl Plan {
             (0..runs).into_par_iter().map(|run| self.checked(run)).collect();
         let mut hash = Sha256::new();
         let (mut refused, mut warned) = (Vec::new(), Vec::new());
+        let mut idle: Option<Vec<String>> = None;
         for (run, checked) in checked.into_iter().enumerate() {
             let checked = checked.map_err(|problem| {
                 SweepError::input(format!("{} ({})", self.in_words(&problem), self.name(run)))
             })?;
             hash.update(&checked.hash);
             self.marks.push(mark_of(&checked.hash));
+            if checked.refused.is_none() {
+                // What acts in one run is no idle key.
+                let here = |key: &String| checked.idle.contains(key);
+                let left = idle.take().map(|idle| idle.into_iter().filter(here).collect());
+                idle = Some(left.unwrap_or_else(|| checked.idle.clone()));
+            }
             refused.extend(checked.refused.map(|reason| (run, reason)));
             warned.extend(checked.warning.map(|warning| (run, warning)));
         }
         self.identity.runs_hash = hexadecimal(&hash.finalize());
-        if self.design.varied().iter().any(|vary| vary.path == "seed") {
-            self.warnings.push(
-                "--vary seed changes nothing: runs draw no random numbers, so that its rows are equal and no starts of \
-                 their own; a circle has other starts by --vary motion.phase=0..5.5:12"
-                    .to_owned(),
-            );
-        }
-        for vary in self.design.varied() {
-            let set =
-                |set: &&String| set.split_once('=').is_some_and(|(path, _)| path == vary.path);
-            if let Some(set) = self.sets.iter().find(set) {
-                self.warnings
-                    .push(format!("--set {set} does nothing: --vary says what {} is", vary.path));
-            }
-        }
+        self.warnings.extend(doubts(self.design.varied(), &self.sets, &self.base));
+        self.warnings.extend(idle.unwrap_or_default());
         if let Some((run, reason)) = refused.first() {
             let name = self.name(*run);
             if refused.len() == runs {
@@ -239,18 +238,20 @@ impl Plan {
             text += &sha256(&content);
         }
         let hash = sha256(text.as_bytes());
-        let found = match &mut assembled {
-            Ok(machine) => findings(&scenario, machine),
+        let (found, idle) = match &mut assembled {
+            Ok(machine) => (findings(&scenario, machine), unacting(&scenario, machine)),
             Err(problem) => {
                 let refused = Some(self.in_words(problem));
-                return Ok(Checked { hash, refused, warning: None });
+                return Ok(Checked { hash, refused, warning: None, idle: Vec::new() });
             }
         };
         let first = |severity| {
             let finding = found.iter().find(|finding| finding.severity == severity)?;
             Some(self.in_words(&finding.problem))
         };
-        Ok(Checked { hash, refused: first(Severity::Error), warning: first(Severity::Warning) })
+        let idle = idle.iter().map(|finding| self.in_words(&finding.problem)).collect();
+        let (refused, warning) = (first(Severity::Error), first(Severity::Warning));
+        Ok(Checked { hash, refused, warning, idle })
     }
 
     /// A complaint in the words of somebody who wrote `--vary`: to the scenario it is a `--set`.

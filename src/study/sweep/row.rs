@@ -68,6 +68,15 @@ const TORQUES: [&str; 3] = [
 const OF_JOINTS: [[&str; 2]; 3] =
     [["peak_force_", "_N"], ["contact_fraction_", ""], ["impacts_", ""]];
 
+/// What a joint's column is, in words with its unit; none of what is no joint's.
+pub(super) fn of_joint(column: &str) -> Option<String> {
+    let words = ["contact force, peak (N)", "share of time in contact", "impacts"];
+    OF_JOINTS.iter().zip(words).find_map(|([before, after], words)| {
+        let joint = column.strip_prefix(before)?.strip_suffix(after)?;
+        Some(format!("joint {joint}: {words}"))
+    })
+}
+
 /// The columns that a machine has beside [`FIGURES`]: torques, and each joint with a clearance by its name. The
 /// table of the machines that had one before joints had columns stays as it was.
 pub(in crate::study) fn more(base: &Scenario) -> Vec<String> {
