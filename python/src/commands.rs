@@ -6,7 +6,7 @@ use crate::work::{detached, end_if};
 use freeplay::calibrate::result::{CalibrateError, REPORT_FILE};
 use freeplay::calibrate::sensed::predict as along;
 use freeplay::calibrate::sensed::windows::predict::{self as windows, Asked};
-use freeplay::calibrate::{self as calibration, plausibility, recording, sensed};
+use freeplay::calibrate::{self as calibration, answer, recording};
 use freeplay::cli::{compare_steps, effect_described, law_described, laws_to_compare};
 use freeplay::measure::spelling::nearest;
 use freeplay::scenario::Law;
@@ -100,36 +100,10 @@ fn calibrate(
         let left_out = without(&left_out)?;
         let rig = rig.scenario.clone();
         let paths: Vec<&Path> = data.iter().chain(&validate).map(PathBuf::as_path).collect();
-        let prepare = || Folder::prepare(&out, REPORT_FILE, force);
-        if rig.mechanism.has_sensors() {
-            return by_sensors(rig, &paths, data.len(), &left_out, prepare()?, &stop);
-        }
-        if data.len() > 1 {
-            let message =
-                "data: this machine takes one run to calibrate on; give the others to validate";
-            return Err(Failure::Input(message.to_owned()));
-        }
-        let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
-        if !recordings.iter().all(plausibility::is_complete) {
-            calibration::result::refuse(plausibility::incomplete(&rig, &recordings))?;
-            return by_sensors(rig, &paths, data.len(), &left_out, prepare()?, &stop);
-        }
-        let prepared = calibration::result::prepare(rig, recordings)?;
-        let tell = |_: &str, _: f64| end_if(&stop);
-        Ok(calibration::result::into_folder(prepared, &left_out, prepare()?, &tell)?.json)
+        let prepared = answer::prepare(rig, &paths, data.len())?;
+        let folder = Folder::prepare(&out, REPORT_FILE, force)?;
+        Ok(answer::into_folder(prepared, &left_out, folder, &|_: &str| end_if(&stop))?.json)
     })
-}
-
-fn by_sensors(
-    rig: freeplay::scenario::Scenario,
-    paths: &[&Path],
-    count: usize,
-    left_out: &[&'static str],
-    folder: Folder,
-    stop: &AtomicBool,
-) -> Result<String, Failure> {
-    let prepared = sensed::prepare(rig, paths, count)?;
-    Ok(sensed::into_folder(prepared, left_out, folder, &|_: &str| end_if(stop))?.json)
 }
 
 /// How far a model is off along a recording; returns the text of `errors.json`.
@@ -152,15 +126,14 @@ fn predict(
             if let Some(prepared) = windows::prepare(model, &data, Asked { window, fit, from })? {
                 return Ok(windows::into_folder(model, &prepared, prepare()?, &tell)?.json);
             }
-            refuse_windows(asked)?;
-            let prepared = along::prepare(model, &data)?;
-            return Ok(along::into_folder(model, &prepared, prepare()?, &tell)?.json);
+        } else {
+            let read = recording::read_one(&data);
+            let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
+            calibration::predict::check(model, &recording)?;
         }
         refuse_windows(asked)?;
-        let read = recording::read_one(&data);
-        let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
-        calibration::predict::check(model, &recording)?;
-        Ok(calibration::predict::into_folder(model, &recording, prepare()?, &tell)?.json)
+        let prepared = along::prepare(model, &data)?;
+        Ok(along::into_folder(model, &prepared, prepare()?, &tell)?.json)
     })
 }
 

@@ -1,9 +1,10 @@
 //! From recordings of a machine to the effects that its declared model lacks.
 //!
+//! * [`answer`]: the one way in, for any machine.
 //! * [`sensed`]: any mechanism with the sensors that it has; [`record`]: the recordings that a rig would show;
 //!   [`plan`]: what to record next; [`hardware`]: the studies of measured machines.
-//! * The files beside them are for a 3-RPR whose twelve columns are all there; [`outcome::calibrate`] is the whole way, and
-//!   data pass in this order:
+//! * The files beside them are for a 3-RPR whose twelve columns are all there, beside [`sensed`]; [`outcome::calibrate`] is the
+//!   whole way, and data pass in this order:
 //!   * [`recording`], [`plausibility`], `mistaken`: files in, and everything that speaks against them; nothing is repaired.
 //!   * [`rattle`]: two simulations a hair apart say whether the machine is chaotic, and how many replicas are averaged.
 //!   * [`commands`], [`replica`]: the commands of a recording drive a model, and its sensors look at it.
@@ -17,9 +18,10 @@
 //!     residuals are white.
 //!   * [`needed`], [`evidence`], [`unnamed`]: effects that the model can do without, rivals that explain as much, and a table
 //!     of forces for what no effect explains.
-//!   * [`errors`], `summary`, [`report`], `charts`, `page`, [`result`], [`predict`]: the folder of results, and that of a prediction.
+//!   * [`errors`], `summary`, [`report`], `charts`, `page`, [`result`]: the folder of results.
 //!   * [`self_test`]: how often all of it is right.
 
+pub mod answer;
 pub mod axes;
 pub mod baseline;
 pub mod beside;

@@ -2,7 +2,7 @@
 
 use super::model::SearchError;
 use super::model::{Case, Run};
-use super::outcome::{MOST, calibrate};
+use super::outcome::calibrate;
 use super::rattle::{self, Rattle};
 use super::recording::{Recording, stem};
 use super::report::{Report, Sources, calibrated};
@@ -127,26 +127,46 @@ pub struct Calibrated {
     pub folder: PathBuf,
 }
 
-/// Calibrates a rig and writes everything about it into `folder`. `tell` hears what is being tried,
-/// after how many simulations (of [`MOST`]).
-///
-/// [`MOST`]: super::outcome::MOST
+/// A calibration before it is written.
+#[derive(Debug)]
+pub(super) struct Made {
+    /// What it came to.
+    pub report: Report,
+    /// Texts by their files' names.
+    texts: Vec<(String, String)>,
+    pictures: Vec<Picture>,
+}
+
+impl Made {
+    /// Writes everything into a folder.
+    ///
+    /// # Errors
+    /// Files that cannot be written; the folder is left as it was.
+    pub fn written(self, folder: Folder) -> Result<Calibrated, CalibrateError> {
+        let Self { report, texts, pictures } = self;
+        let json = to_json(&report);
+        let mut all = vec![(REPORT_FILE, &json)];
+        all.extend(texts.iter().map(|(name, text)| (name.as_str(), text)));
+        let folder = publish(folder, &all, &pictures)?;
+        Ok(Calibrated { report, json, folder })
+    }
+}
+
+/// Calibrates a rig. `tell` hears what is being tried.
 ///
 /// # Errors
-/// Forces in a wrong unit, a rig that cannot be simulated, files that cannot be written; the folder is
-/// left as it was.
-pub fn into_folder(
+/// Forces in a wrong unit, a rig that cannot be simulated.
+pub(super) fn made(
     prepared: Prepared,
     without: &[&str],
-    folder: Folder,
-    tell: &(dyn Fn(&str, f64) + Sync),
-) -> Result<Calibrated, CalibrateError> {
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<Made, CalibrateError> {
     let started = Clock::now();
-    tell("simulating replicas of the declared model: does it rattle?", 0.0);
+    tell("simulating replicas of the declared model: does it rattle?");
     let (case, rattle) = case(prepared)?;
     let case = &case;
-    let outcome = calibrate(case, without, &|what| tell(what, case.simulated()))?;
-    tell("drawing and writing", MOST);
+    let outcome = calibrate(case, without, tell)?;
+    tell("drawing and writing");
     let sources = Sources { case, outcome: &outcome, rattle: &rattle, without };
     let mut report = Report::new(sources);
     let charts = charts::draw(case, &outcome)?;
@@ -165,13 +185,11 @@ pub fn into_folder(
     report.files = texts.chain(predicted).chain(pictures).collect();
     report.wall_s = started.elapsed().as_secs_f64();
 
-    let json = to_json(&report);
     let model = calibrated(&case.rig, &outcome).to_toml();
     let page = page::page(case, &outcome, &report, &charts);
-    let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &model), (PAGE_FILE, &page)];
-    texts.extend(predictions.iter().map(|(name, text)| (name.as_str(), text)));
-    let folder = publish(folder, &texts, charts.pictures())?;
-    Ok(Calibrated { report, json, folder })
+    let mut texts = vec![(CALIBRATED_FILE.to_owned(), model), (PAGE_FILE.to_owned(), page)];
+    texts.extend(predictions);
+    Ok(Made { report, texts, pictures: charts.pictures().cloned().collect() })
 }
 
 /// Writes texts and pictures into a folder of results and puts it where it belongs.

@@ -6,11 +6,9 @@ use super::parts::PartOptions;
 use super::progress::Spinner;
 use super::self_test::SelfTest;
 use super::table::{paragraph, table};
-use crate::calibrate::errors::ChannelError;
-use crate::calibrate::outcome::MOST;
-use crate::calibrate::report::EffectReport;
-use crate::calibrate::result::{CalibrateError, REPORT_FILE, into_folder, prepare, refuse};
-use crate::calibrate::{plausibility, quantity, recording, sensed};
+use crate::calibrate::answer::{Calibrated, into_folder, prepare};
+use crate::calibrate::quantity;
+use crate::calibrate::result::{CalibrateError, REPORT_FILE};
 use crate::effects::{ALL, named};
 use crate::measure::spelling::nearest;
 use crate::report::{known_to, number};
@@ -127,77 +125,16 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let paths: Vec<&Path> =
         arguments.data.iter().chain(&arguments.validate).map(PathBuf::as_path).collect();
     say_how_written(paths.iter().copied());
-    if rig.mechanism.has_sensors() {
-        return any_mechanism(arguments, rig, &paths, &without);
-    }
-    if arguments.data.len() > 1 {
-        let message =
-            "--data: this machine takes one run to calibrate on; give the others as --validate";
-        return Err(Failure::Input(vec![message.to_owned()]));
-    }
-    let recordings = recording::read(&paths).map_err(CalibrateError::from)?;
-    if !recordings.iter().all(plausibility::is_complete) {
-        refuse(plausibility::incomplete(&rig, &recordings))?;
-        return any_mechanism(arguments, rig, &paths, &without);
-    }
-    say_what_is_ignored(&recordings);
     let name = rig.name.clone();
-    let prepared = prepare(rig, recordings)?;
-    let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
-    let calibrated = Spinner::during_at_most(MOST, arguments.print.quiet, |tell| {
-        into_folder(prepared, &without, folder, tell)
-    })?;
-    let report = &calibrated.report;
-    let shown = Shown {
-        scenario_name: &report.provenance.scenario_name,
-        summary: &report.summary,
-        effects: &report.effects,
-        errors: &report.errors,
-        simulated: format!("{} simulations in ", report.simulations),
-        seconds: report.wall_s,
-        folder: &calibrated.folder,
-    };
-    Ok(arguments.print.result(&calibrated.json, || text(&shown))?)
-}
-
-/// The same of a mechanism that its file describes, whose recordings have a column for each [[sensor]].
-fn any_mechanism(
-    arguments: &Arguments,
-    rig: Scenario,
-    paths: &[&Path],
-    without: &[&'static str],
-) -> Result<(), Failure> {
-    let name = rig.name.clone();
-    let prepared = sensed::prepare(rig, paths, arguments.data.len())?;
+    let prepared = prepare(rig, &paths, arguments.data.len())?;
+    for (file, columns) in &prepared.ignored {
+        say_what_is_ignored(file, columns);
+    }
     let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
     let calibrated = Spinner::during(arguments.print.quiet, |tell| {
-        sensed::into_folder(prepared, without, folder, tell)
+        into_folder(prepared, &without, folder, tell)
     })?;
-    let report = &calibrated.report;
-    let shown = Shown {
-        scenario_name: &report.provenance.scenario_name,
-        summary: &report.summary,
-        effects: &report.effects,
-        errors: &report.errors,
-        simulated: match report.windows {
-            Some(_) => String::new(),
-            None => format!("{} simulations in ", report.simulations),
-        },
-        seconds: report.wall_s,
-        folder: &calibrated.folder,
-    };
-    Ok(arguments.print.result(&calibrated.json, || text(&shown))?)
-}
-
-/// What is printed of a calibration.
-struct Shown<'a> {
-    scenario_name: &'a str,
-    summary: &'a str,
-    effects: &'a [EffectReport],
-    errors: &'a [ChannelError],
-    simulated: String,
-    seconds: f64,
-    folder: &'a Path,
+    Ok(arguments.print.result(&calibrated.json, || text(&calibrated))?)
 }
 
 impl From<CalibrateError> for Failure {
@@ -230,11 +167,11 @@ fn without(names: &[String]) -> Result<Vec<&'static str>, Failure> {
 }
 
 /// The result for people.
-fn text(report: &Shown) -> String {
-    let summary = format!("{}: {}", report.scenario_name, report.summary);
+fn text(report: &Calibrated) -> String {
+    let summary = format!("{}: {}", report.name, report.summary);
     let mut text = paragraph("", "", &summary);
     // Writing to a string cannot fail, here and below.
-    for effect in report.effects {
+    for effect in &report.effects {
         let joint = effect.on.words();
         let _ = writeln!(text, "\n  {}{joint}", effect.kind);
         for (name, fitted) in &effect.params {
@@ -256,8 +193,8 @@ fn text(report: &Shown) -> String {
     let _ = writeln!(
         text,
         "\n{}{} s\nWritten to {}; open {}",
-        report.simulated,
-        number(report.seconds),
+        report.simulations.map_or_else(String::new, |count| format!("{count} simulations in ")),
+        number(report.wall_s),
         report.folder.display(),
         page.display()
     );

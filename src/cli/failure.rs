@@ -1,7 +1,6 @@
 //! How a command fails: whose fault, and what is said.
 
 use super::output;
-use crate::calibrate::recording::Recording;
 use crate::measure::dialect;
 use crate::scenario::{Location, Problem, Problems, Scenario};
 use crate::simulate::{Finding, Severity, doubts};
@@ -120,13 +119,11 @@ pub(super) fn say_how_written<'a>(paths: impl IntoIterator<Item = &'a Path>) {
     }
 }
 
-/// Says which columns of recordings are left alone.
-pub(super) fn say_what_is_ignored<'a>(recordings: impl IntoIterator<Item = &'a Recording>) {
-    for Recording { path, log } in recordings {
-        if let [_, ..] = log.ignored() {
-            let columns = log.ignored().join(", ");
-            output::complain(&format!("note: {path}: columns that no sensor has: {columns}"));
-        }
+/// Says which columns of a recording are left alone.
+pub(super) fn say_what_is_ignored(file: &str, columns: &[String]) {
+    if !columns.is_empty() {
+        let columns = columns.join(", ");
+        output::complain(&format!("note: {file}: columns that no sensor has: {columns}"));
     }
 }
 

@@ -89,22 +89,6 @@ impl Spinner {
         result
     }
 
-    /// Does some work of which there is so much at most, and shows how much was done when it told what it
-    /// was to do next.
-    pub fn during_at_most<T>(
-        most: f64,
-        quiet: bool,
-        work: impl FnOnce(&(dyn Fn(&str, f64) + Sync)) -> T,
-    ) -> T {
-        let spinner = Self::ticking(bar(most as u64, "{bar:20} {elapsed} {wide_msg}", quiet));
-        let result = work(&|what, done| {
-            spinner.bar.set_position(f64::min(done, most) as u64);
-            spinner.tell(what);
-        });
-        spinner.clear();
-        result
-    }
-
     /// A line without a word yet.
     pub fn new(quiet: bool) -> Self {
         Self::ticking(bar(0, "{spinner} {elapsed} {wide_msg}", quiet))

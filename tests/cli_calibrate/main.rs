@@ -4,6 +4,7 @@
 #[path = "../cli_common/mod.rs"]
 mod cli_common;
 mod incomplete;
+mod instruments;
 mod predictions;
 mod recording;
 mod refusals;

@@ -16,7 +16,7 @@ use std::path::Path;
 /// A rig and recordings that nothing speaks against.
 #[derive(Debug)]
 pub struct Prepared {
-    pub(super) rig: Scenario,
+    pub(in crate::calibrate) rig: Scenario,
     pub(in crate::calibrate) recordings: Vec<Recording>,
     /// How many of them, the first ones, values are fitted to.
     pub(super) fits: usize,

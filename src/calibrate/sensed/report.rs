@@ -11,6 +11,7 @@ use super::outcome::{Outcome, calibrate};
 use super::page;
 use super::prepare::{Prepared, Way};
 use super::problem::{Problem, Stopped};
+use super::recording::Recording;
 use super::rivals::Rest;
 use super::search::{name, names};
 use super::windows::report::{Windows, into_folder as by_windows};
@@ -107,10 +108,42 @@ pub fn into_folder(
 ) -> Result<Calibrated, CalibrateError> {
     let Prepared { rig, recordings, fits, way } = prepared;
     match way {
-        Way::Windows => return by_windows(&rig, recordings, fits, without, folder, tell),
-        Way::Held => return held::report::into_folder(&rig, recordings, without, folder, tell),
-        Way::Residuals => {}
+        Way::Windows => by_windows(&rig, recordings, fits, without, folder, tell),
+        Way::Held => held::report::into_folder(&rig, recordings, without, folder, tell),
+        Way::Residuals => by_residuals(rig, recordings, without, tell)?.written(folder),
     }
+}
+
+/// A calibration before it is written.
+#[derive(Debug)]
+pub(in crate::calibrate) struct Made {
+    /// What it came to.
+    pub report: Report,
+    calibrated: Scenario,
+    files: Vec<(String, String)>,
+    pictures: Vec<Picture>,
+}
+
+impl Made {
+    /// Writes everything into a folder.
+    ///
+    /// # Errors
+    /// Files that cannot be written; the folder is left as it was.
+    pub fn written(self, folder: Folder) -> Result<Calibrated, CalibrateError> {
+        written(self.report, &self.calibrated, &self.files, &self.pictures, folder)
+    }
+}
+
+/// Calibrates by residuals and simulations. `tell` hears what is being tried.
+///
+/// # Errors
+/// A rig that cannot be simulated.
+pub(in crate::calibrate) fn by_residuals(
+    rig: Scenario,
+    recordings: Vec<Recording>,
+    without: &[&str],
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<Made, CalibrateError> {
     let started = Clock::now();
     let control = control(&rig);
     let mut problem = Problem::new(rig, recordings, control)?;
@@ -160,7 +193,7 @@ pub fn into_folder(
     };
     let mut calibrated = problem.rig.clone();
     calibrated.effects = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
-    written(report, &calibrated, &files, &pictures, folder)
+    Ok(Made { report, calibrated, files, pictures })
 }
 
 /// Names of all files of a calibration, `files` by name and text among them.

@@ -111,6 +111,10 @@ pub(in crate::calibrate::sensed) fn scaled_by(
         let key = format!("sensor.{index}.scale");
         return (key.clone(), format!("{key} = {scale}, column \"{column}\""));
     }
+    // Its columns have names and units of their own, which no key changes.
+    if let crate::scenario::Mechanism::ThreeRpr(_) = rig.mechanism {
+        return (format!("sensors, column {column}"), format!("column `{column}` times {factor}"));
+    }
     let own = |columns: &crate::scenario::Columns| {
         let of = |name: &&str| columns.source(name).is_some_and(|source| source.column == *column);
         columns.quantities().find(of).map(str::to_owned)
