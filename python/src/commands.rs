@@ -126,12 +126,16 @@ fn predict(
             if let Some(prepared) = windows::prepare(model, &data, Asked { window, fit, from })? {
                 return Ok(windows::into_folder(model, &prepared, prepare()?, &tell)?.json);
             }
-        } else {
+        }
+        refuse_windows(asked)?;
+        if !model.mechanism.has_sensors() {
             let read = recording::read_one(&data);
             let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
             calibration::predict::check(model, &recording)?;
+            if !calibration::predict::reads_by_instruments(model) {
+                return Ok(calibration::predict::into_folder(model, &recording, prepare()?, &tell)?.json);
+            }
         }
-        refuse_windows(asked)?;
         let prepared = along::prepare(model, &data)?;
         Ok(along::into_folder(model, &prepared, prepare()?, &tell)?.json)
     })

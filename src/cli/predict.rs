@@ -5,7 +5,7 @@ use super::options::{FolderOptions, PrintOptions, Sets};
 use super::progress::Spinner;
 use super::table::{paragraph, table};
 use crate::calibrate::errors::ChannelError;
-use crate::calibrate::predict::{ERRORS_FILE, Predicted, check};
+use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder, reads_by_instruments};
 use crate::calibrate::result::CalibrateError;
 use crate::calibrate::sensed::predict as sensed;
 use crate::calibrate::sensed::windows::predict::{self as windows, Asked};
@@ -76,12 +76,19 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     refuse_windows(arguments)?;
     let read = recording::read_one(&arguments.data);
     let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
-    say_what_is_ignored(&recording.path, recording.log.ignored());
     check(&model, &recording)?;
-    along_commands(arguments, &model)
+    if reads_by_instruments(&model) {
+        return along_commands(arguments, &model);
+    }
+    say_what_is_ignored(&recording.path, recording.log.ignored());
+    let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
+    let predicted = Spinner::during(arguments.print.quiet, |tell| {
+        into_folder(&model, &recording, folder, tell)
+    })?;
+    shown(arguments, &predicted, &[])
 }
 
-/// The same of a machine that drives hold, or joints with play.
+/// The same of a mechanism that its file describes and that drives hold, or joints with play.
 fn along_commands(arguments: &Arguments, model: &Scenario) -> Result<(), Failure> {
     refuse_windows(arguments)?;
     let prepared = sensed::prepare(model, &arguments.data)?;
