@@ -221,16 +221,8 @@ fn mechanism(reader: &mut Reader<'_>, top: &mut TopLevel) -> Mechanism {
     if !table.contains_key("kind") {
         no_kind(reader);
     }
-    match reader.take_kind("mechanism", &mut table, &Mechanism::KINDS) {
-        Some("drive-stage") => Mechanism::DriveStage(reader.read("mechanism", table)),
-        Some("pendulum") => Mechanism::Pendulum(reader.read("mechanism", table)),
-        Some("slider-crank") => Mechanism::SliderCrank(reader.read("mechanism", table)),
-        Some("four-bar") => Mechanism::FourBar(reader.read("mechanism", table)),
-        Some("five-bar") => Mechanism::FiveBar(reader.read("mechanism", table)),
-        Some("3rrr") => Mechanism::ThreeRrr(reader.read("mechanism", table)),
-        Some("double-pendulum") => Mechanism::DoublePendulum(reader.read("mechanism", table)),
-        _ => Mechanism::ThreeRpr(reader.read("mechanism", table)),
-    }
+    let kind = reader.take_kind("mechanism", &mut table, &Mechanism::KINDS).unwrap_or_default();
+    Mechanism::read(kind, reader, table)
 }
 
 fn no_kind(reader: &mut Reader<'_>) {

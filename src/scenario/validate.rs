@@ -24,73 +24,6 @@ impl Scenario {
 /// Longest motion in s: an hour of some machines takes a day to simulate already.
 const LONGEST: f64 = 86_400.0;
 
-/// Keys and values.
-type Numbers = Vec<(&'static str, f64)>;
-
-/// The inertia of a mechanism, or what inertias are made of: path, value, unit.
-fn inertia(mechanism: &Mechanism) -> Option<(&'static str, f64, &'static str)> {
-    let along = |density: f64| Some(("mechanism.linear_density", density, "kg/m"));
-    match mechanism {
-        Mechanism::ThreeRpr(machine) => {
-            machine.platform_inertia.map(|value| ("mechanism.platform_inertia", value, "kg m²"))
-        }
-        Mechanism::Pendulum(arm) => Some(("mechanism.inertia", arm.inertia, "kg m²")),
-        Mechanism::FourBar(m) => along(m.linear_density),
-        Mechanism::FiveBar(m) => along(m.linear_density),
-        Mechanism::ThreeRrr(m) => along(m.linear_density),
-        Mechanism::DriveStage(_)
-        | Mechanism::SliderCrank(_)
-        | Mechanism::DoublePendulum(_)
-        | Mechanism::Described(_) => None,
-    }
-}
-
-/// Lengths (m) and masses (kg) of a mechanism that have keys of their own.
-fn lengths_and_masses(mechanism: &Mechanism) -> (Numbers, Numbers) {
-    match mechanism {
-        Mechanism::ThreeRpr(m) => (
-            vec![("base_side", m.base_side), ("platform_side", m.platform_side)],
-            vec![("platform_mass", m.platform_mass)],
-        ),
-        Mechanism::DriveStage(stage) => (Vec::new(), vec![("mass", stage.mass)]),
-        Mechanism::Pendulum(arm) => (vec![("length", arm.length)], vec![("mass", arm.mass)]),
-        Mechanism::SliderCrank(m) => (
-            vec![("crank", m.crank), ("rod", m.rod)],
-            vec![
-                ("crank_mass", m.crank_mass),
-                ("rod_mass", m.rod_mass),
-                ("slider_mass", m.slider_mass),
-            ],
-        ),
-        Mechanism::FourBar(m) => (
-            vec![
-                ("ground", m.ground),
-                ("crank", m.crank),
-                ("coupler", m.coupler),
-                ("rocker", m.rocker),
-            ],
-            Vec::new(),
-        ),
-        Mechanism::FiveBar(m) => {
-            (vec![("ground", m.ground), ("crank", m.crank), ("rod", m.rod)], Vec::new())
-        }
-        Mechanism::ThreeRrr(m) => (
-            vec![
-                ("base_side", m.base_side),
-                ("platform_side", m.platform_side),
-                ("crank", m.crank),
-                ("rod", m.rod),
-            ],
-            vec![("platform_mass", m.platform_mass)],
-        ),
-        Mechanism::DoublePendulum(m) => (
-            vec![("lengths.0", m.lengths[0]), ("lengths.1", m.lengths[1])],
-            vec![("masses.0", m.masses[0]), ("masses.1", m.masses[1])],
-        ),
-        Mechanism::Described(_) => (Vec::new(), Vec::new()),
-    }
-}
-
 struct Checks<'a> {
     scenario: &'a Scenario,
     problems: Vec<Problem>,
@@ -102,13 +35,10 @@ impl Checks<'_> {
         if let Mechanism::Described(described) = mechanism {
             self.problems.extend(super::validate_described::problems(self.scenario, described));
         }
-        if let Some((key, value, unit)) = inertia(mechanism) {
-            self.positive(key, value, unit);
-        }
-        let (lengths, masses) = lengths_and_masses(mechanism);
-        let lengths = lengths.into_iter().map(|(key, value)| (key, value, "m"));
-        let masses = masses.into_iter().map(|(key, value)| (key, value, "kg"));
-        for (key, value, unit) in lengths.chain(masses) {
+        let Some(template) = mechanism.template() else { return };
+        let lengths = template.lengths().into_iter().map(|(key, value)| (key, value, "m"));
+        let masses = template.masses().into_iter().map(|(key, value)| (key, value, "kg"));
+        for (key, value, unit) in template.inertia().into_iter().chain(lengths).chain(masses) {
             self.positive(&format!("mechanism.{key}"), value, unit);
         }
     }

@@ -6,7 +6,7 @@ use super::{bodies, idle, instruments, restraints};
 use crate::contact::Clearance;
 use crate::mechanism::{Bearing, Mechanism};
 use crate::model::Machine;
-use crate::scenario::{self, Joint, JointPath, Motion, Revolute, Scenario, Shape};
+use crate::scenario::{self, Joint, JointPath, Motion, Revolute, Scenario, Shape, Template};
 use std::f64::consts::TAU;
 
 /// Gravity in m/s² beyond which no machine stands on: ten times the earth's, four times Jupiter's.
@@ -141,34 +141,7 @@ pub(super) fn own_key(
 }
 
 fn lengths(scenario: &Scenario) -> impl Iterator<Item = (String, f64)> {
-    let template: Vec<(&str, f64)> = match &scenario.mechanism {
-        scenario::Mechanism::ThreeRpr(kind) => {
-            vec![("base_side", kind.base_side), ("platform_side", kind.platform_side)]
-        }
-        scenario::Mechanism::Pendulum(kind) => vec![("length", kind.length)],
-        scenario::Mechanism::DoublePendulum(kind) => {
-            kind.lengths.iter().map(|length| ("lengths", *length)).collect()
-        }
-        scenario::Mechanism::SliderCrank(kind) => {
-            vec![("crank", kind.crank), ("rod", kind.rod), ("offset", kind.offset)]
-        }
-        scenario::Mechanism::FourBar(kind) => vec![
-            ("ground", kind.ground),
-            ("crank", kind.crank),
-            ("coupler", kind.coupler),
-            ("rocker", kind.rocker),
-        ],
-        scenario::Mechanism::FiveBar(kind) => {
-            vec![("ground", kind.ground), ("crank", kind.crank), ("rod", kind.rod)]
-        }
-        scenario::Mechanism::ThreeRrr(kind) => vec![
-            ("base_side", kind.base_side),
-            ("platform_side", kind.platform_side),
-            ("crank", kind.crank),
-            ("rod", kind.rod),
-        ],
-        scenario::Mechanism::DriveStage(_) | scenario::Mechanism::Described(_) => Vec::new(),
-    };
+    let template = scenario.mechanism.template().map(Template::distances).unwrap_or_default();
     let template = template.into_iter().map(|(key, l)| (format!("mechanism.{key}"), l));
     let bodies = scenario.mechanism.described().map_or(&[][..], |described| &described.bodies);
     let bodies = bodies.iter().enumerate().map(|(i, body)| {
@@ -236,24 +209,13 @@ fn phases(scenario: &Scenario) -> Vec<Finding> {
 /// Degrees for radians in where bodies start, as it is written; a 3-RPR's start where their motion does, and
 /// [`angle`] tells of that.
 fn starts(scenario: &Scenario) -> Vec<Finding> {
-    let one = |angle: f64| vec![("mechanism.angle".to_owned(), angle)];
-    let angles: Vec<(String, f64)> = match &scenario.mechanism {
-        scenario::Mechanism::Pendulum(kind) => one(kind.angle),
-        scenario::Mechanism::SliderCrank(kind) => one(kind.angle),
-        scenario::Mechanism::FourBar(kind) => one(kind.angle),
-        scenario::Mechanism::DoublePendulum(kind) => {
-            kind.angles.iter().map(|angle| ("mechanism.angles".to_owned(), *angle)).collect()
-        }
-        scenario::Mechanism::Described(described) => {
-            let bodies = described.bodies.iter().enumerate();
-            bodies.map(|(i, body)| (format!("body.{i}.start"), body.start[2])).collect()
-        }
-        scenario::Mechanism::ThreeRpr(_)
-        | scenario::Mechanism::FiveBar(_)
-        | scenario::Mechanism::ThreeRrr(_)
-        | scenario::Mechanism::DriveStage(_) => Vec::new(),
-    };
-    let far = angles.into_iter().filter(|(_, angle)| angle.abs() > TAU);
+    let template = scenario.mechanism.template().map(Template::angles).unwrap_or_default();
+    let template = template.into_iter().map(|(key, angle)| (format!("mechanism.{key}"), angle));
+    let bodies = scenario.mechanism.described().map_or(&[][..], |described| &described.bodies);
+    let bodies = bodies.iter().enumerate();
+    let bodies = bodies.map(|(i, body)| (format!("body.{i}.start"), body.start[2]));
+    let angles = template.chain(bodies);
+    let far = angles.filter(|(_, angle)| angle.abs() > TAU);
     far.map(|(key, angle)| turned(scenario, &key, angle)).collect()
 }
 

@@ -24,10 +24,6 @@ const NEAR: f64 = 0.5;
 /// half of it.
 const DRIFT: f64 = 0.5;
 
-/// Slope of the number that says how much of a motion is new beside the present one: four tenths of what is drawn keep
-/// three quarters of one of the two.
-const MIXED: f64 = 4.0;
-
 /// A motion of all drives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
@@ -68,7 +64,7 @@ impl Maker {
         let drives = numbers.chunks(NUMBERS).zip(&self.limits).zip(&self.home);
         let all = drives.map(|((numbers, limit), home)| self.series(numbers, limit, *home, share));
         let Some(present) = &self.present else { return Motion { drives: all.collect() } };
-        let new = logistic(MIXED * numbers.last().copied().unwrap_or_default());
+        let new = share_of_new(numbers.last().copied().unwrap_or_default());
         let mixed = all.zip(present).zip(&self.home).map(|((series, present), home)| {
             let start = home + share * (present.start - home);
             series
@@ -127,6 +123,12 @@ impl Maker {
         let start = (home + share * (start - home)).clamp(first, last);
         shape.scaled(share * factor, start)
     }
+}
+
+/// How much of a motion is new beside the present one: all of it for half the numbers that are drawn, and less the farther
+/// these are below zero.
+fn share_of_new(number: f64) -> f64 {
+    1.0 / (1.0 + 4.0 * number.min(0.0).powi(2))
 }
 
 fn logistic(x: f64) -> f64 {

@@ -15,6 +15,7 @@ mod motion;
 mod native;
 mod sensors;
 mod simulation;
+mod templates;
 
 pub use crate::contact::StiffnessForm;
 pub use crate::engine::StepControl;
@@ -29,10 +30,7 @@ pub use drive::{Drive, DriveMode, Sampled};
 pub use environment::Environment;
 pub use joints::{Joints, PerJoint};
 pub use legs::Legs;
-pub use mechanism::{
-    DoublePendulum, DriveStage, FiveBar, FourBar, Mechanism, Pendulum, SliderCrank, ThreeRpr,
-    ThreeRrr,
-};
+pub use mechanism::Mechanism;
 pub use motion::{
     Circle, JointLine, JointMotion, JointMultisine, JointPath, JointQuintic, JointTable, Line,
     Motion, Multisine, Quintic, Table, Target, Term, Term1,
@@ -40,3 +38,4 @@ pub use motion::{
 pub use native::Native;
 pub use sensors::Sensors;
 pub use simulation::Simulation;
+pub use templates::*;
