@@ -8,7 +8,7 @@ use super::errors::{ChannelError, worst};
 use super::outcome::Verdict;
 use super::report::{EffectReport, Report};
 use super::result::{self, CalibrateError, refuse};
-use super::sensed::report::by_residuals;
+use super::sensed::ways::by_residuals;
 use super::{plausibility, recording, sensed};
 use crate::effects::{Kind, named};
 use crate::scenario::Scenario;
@@ -135,9 +135,9 @@ fn simpler(own: &Report, other: &sensed::report::Report) -> bool {
     }
 }
 
-impl From<sensed::report::Calibrated> for Calibrated {
-    fn from(done: sensed::report::Calibrated) -> Self {
-        let sensed::report::Calibrated { report, json, folder } = done;
+impl From<sensed::written::Calibrated> for Calibrated {
+    fn from(done: sensed::written::Calibrated) -> Self {
+        let sensed::written::Calibrated { report, json, folder } = done;
         Self {
             name: report.provenance.scenario_name,
             summary: report.summary,

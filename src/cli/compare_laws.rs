@@ -1,6 +1,6 @@
 //! `freeplay compare --laws`: one motion under several contact laws.
 
-use super::compare::{Arguments, warn_of_step};
+use super::compare_options::{Arguments, warn_of_step};
 use super::failure::{Failure, refuse_errors, warn_of_seed};
 use super::progress::Progress;
 use super::table::{paragraph, table};

@@ -11,6 +11,7 @@ mod check;
 mod check_text;
 mod compare;
 mod compare_laws;
+mod compare_options;
 mod completions;
 mod diff;
 mod effects;
@@ -88,7 +89,7 @@ enum Command {
     Run(run::Arguments),
     Evaluate(evaluate::Arguments),
     Study(study::Arguments),
-    Compare(compare::Arguments),
+    Compare(compare_options::Arguments),
     Paper(paper::Arguments),
     Diff(diff::Arguments),
     Calibrate(calibrate::Arguments),

@@ -1,7 +1,7 @@
 //! The Hertz spring with STEP damping: ADAMS' IMPACT function, equations 4–6 of the source paper.
 
 use super::laws::{Damped, Loss, Power};
-use super::{ForceLaw, power_force};
+use super::{ForceLaw, power_force, step};
 use std::sync::Arc;
 
 /// Hertz spring plus a damper that fades in with penetration (paper eqs. 4 and 6):
@@ -22,14 +22,6 @@ pub struct HertzStep {
     pub d_max: f64,
     /// Never pull: the force is at least zero (ADAMS' IMPACT); `false` is the formula as printed.
     pub clip: bool,
-}
-
-/// `STEP(δ, 0, 0, d_max, C_max)`: cubic from 0 at δ = 0 to `c_max` at δ = `d_max` (paper eq. 6).
-///
-/// The unit of the result is that of `c_max`.
-pub fn step(penetration: f64, d_max: f64, c_max: f64) -> f64 {
-    let s = (penetration / d_max).clamp(0.0, 1.0);
-    c_max * s * s * (3.0 - 2.0 * s)
 }
 
 impl HertzStep {
@@ -94,14 +86,6 @@ mod tests {
 
     const LAW: HertzStep =
         HertzStep { stiffness: 3.7328e9, exponent: 1.5, c_max: 500.0, d_max: 1e-5, clip: true };
-
-    #[test]
-    fn step_is_the_cubic_of_the_paper() {
-        assert_eq!(step(-1e-6, 1e-5, 500.0), 0.0);
-        assert_eq!(step(0.5e-5, 1e-5, 500.0), 250.0);
-        assert_eq!(step(1e-5, 1e-5, 500.0), 500.0);
-        assert_eq!(step(1.0, 1e-5, 500.0), 500.0);
-    }
 
     #[test]
     fn clip_decides_whether_a_parting_contact_may_pull() {

@@ -1,8 +1,8 @@
 //! One clearance joint: a round journal inside a round bearing ring, both of them rigid apart from
 //! the local give that the force law describes.
 
-use super::{After, ForceLaw, Friction, RingShape, Touch};
-use nalgebra::{UnitComplex, Vector2, Vector3};
+use super::{After, ForceLaw, Friction, Touch};
+use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
 /// Largest half width a of a contact as a share of the journal's radius R for which laws after Hertz hold
@@ -153,25 +153,9 @@ impl Clearance {
         (contact, Some(wrenches))
     }
 
-    /// Outward normal where the journal touches the ring, of this shape if it is not a circle (its body turned so far),
-    /// and how fast in m/s the journal slides there along the normal turned by +90°.
-    pub fn slide(
-        &self,
-        shape: Option<(&RingShape, UnitComplex<f64>)>,
-        bearing: &Frame,
-        journal: &Frame,
-    ) -> (Vector2<f64>, f64) {
-        if let Some((shape, turned)) = shape {
-            return shape.slide(self, turned, [bearing, journal]);
-        }
-        let (penetration, normal) = circle_in_ring(journal.centre - bearing.centre, self.radial());
-        let to_surface = self.to_surface(penetration);
-        (normal, sliding([bearing, journal], normal, to_surface))
-    }
-
     /// From the centres of ring and journal to where the journal's surface touches, in m.
     #[inline(always)]
-    fn to_surface(&self, penetration: f64) -> [f64; 2] {
+    pub(super) fn to_surface(&self, penetration: f64) -> [f64; 2] {
         [self.journal_radius + penetration + self.radial(), self.journal_radius]
     }
 

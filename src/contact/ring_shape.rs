@@ -1,7 +1,7 @@
-//! A bearing ring that is not a circle, and a guide, which is none at all.
+//! A bearing ring that is not a circle, and a guide, which is none at all; how journals slide on rings of any shape.
 
 use super::joint::sliding;
-use super::{After, Clearance, Contact, Frame, OutOfRound, RingTable};
+use super::{After, Clearance, Contact, Frame, OutOfRound, RingTable, circle_in_ring};
 use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -146,7 +146,7 @@ impl RingShape {
     }
 
     /// Outward normal where the journal touches, and how fast it slides there in m/s, see [`sliding`].
-    pub(super) fn slide(
+    fn slide(
         &self,
         clearance: &Clearance,
         turned: UnitComplex<f64>,
@@ -180,6 +180,24 @@ impl RingShape {
         let inclination = if distance > 0.0 { slope / distance } else { 0.0 };
         let gradient = n - Vector2::new(-n.y, n.x) * inclination;
         Place { between, penetration, gradient, radius: clearance.journal_radius }
+    }
+}
+
+impl Clearance {
+    /// Outward normal where the journal touches the ring, of this shape if it is not a circle (its body turned so far),
+    /// and how fast in m/s the journal slides there along the normal turned by +90°.
+    pub fn slide(
+        &self,
+        shape: Option<(&RingShape, UnitComplex<f64>)>,
+        bearing: &Frame,
+        journal: &Frame,
+    ) -> (Vector2<f64>, f64) {
+        if let Some((shape, turned)) = shape {
+            return shape.slide(self, turned, [bearing, journal]);
+        }
+        let (penetration, normal) = circle_in_ring(journal.centre - bearing.centre, self.radial());
+        let to_surface = self.to_surface(penetration);
+        (normal, sliding([bearing, journal], normal, to_surface))
     }
 }
 

@@ -15,12 +15,14 @@
 //!   * `direct`: no engine, the equations of motion integrated under error control;
 //!   * `native`: rapier's own contacts, as rapier steps them.
 //! * `between`: rows between the ends of steps. `energy`: the balance of a run. `halt`: what ends one.
+//!   `control`: how the step is chosen. `work`: what it took.
 
 mod adaptive;
 mod between;
 mod clearance_joints;
 mod clock;
 mod colliders;
+mod control;
 mod direct;
 mod dispatcher;
 mod energy;
@@ -37,21 +39,21 @@ mod stepper;
 mod tests;
 mod watch;
 mod wear;
+mod work;
 mod world;
 
 pub use adaptive::LONGEST_STEP;
 pub use clearance_joints::{ClearanceJoint, ClearanceJoints};
 pub use colliders::{JointColliders, Solver};
+pub use control::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 pub use dispatcher::RingDispatcher;
 pub use energy::Energy;
 pub use halt::{Halt, MOST_STEPS_PER_S};
 pub use ring::BearingRing;
-pub use run::{
-    Engine, Instant, Schedule, StepControl, TYPICAL_IMPACT_SPEED, Work, run, run_balanced,
-    run_while,
-};
+pub use run::{Instant, Schedule, run, run_balanced, run_while};
 pub use watch::{Peaks, Tally};
 pub use wear::WEAR_DIRECTIONS;
+pub use work::Work;
 
 use nalgebra::Vector2;
 use rapier2d_f64::dynamics::IntegrationParameters;

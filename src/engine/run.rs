@@ -2,81 +2,19 @@
 
 use super::adaptive::Adaptive;
 use super::clock::Clock;
+use super::control::StepControl;
 use super::direct::Direct;
-use super::energy::{Books, Energy, Ledger, drift};
+use super::energy::{Books, Ledger, drift};
 use super::fixed::Fixed;
 use super::halt::{Halt, Pace, TOO_MANY_STEPS, impossible, likely_cause};
 use super::native::Native;
 use super::stepper::{Stepper, meant};
 use super::watch::{Peaks, Tally, Watch};
 use super::wear::Rubbing;
+use super::work::Work;
 use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// How the time step is chosen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StepControl {
-    /// A fixed step of at most so many seconds: the longest that divides the row interval.
-    Fixed(f64),
-    /// As long as this tolerance allows: the velocity error of one step in m/s, in a machine whose
-    /// joints have 0.5 mm of clearance or more; in proportion less where they have less, down to a
-    /// fiftieth at 10 µm.
-    Tolerance(f64),
-    /// The same tolerance without the physics engine: the equations of motion integrated directly.
-    Direct(f64),
-}
-
-/// What steps a machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Engine {
-    /// The physics engine: every step is one of rapier's.
-    #[default]
-    Rapier,
-    /// The mechanism's own equations of motion, integrated directly.
-    Direct,
-}
-
-impl Engine {
-    /// Whether it is the one that nobody has to ask for.
-    pub fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
-impl StepControl {
-    /// The fixed step in s, if it is one.
-    pub fn step(self) -> Option<f64> {
-        match self {
-            StepControl::Fixed(step) => Some(step),
-            StepControl::Tolerance(_) | StepControl::Direct(_) => None,
-        }
-    }
-
-    /// The velocity error of one step in m/s that it allows, if it looks at errors.
-    pub fn tolerance(self) -> Option<f64> {
-        match self {
-            StepControl::Fixed(_) => None,
-            StepControl::Tolerance(tolerance) | StepControl::Direct(tolerance) => Some(tolerance),
-        }
-    }
-
-    /// The same with the tolerance times `factor`; a fixed step stays.
-    pub fn with_tolerance_times(self, factor: f64) -> Self {
-        match self {
-            StepControl::Fixed(step) => StepControl::Fixed(step),
-            StepControl::Tolerance(tolerance) => StepControl::Tolerance(tolerance * factor),
-            StepControl::Direct(tolerance) => StepControl::Direct(tolerance * factor),
-        }
-    }
-}
-
-/// Speed in m/s at which journals are taken to hit where the step is checked beforehand: hits in
-/// the paper's machine come at 0.1–0.3 m/s, and the longest step falls with its fifth root only.
-pub const TYPICAL_IMPACT_SPEED: f64 = 0.2;
 
 /// By how much, as a share, times that mean the same instant differ at most: as sums of a million numbers do.
 const ROUNDING: f64 = 1e-10;
@@ -121,48 +59,6 @@ pub struct Instant<'a> {
     pub peaks: Peaks,
     /// What [`Work::rubbed`] has come to.
     pub rubbed: Option<&'a [Vec<f64>]>,
-}
-
-/// What a run took.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Work {
-    /// Steps of the physics engine.
-    pub steps: u64,
-    /// Shortest step in s.
-    pub smallest_step: f64,
-    /// Longest step in s.
-    pub largest_step: f64,
-    /// Time reached in s.
-    pub reached: f64,
-    /// Largest velocity error of a step in m/s, where the way of stepping estimates it.
-    pub step_error: Option<f64>,
-    /// Whether it was told to stop before its end.
-    pub stopped: bool,
-    /// Steps that were taken although their error exceeded the tolerance: near singular poses shorter ones
-    /// win nothing.
-    pub forced_steps: u64,
-    /// How far rigid joints had come apart in a row, in m.
-    pub drift: f64,
-    /// Where the energy went, up to the end of the step that reached the last row; none where nobody asked ([`run_balanced`]), and of native contacts, whose forces are known as impulses only.
-    pub energy: Option<Energy>,
-    /// Normal force times sliding distance in J, of each revolute joint, in [`WEAR_DIRECTIONS`](super::WEAR_DIRECTIONS)
-    /// directions of the ring's surface from the x axis of its body on; none where nobody asked ([`run_balanced`]), and
-    /// nothing but zeros in joints without a contact law.
-    pub rubbed: Option<Vec<Vec<f64>>>,
-}
-
-impl Work {
-    /// Counts a step of `dt` s that reached `t`.
-    fn step(&mut self, dt: f64, t: f64, stepper: &dyn Stepper) {
-        self.steps += 1;
-        self.reached = t;
-        self.smallest_step = self.smallest_step.min(dt);
-        self.largest_step = self.largest_step.max(dt);
-        self.forced_steps += u64::from(stepper.forced());
-        if let Some(error) = stepper.step_error() {
-            self.step_error = Some(self.step_error.map_or(error, |worst| worst.max(error)));
-        }
-    }
 }
 
 /// Simulates `mechanism` and calls `observe` at each row of the schedule.

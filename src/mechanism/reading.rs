@@ -1,13 +1,6 @@
 //! What the encoder of a driven joint reads, against its true coordinate.
 
 use super::{Actuator, Command, Evaluation, Mechanism};
-use std::fmt::Debug;
-
-/// How a driven joint's true length differs from what its encoder and its drive read.
-pub trait ReadingError: Debug + Send + Sync {
-    /// `true − read` in m at the read length `read` (m), and its first and second derivative by it.
-    fn at(&self, read: f64) -> [f64; 3];
-}
 
 impl Actuator {
     /// True length in m at a read length, and its first and second derivative by it.

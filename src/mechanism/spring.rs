@@ -1,27 +1,9 @@
 //! Springs with dampers between points and in joints, and the end stops of joints.
 
-use super::{Attachment, JointIndex, Load, Mechanism, Situation};
+use super::{JointIndex, Load, Mark, Mechanism, Situation};
 use crate::contact::{ForceLaw, HertzStep};
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
-
-/// A point of a body that stays where it is in the body, whatever mass is put on it: from the body's
-/// reference point in its own axes, in m; of the ground in the world.
-#[derive(Clone, Copy, Debug)]
-pub struct Mark {
-    /// The body, or the ground.
-    pub body: Option<usize>,
-    /// The point in m.
-    pub point: Vector2<f64>,
-}
-
-impl Mark {
-    /// The point as an attachment of this mechanism.
-    pub fn attachment(&self, mechanism: &Mechanism) -> Attachment {
-        let reference = self.body.map_or_else(Vector2::zeros, |i| mechanism.bodies[i].reference);
-        Attachment { body: self.body, point: reference + self.point }
-    }
-}
 
 /// A spring and damper along the line between two points: with r from the first to the second and n = r/|r|,
 /// the first is pulled by `F n`, the second by `−F n`, `F = k (|r| − l₀) + c d|r|/dt`.
@@ -190,7 +172,7 @@ joint_load!(Stop);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::{Bearing, Body, BodyState, Revolute};
+    use crate::mechanism::{Attachment, Bearing, Body, BodyState, Revolute};
 
     /// A body that turns about the origin, at 0.3 rad with 2 rad/s.
     fn turning() -> Mechanism {

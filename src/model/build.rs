@@ -3,15 +3,16 @@
 use super::declared_drives::add_drives;
 use super::guides::{corners, has_play};
 use super::layout::{Layout, Written};
-use super::names::{mark, names};
+use super::material::material;
+use super::names::{joint_named, mark, names};
 use super::parts::Parts;
 use crate::contact::laws::Given;
-use crate::contact::{Clearance, HertzStep, Material, RingShape, RingTable};
+use crate::contact::{Clearance, HertzStep, RingShape, RingTable};
 use crate::mechanism::{
-    Attachment, Bearing, JointIndex, JointSpring, Mechanism, OilFilm, PointSpring, Prismatic,
-    Reads, Revolute, Sensor, Stop,
+    Attachment, Bearing, JointSpring, Mechanism, OilFilm, PointSpring, Prismatic, Reads, Revolute,
+    Sensor, Stop,
 };
-use crate::scenario::{self, Contact, Described, Joint, Law, Quantity, Scenario, Spring, Target};
+use crate::scenario::{self, Described, Joint, Law, Quantity, Scenario, Spring, Target};
 use nalgebra::{UnitComplex, Vector2};
 use std::ops::Range;
 use std::sync::Arc;
@@ -158,21 +159,10 @@ fn direction(angle: f64) -> UnitComplex<f64> {
     if angle == 0.0 { UnitComplex::identity() } else { UnitComplex::new(angle) }
 }
 
-/// The joint of that name.
-pub(super) fn joint_named(mechanism: &Mechanism, name: &str) -> Option<JointIndex> {
-    mechanism.joints().find(|(joint, _)| *joint == name).map(|(_, index)| index)
-}
-
 /// Declared radial clearance of a joint in m; none of an ideal one.
 fn clearance(scenario: &Scenario, joint: &scenario::Revolute, index: usize) -> Option<f64> {
     let default = || scenario.joints.clearance.as_ref().map(|values| values.at(index));
     joint.clearance.or_else(default).filter(|clearance| *clearance > 0.0)
-}
-
-/// What journals, rings and guides are of.
-pub(super) fn material(scenario: &Scenario) -> Material {
-    let Contact { youngs_modulus, poisson_ratio, .. } = scenario.contact;
-    Material { youngs_modulus, poisson_ratio }
 }
 
 /// What the law of a joint is built from.

@@ -1,7 +1,7 @@
 //! Drives as a description has them.
 
-use super::build::joint_named;
 use super::layout::Layout;
+use super::names::joint_named;
 use crate::mechanism::{Actuator, Cascade, Drive, Mechanism};
 use crate::scenario::{Described, DriveMode, JointDrive, Motion, Sampled, Scenario};
 

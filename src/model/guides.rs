@@ -1,5 +1,6 @@
 //! Sliders with clearance: a block whose four corners hit two guides.
 
+use super::material::material;
 use crate::contact::laws::Given;
 use crate::contact::{Clearance, RingShape, StiffnessForm, corner_stiffness};
 use crate::mechanism::{Attachment, Bearing, Prismatic, Revolute};
@@ -28,7 +29,7 @@ pub(super) fn corners(
     let half =
         Vector2::new(joint.length.unwrap_or_default(), joint.height.unwrap_or_default()) * 0.5;
     let radius = joint.corner_radius.unwrap_or(CORNER_RADIUS);
-    let material = super::build::material(scenario);
+    let material = material(scenario);
     let given = Given {
         bearing_radius: radius + gap,
         journal_radius: radius,

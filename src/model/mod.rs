@@ -12,6 +12,7 @@ mod drives;
 mod guides;
 mod ideal;
 mod layout;
+mod material;
 mod motion;
 mod names;
 mod native;

@@ -1,6 +1,5 @@
 //! The names of a description, and where they are in what was built of it.
 
-use super::build::joint_named;
 use super::parts::Parts;
 use super::shape;
 use crate::mechanism::{
@@ -9,6 +8,11 @@ use crate::mechanism::{
 use crate::scenario::{self, Described, GROUND, Joint, Scenario, Target};
 use nalgebra::Vector2;
 use std::collections::BTreeMap;
+
+/// The joint of that name.
+pub(super) fn joint_named(mechanism: &Mechanism, name: &str) -> Option<JointIndex> {
+    mechanism.joints().find(|(joint, _)| *joint == name).map(|(_, index)| index)
+}
 
 /// A point `body.point` that stays where it is in its body.
 pub(super) fn mark(mechanism: &Mechanism, parts: &Parts, name: &str) -> Mark {

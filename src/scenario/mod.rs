@@ -11,6 +11,7 @@
 mod annotate;
 mod connected;
 mod document;
+mod lists;
 mod problem;
 mod read;
 mod read_motion;

@@ -1,6 +1,6 @@
 //! From the text of `[motion]` to what it moves, and how.
 
-use super::read::{OneOrMany, each, few, kind};
+use super::lists::{OneOrMany, each, few, kind};
 use super::reader::Reader;
 use super::{
     JointLine, JointMotion, JointMultisine, JointPath, JointQuintic, JointTable, Mechanism, Motion,

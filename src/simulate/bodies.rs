@@ -1,6 +1,6 @@
 //! Masses, inertias and centres of mass that no body has.
 
-use super::checks::Finding;
+use super::finding::Finding;
 use crate::mechanism::{Attachment, Body, Mechanism};
 use crate::scenario::{self, Problem, Scenario};
 

@@ -1,52 +1,11 @@
 //! What can be said against a machine before it is simulated.
 
+use super::finding::Finding;
 use super::{bodies, conformal, oil, plausible, three_rpr, unacting};
 use crate::engine::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::mechanism::{Bearing, Drive, JointIndex, Mechanism};
 use crate::model::{DrivenPath, Machine, Singular, assemble};
-use crate::scenario::{self, Problem, Scenario};
-use std::fmt;
-
-/// How bad a [`Finding`] is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Severity {
-    /// The results would be worthless: nothing is simulated.
-    Error,
-    /// The results need care.
-    Warning,
-}
-
-/// Something wrong or doubtful about a scenario, with the key that it hangs on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
-    /// Whether it stops a run.
-    pub severity: Severity,
-    /// What, where, and what would be right.
-    pub problem: Problem,
-}
-
-impl Finding {
-    /// A finding that stops a run.
-    pub fn error(problem: Problem) -> Self {
-        Self { severity: Severity::Error, problem }
-    }
-
-    /// A finding that does not.
-    pub fn warning(problem: Problem) -> Self {
-        Self { severity: Severity::Warning, problem }
-    }
-}
-
-impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let severity = match self.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-        };
-        write!(f, "{severity}: {}", self.problem)
-    }
-}
+use crate::scenario::{self, Scenario};
 
 /// Gain from a drive's error to the machine's fastest point beyond which a pose counts as singular: a
 /// clearance of 0.1 mm, or an encoder's step times so much, is a centimetre of the machine.

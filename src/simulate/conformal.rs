@@ -1,6 +1,6 @@
 //! Where laws and stiffnesses of conforming surfaces end.
 
-use super::checks::Finding;
+use super::finding::Finding;
 use super::plausible::own_key;
 use crate::contact::StiffnessForm;
 use crate::engine::TYPICAL_IMPACT_SPEED;

@@ -1,6 +1,6 @@
 //! Effects that change nothing.
 
-use super::checks::Finding;
+use super::finding::Finding;
 use super::restraints;
 use crate::effects::{Parameter, Setting};
 use crate::mechanism::Mechanism;

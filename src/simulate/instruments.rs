@@ -1,6 +1,6 @@
 //! Instruments that are hardly meant: noise and steps in another unit.
 
-use super::checks::Finding;
+use super::finding::Finding;
 use crate::mechanism::{Mechanism, Reads, Sensor};
 use crate::scenario::Scenario;
 

@@ -8,6 +8,7 @@
 mod bodies;
 mod checks;
 mod conformal;
+mod finding;
 mod idle;
 mod instruments;
 mod measured;
@@ -25,7 +26,8 @@ pub use crate::model::{
     FIT_SPEED, Ideal, IdealInstant, Machine, assemble, close, drive, driven, leg_use,
     radial_clearance,
 };
-pub use checks::{Finding, Severity, doubts, driven_path, findings, findings_along};
+pub use checks::{doubts, driven_path, findings, findings_along};
+pub use finding::{Finding, Severity};
 pub use idle::neutral;
 pub use measured::{measured, measured_until};
 pub use provenance::Provenance;

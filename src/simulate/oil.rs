@@ -1,6 +1,6 @@
 //! Oil films that cannot be as they are asked for.
 
-use super::Finding;
+use super::finding::Finding;
 use crate::contact::Film;
 use crate::engine::TYPICAL_IMPACT_SPEED;
 use crate::mechanism::Bearing;

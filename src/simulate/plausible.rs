@@ -1,6 +1,6 @@
 //! Numbers that are legal, and hardly meant: another unit is likely, or a value was forgotten.
 
-use super::checks::Finding;
+use super::finding::Finding;
 use super::three_rpr::angle_key;
 use super::{bodies, idle, instruments, restraints};
 use crate::contact::Clearance;

@@ -1,6 +1,6 @@
 //! Springs and stops that are hardly meant.
 
-use super::checks::Finding;
+use super::finding::Finding;
 use crate::mechanism::{JointIndex, Mechanism};
 use crate::scenario::{Scenario, Spring};
 use std::f64::consts::TAU;

@@ -1,6 +1,6 @@
 //! What can be said against the motion of a 3-RPR, in the words of that machine.
 
-use super::checks::Finding;
+use super::finding::Finding;
 use crate::mechanism::motion::Motion;
 use crate::model::leg_use;
 use crate::scenario::{self, Scenario, ThreeRpr};

@@ -1,6 +1,6 @@
 //! Keys that an override gives and that cannot act on this machine.
 
-use super::checks::Finding;
+use super::finding::Finding;
 use crate::mechanism::{Bearing, Drive};
 use crate::model::Machine;
 use crate::scenario::{Law, Scenario};

@@ -1,7 +1,8 @@
 //! What a contact law does in one hit: its force over the penetration, and what it returns over the speed.
 
+use super::files::to_json;
 use super::folder::Folder;
-use super::run::{RunError, refused, to_json};
+use super::run_error::{RunError, refused};
 use crate::contact::laws::{Kind, Losses};
 use crate::contact::{ForceLaw, hit, impact};
 use crate::mechanism::Bearing;

@@ -6,6 +6,7 @@ mod check;
 pub mod compare;
 pub mod diff;
 pub mod evaluate;
+mod files;
 mod film;
 mod folder;
 mod forecast;
@@ -14,14 +15,19 @@ pub mod paper;
 mod pictures;
 mod recent;
 mod run;
+mod run_error;
 mod run_page;
 pub mod sweep;
+mod watch;
 pub mod wear;
 
 pub use check::{
     Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Engines, Found, Ideal, check,
 };
+pub(crate) use files::PAGE_FILE;
 pub use folder::{Folder, FolderError, abandon, default_name};
-pub use forecast::{Forecast, Watch};
-pub use run::{Outcome, Recorded, RunError, SUMMARY_FILE, Terms, recorded, run};
-pub(crate) use run::{PAGE_FILE, refused};
+pub use forecast::Forecast;
+pub use run::{Outcome, Recorded, SUMMARY_FILE, Terms, recorded, run};
+pub use run_error::RunError;
+pub(crate) use run_error::refused;
+pub use watch::Watch;

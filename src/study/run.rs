@@ -1,10 +1,12 @@
 //! One run into a folder.
 
 use super::chaos::{self, Chaos, Look};
+use super::files::{PAGE_FILE, PLAYER_FILE, keep_scenario, scenario_files, to_json};
 use super::film::Film;
-use super::folder::{Folder, FolderError};
-use super::forecast::{Beginning, Forecast};
+use super::folder::Folder;
+use super::forecast::Beginning;
 use super::pictures::Gallery;
+use super::run_error::{RunError, refused};
 use super::run_page::page;
 use super::wear::{WEAR_FILE, wear_csv, wear_picture, wearing};
 use crate::engine::{self, Instant};
@@ -12,9 +14,8 @@ use crate::mechanism::Mechanism;
 use crate::report::{Picture, ReportError};
 use crate::scenario::Scenario;
 use crate::simulate::{Machine, Recorder, Summary, TimeSeries};
-use serde::Serialize;
 use std::fs::{self, File};
-use std::io::{self, BufWriter};
+use std::io::BufWriter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,9 +25,6 @@ use std::time::Instant as Clock;
 pub const SUMMARY_FILE: &str = "summary.json";
 
 pub(super) const TIME_SERIES_FILE: &str = "timeseries.csv";
-pub(super) const SCENARIO_FILE: &str = "scenario.toml";
-pub(crate) const PAGE_FILE: &str = "index.html";
-pub(super) const PLAYER_FILE: &str = "player.html";
 const ANIMATION_FILE: &str = "animation.svg";
 
 /// What a run came to.
@@ -40,46 +38,6 @@ pub struct Outcome {
     pub folder: PathBuf,
     /// Simulated time in s that was asked for.
     pub duration: f64,
-}
-
-/// Why a run has no files.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// A file cannot be written.
-    #[error("cannot write {file}: {source}")]
-    File {
-        /// Its name.
-        file: String,
-        /// Why.
-        source: io::Error,
-    },
-    /// It was told to stop, and an earlier result is worth more than the part of a new one.
-    #[error("the run was interrupted; the earlier result stands")]
-    Dropped,
-    /// It would take long or write much, and nobody said that this is meant.
-    #[error(
-        "the run would {0}, judged by its beginning; say --yes if that is meant, or change --duration, \
-         simulation.output_interval (rows) or simulation.tolerance (steps)"
-    )]
-    TooMuch(Forecast),
-    /// Many runs would take long, and nobody said that this is meant.
-    #[error(
-        "this would {0}, judged by its beginning; say --yes if that is meant, or take fewer or shorter runs, or a larger \
-         simulation.tolerance"
-    )]
-    TooLong(Forecast),
-    /// A picture cannot be drawn.
-    #[error(transparent)]
-    Picture(#[from] ReportError),
-    /// The folder cannot get its name.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-}
-
-/// What becomes of an error of the file system about `file`.
-pub(crate) fn refused(file: &str) -> impl FnOnce(io::Error) -> RunError {
-    let file = file.to_owned();
-    |source| RunError::File { file, source }
 }
 
 /// Under which conditions a run goes on.
@@ -256,26 +214,4 @@ fn look_back(summary: &mut Summary, machine: &Machine, looks: &[Look], stop: &At
         summary.lyapunov_exponent_1_s = chaos.lyapunov;
         summary.predictability_horizon_s = chaos.horizon();
     }
-}
-
-/// Names of what [`keep_scenario`] writes.
-pub(super) fn scenario_files(scenario: &Scenario) -> Vec<String> {
-    let (_, files) = scenario.to_toml_beside_files();
-    [SCENARIO_FILE.to_owned()].into_iter().chain(files.into_iter().map(|(_, name)| name)).collect()
-}
-
-/// Writes the scenario and copies of the tables that it reads: the result repeats wherever it lies.
-pub(super) fn keep_scenario(scenario: &Scenario, folder: &Folder) -> Result<(), RunError> {
-    let (text, files) = scenario.to_toml_beside_files();
-    for (source, name) in &files {
-        fs::copy(source, folder.file(name)).map_err(refused(name))?;
-    }
-    fs::write(folder.file(SCENARIO_FILE), text).map_err(refused(SCENARIO_FILE))
-}
-
-/// Pretty JSON with a line break at the end.
-pub(super) fn to_json(result: &impl Serialize) -> String {
-    // No input makes this fail: results have only names for keys, and NaN becomes null.
-    let text = serde_json::to_string_pretty(result).expect("numbers, texts and lists are JSON");
-    text + "\n"
 }

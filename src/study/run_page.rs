@@ -1,7 +1,7 @@
 //! The page of a run: the main result in words, the figures in a table, the pictures.
 
 use super::chaos;
-use super::run::{PLAYER_FILE, SCENARIO_FILE};
+use super::files::{PLAYER_FILE, SCENARIO_FILE};
 use crate::report::{self, Fact, Part, Picture, length, number};
 use crate::scenario::Law;
 use crate::simulate::Summary;

@@ -5,9 +5,10 @@
 use super::{Missing, Table};
 use crate::calibrate::result::control;
 use crate::calibrate::sensed::held::bench::Bench;
+use crate::calibrate::sensed::held::candidates::of_declared;
 use crate::calibrate::sensed::held::model::{Model, share};
 use crate::calibrate::sensed::held::plausible;
-use crate::calibrate::sensed::held::terms::{Term, WAYS, of_declared};
+use crate::calibrate::sensed::held::terms::{Term, WAYS};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::BUILDS_UP;
 use crate::model::parts_of;

@@ -1,9 +1,9 @@
 //! From questions with numbers to the motion that answers them best: searches without clearance, then the best
 //! candidates with clearance, noise of their own and rivals fitted.
 
+use super::answer::{Answer, answered};
 use super::instruments::worth;
 use super::motion::{Maker, Motion};
-use super::outcome::{Answer, answered};
 use super::path::Way;
 use super::prepare::Prepared;
 use super::search::{Effort, best};

@@ -2,10 +2,12 @@
 //!
 //! [`prepare`](prepare::prepare) reads what is asked ([`asked`]) and within which [`limits`]; [`series`] and [`motion`] make
 //! motions out of numbers and the `present` one, [`path`] says whether the machine can follow them; [`sight`] is what a
-//! calibration would see along one, [`separation`] how far apart models are there; `posing` gives questions their numbers,
-//! [`search`] finds those of motions, `chosen` looks at the best with clearance; [`outcome`] is the whole way,
-//! [`instruments`] what one more sensor would bring, [`report`] what is written.
+//! calibration would see along one, [`separation`] how far apart models are there, [`answer`] what that says to a question;
+//! `posing` gives questions their numbers, [`search`] finds those of motions, `chosen` looks at the best with clearance;
+//! [`outcome`] is the whole way, [`instruments`] what one more sensor would bring, [`report`] and `page` what is said of it,
+//! `written` the folder that it goes into.
 
+pub mod answer;
 pub mod asked;
 mod chosen;
 pub mod instruments;
@@ -22,6 +24,8 @@ pub mod search;
 pub mod separation;
 pub mod series;
 pub mod sight;
+mod written;
 
 pub use prepare::{Prepared, Request, prepare};
-pub use report::{Done, PLAN_FILE, Planned, into_folder};
+pub use report::{PLAN_FILE, Planned};
+pub use written::{Done, into_folder};

@@ -1,5 +1,6 @@
 //! The whole way: from what is asked to a motion, and to how far apart it brings the models.
 
+use super::answer::{Answer, answered};
 use super::chosen::{Chosen, Ground, no_motion, search_twice};
 use super::instruments::{Ranked, missing, ranked};
 use super::motion::{Maker, Motion};
@@ -7,27 +8,15 @@ use super::path::Way;
 use super::posing::pose_all;
 use super::prepare::Prepared;
 use super::present::present;
-use super::separation::{Apart, Posed, apart, detectable, named, nearest};
+use super::separation::{Posed, named};
 use super::sight::Sight;
 use crate::calibrate::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::SURE;
-use crate::effects::Setting;
 use rayon::prelude::*;
 
 /// Motions of random numbers by which effects are looked for that the present motion does not show.
 const RANDOM: usize = 8;
-
-/// How far apart the models of a question are on one motion.
-#[derive(Clone, Debug)]
-pub struct Answer {
-    /// Standard deviations.
-    pub sigma: f64,
-    /// Residuals that carry it, by name, with their shares of its square, the largest first.
-    pub carried: Vec<(String, f64)>,
-    /// Smallest size of an effect that would be named.
-    pub smallest: Option<f64>,
-}
 
 /// A question and its answers.
 #[derive(Clone, Debug)]
@@ -132,47 +121,6 @@ fn random(maker: &Maker, way: &Way, seed: u64) -> Vec<(Motion, Recording)> {
     let mut drawn = || (0..maker.numbers()).map(|_| StandardNormal.sample(&mut random)).collect();
     let numbers: Vec<Vec<f64>> = (0..RANDOM).map(|_| drawn()).collect();
     numbers.par_iter().filter_map(|numbers| way.largest(maker, numbers)).collect()
-}
-
-/// How far apart the models of a question are on a motion, rivals fitted to each other with all their values, and the
-/// question with the nearest values.
-pub(super) fn answered(sight: &Sight, posed: &Posed) -> (Posed, Answer) {
-    let seen = sight.own();
-    let carried = |apart: &Apart| {
-        let names = sight.names.iter().map(|name| format!("{} of {}", name.kind.word(), name.of));
-        let mut carried: Vec<(String, f64)> = names.zip(sight.shares(&apart.difference)).collect();
-        carried.sort_by(|a, b| b.1.total_cmp(&a.1));
-        carried
-    };
-    let nothing = || Answer { sigma: 0.0, carried: Vec::new(), smallest: None };
-    match posed {
-        Posed::Detect { effect, .. } => {
-            let found = apart(sight, &seen, posed);
-            let smallest = detectable(sight, &seen, effect);
-            let answer = found.map(|apart| Answer {
-                sigma: apart.sigma,
-                carried: carried(&apart),
-                smallest,
-            });
-            (posed.clone(), answer.unwrap_or_else(nothing))
-        }
-        Posed::Between { rivals, pairs } => {
-            let fitted = |[truth, rival]: &[Setting; 2]| {
-                let (rival, apart) = nearest(sight, &seen, std::slice::from_ref(truth), rival)?;
-                Some(([truth.clone(), rival], apart))
-            };
-            let fits: Option<Vec<_>> = pairs.iter().map(fitted).collect();
-            let Some(mut fits) = fits else { return (posed.clone(), nothing()) };
-            fits.sort_by(|a, b| a.1.sigma.total_cmp(&b.1.sigma));
-            let answer = fits.first().map(|(_, apart)| Answer {
-                sigma: apart.sigma,
-                carried: carried(apart),
-                smallest: None,
-            });
-            let pairs = fits.into_iter().map(|(pair, _)| pair).collect();
-            (Posed::Between { rivals: rivals.clone(), pairs }, answer.unwrap_or_else(nothing))
-        }
-    }
 }
 
 /// Chance that an answer is right: of two rivals a likelihood ratio chooses the right one with `Φ(σ/2)`, and an effect of

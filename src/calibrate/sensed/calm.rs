@@ -1,12 +1,13 @@
 //! What takes energy out of a rattle, and may show in nothing else: residuals are noise without it, only less
 //! noise than joints make that rattle on.
 
-use super::hypotheses::{Round, Tried};
+use super::model::Model;
 use super::problem::Stopped;
-use super::search::{Search, name};
-use super::settle::Model;
+use super::round::{Round, Tried};
+use super::search::Search;
 use super::thresholds::CALMER;
 use super::unseen::away;
+use super::words::name;
 use crate::effects::{CALMING, Setting, Target};
 
 impl Search<'_> {

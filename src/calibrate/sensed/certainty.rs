@@ -1,14 +1,16 @@
 //! How well values are known, and which effects may not be there.
 
 use super::fit::Fit;
-use super::outcome::Estimated;
+use super::model::Model;
 use super::problem::{Problem, Segment};
-use super::settle::Model;
 use super::thresholds::SURE;
 use crate::calibrate::outcome::{inverse_normal, pull};
 use crate::calibrate::report::Fitted;
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
+
+/// An effect with its estimates by name.
+pub type Estimated = (Setting, Vec<(&'static str, Fitted)>);
 
 /// Covariance of the values: `(JᵀJ)⁻¹`, J in units of noise; larger where the fit's own residual is larger
 /// than noise, and where noise pulls values further than that of each frequency by itself does: rattle, and journals that

@@ -1,6 +1,6 @@
 //! By how much predictions miss a recording, column by column, and by how much any would.
 
-use super::left::up_to;
+use super::by_chance::up_to;
 use super::recording::Recording;
 use super::simulate::noisy;
 use super::thresholds::{DRAWS, MET, TRIM};

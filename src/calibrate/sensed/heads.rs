@@ -1,8 +1,10 @@
 //! Which columns of a file are of which sensors, by its header.
 
-use super::recording::TIME;
 use crate::measure::spelling::nearest;
 use crate::mechanism::{Reads, Sensor};
+
+/// Heads that a column of time may have.
+pub(super) const TIME: [&str; 2] = ["t", "t_s"];
 
 /// Where time stands, where each sensor's column does, and what else there is.
 pub struct Places {

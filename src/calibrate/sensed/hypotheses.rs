@@ -1,46 +1,12 @@
 //! Models with one effect more than another one has, simulated.
 
+use super::model::{Model, price};
 use super::problem::Stopped;
-use super::search::{Search, names};
-use super::settle::Model;
+use super::round::{Round, Tried};
+use super::search::Search;
 use super::thresholds::{GAIN, MOSTLY, PROMISING, SIMULATED};
+use super::words::names;
 use crate::effects::Setting;
-
-/// A candidate of a round.
-#[derive(Clone, Debug)]
-pub struct Tried {
-    /// The effect with the values that fitted.
-    pub effect: Setting,
-    /// Drop of Σ of squares on data not used for its fit.
-    pub gain: f64,
-    /// Share of what was there that this is.
-    pub share: f64,
-    /// Whether its values were fitted by more than one linear step, and what shrinks of the noise is no gain.
-    pub fitted: bool,
-    /// Drop that draws of noise bring it by chance.
-    pub chance: f64,
-    /// Whether the machine was simulated with it.
-    pub simulated: bool,
-}
-
-impl Tried {
-    /// One that whole simulations were fitted with, beside a model that it gains so much over.
-    pub(super) fn simulated(effect: Setting, gain: f64, beside: &Model) -> Self {
-        let share = (gain / beside.held).clamp(0.0, 1.0);
-        Self { effect, gain, share, fitted: true, chance: 0.0, simulated: true }
-    }
-}
-
-/// One round of a search.
-#[derive(Clone, Debug, Default)]
-pub struct Round {
-    /// Candidates, the best first.
-    pub tried: Vec<Tried>,
-    /// What was added.
-    pub added: Option<Setting>,
-    /// What was as good.
-    pub as_good: Vec<Setting>,
-}
 
 impl Search<'_> {
     /// The best models with one effect more than this one has, simulated, the best first.
@@ -133,11 +99,6 @@ fn at_a_limit(effect: &Setting) -> bool {
         let ends = parameter.bounds.into_iter().filter(|bound| *bound != 0.0);
         Some(name) != phase && ends.into_iter().any(near)
     })
-}
-
-/// Drop of cost that one more effect has to bring.
-pub(super) fn price(model: &Model) -> f64 {
-    GAIN[usize::from(model.baseline.rattles)]
 }
 
 fn beside(effects: &[Setting]) -> String {

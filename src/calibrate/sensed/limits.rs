@@ -7,8 +7,8 @@
 
 use super::candidates::within;
 use super::fit::Target as Fitted;
+use super::model::Model;
 use super::search::Search;
-use super::settle::Model;
 use super::thresholds::{GAIN, GAIN_PER_VALUE, LARGEST, NOISE, SURE};
 use crate::effects::{Kind, Range, Setting, Target};
 use nalgebra::{DMatrix, DVector};

@@ -1,6 +1,6 @@
 //! One linear step of values to what they explain, and what chance makes of it.
 
-use super::left::up_to;
+use super::by_chance::up_to;
 use crate::calibrate::least_squares::Free;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -80,6 +80,23 @@ pub(super) fn step(
         moving.remove(leaving);
     }
     Some(Step { moving, change })
+}
+
+/// The sum of squares that is left after one step along these columns, the first `known` of which are not bounded, and the
+/// step.
+pub(super) fn stepped_along(
+    columns: &[DVector<f64>],
+    known: usize,
+    left: &DVector<f64>,
+    own: &[f64],
+    free: &[Free],
+) -> Option<(f64, DVector<f64>)> {
+    if columns.is_empty() {
+        return Some((left.norm_squared(), DVector::zeros(0)));
+    }
+    let columns = DMatrix::from_columns(columns);
+    let change = step(&columns, known, left, own, free)?.change;
+    Some(((left + &columns * &change).norm_squared(), change))
 }
 
 impl Columns {

@@ -6,19 +6,21 @@
 //! * [`noise`]: noise other than declared. [`estimate`]: samples, smoothed as needed. [`basis`]: what says how the machine moved.
 //! * [`residual`]: what that motion says against the model (laws of drives, closure, dynamics, acceleration); [`baseline`]:
 //!   what a right model leaves of them, bias and noise.
-//! * [`candidates`], `periodic`: where to start looking. [`fit`], [`settle`]: a model's values, between residuals and
-//!   simulations. [`left`]: what it leaves.
-//! * [`search`]: one effect after another, several hypotheses at once; `screen`, `linear`: which promise, and what chance makes of
-//!   them; [`hypotheses`]: those simulated; `unseen`, `other_laws`, `calm`: what residuals hardly see.
+//! * [`candidates`], `periodic`: where to start looking. [`model`]: effects with values. [`fit`], [`settle`]: these values,
+//!   between residuals and simulations. [`left`]: what a model leaves; `by_chance`: how far chance alone leads.
+//! * [`search`]: one effect after another, several hypotheses at once, in a [`round`] each; `screen`, `linear`: which promise, and
+//!   what chance makes of them; `hypotheses`: those simulated; `unseen`, `other_laws`, `calm`: what residuals hardly see.
 //! * `simpler`: which values are needed; `certainty`: how well they are known; `rivals`: what would explain as much, and
-//!   what still stands out. `whole`, [`trajectory`]: values from whole simulations and predictions.
-//! * [`outcome`] is the whole way; [`errors`], [`limits`], [`report`], `charts`, `page` what is written of it; [`predict`] holds a
-//!   model against one recording. [`events`] finds what does not last, [`unnamed`] describes what has no name.
+//!   what still stands out (`rest`). `whole`, [`trajectory`]: values from whole simulations and predictions.
+//! * [`outcome`] is the whole way; [`errors`], [`limits`], [`report`], `charts`, `page`, `words` what is said of it, `written` its
+//!   files, `ways` how each of three ways comes to them; [`predict`] holds a model against one recording. [`events`] finds what
+//!   does not last, [`unnamed`] describes what has no name.
 //! * [`windows`]: machines that nothing holds; [`held`]: those that sampled controllers hold. [`self_test`] says how often it is
 //!   right. Every number that was chosen stands in [`thresholds`] with its reason.
 
 pub mod baseline;
 pub mod basis;
+mod by_chance;
 mod calm;
 pub mod candidates;
 mod cells;
@@ -31,10 +33,11 @@ pub mod fit;
 mod followed;
 mod heads;
 pub mod held;
-pub mod hypotheses;
+mod hypotheses;
 pub mod left;
 pub mod limits;
 mod linear;
+pub mod model;
 mod motions;
 pub mod noise;
 mod other_laws;
@@ -48,7 +51,9 @@ pub mod recording;
 pub mod released;
 pub mod report;
 pub mod residual;
+mod rest;
 mod rivals;
+pub mod round;
 mod samples;
 mod screen;
 pub mod search;
@@ -63,8 +68,11 @@ pub mod thresholds;
 pub mod trajectory;
 pub mod unnamed;
 mod unseen;
+pub(in crate::calibrate) mod ways;
 mod whole;
 pub mod windows;
+mod words;
+pub(in crate::calibrate) mod written;
 
 pub use prepare::prepare;
-pub use report::into_folder;
+pub use ways::into_folder;

@@ -1,8 +1,8 @@
 //! Laws of contact other than the declared one: effects without a value at which they change nothing, so that no derivative
 //! says which way they are. Whole simulations at a list of values do.
 
+use super::linear::stepped_along;
 use super::thresholds::NEAR;
-use super::unseen::stepped_along;
 use super::whole::Whole;
 use crate::effects::{ALL, Setting};
 use crate::mechanism::Mechanism;

@@ -1,27 +1,23 @@
 //! The whole way: from a rig and its recordings to a verdict, values with intervals, and errors.
 
 use super::candidates::candidates;
-use super::certainty::{estimated, uncertain};
+use super::certainty::{Estimated, estimated, uncertain};
 use super::errors::{are_met, mean, of_run};
 use super::events::{Event, search::beside};
-use super::hypotheses::Round;
 use super::left::{Left, is_noise};
 use super::limits::{Limit, limits};
+use super::model::Model;
 use super::noise::{self, OtherNoise};
 use super::problem::{Problem, Split, Start, Stopped};
 use super::recording::Recording;
-use super::rivals::Rest;
+use super::rest::Rest;
+use super::round::Round;
 use super::search::{Found, Search};
-use super::settle::Model;
 use super::thresholds::{CLEARED, PREDICTING};
 use super::unnamed::{Described, describe};
 use crate::calibrate::errors::{ChannelError, is_worse};
 use crate::calibrate::outcome::Verdict;
-use crate::calibrate::report::Fitted;
 use crate::effects::{Setting, UNNAMED};
-
-/// An effect with its estimates by name.
-pub type Estimated = (Setting, Vec<(&'static str, Fitted)>);
 
 /// A calibration.
 #[derive(Debug)]

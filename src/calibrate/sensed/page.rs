@@ -4,7 +4,7 @@ use super::charts::{Drawn, of_run};
 use super::outcome::Outcome;
 use super::problem::Problem;
 use super::report::Report;
-use super::windows::report::Windows;
+use super::windows::horizons::Windows;
 use crate::calibrate::page::{errors_table, verdict, why};
 use crate::report::{Part, Picture, ReportError, Style, Table, document, known_to, number};
 

@@ -1,7 +1,7 @@
 //! Recorded runs of any mechanism: a CSV file with a column for each sensor, one row a sample.
 
 use super::cells::Cells;
-use super::heads::choose;
+use super::heads::{TIME, choose};
 use super::samples::{Row, Samples, unread, wrong};
 use super::thresholds::{LOWEST_RATE, PLAIN_BAND, SHORTEST};
 use crate::measure::bounded;
@@ -36,9 +36,6 @@ pub struct Recording {
     /// Share of the rows that came early or late and were put on a grid by splines.
     pub jitter: f64,
 }
-
-/// Heads that a column of time may have.
-pub(super) const TIME: [&str; 2] = ["t", "t_s"];
 
 impl Recording {
     /// Reads the columns of `sensors`; measured ones may be missing, commands may not, unless `efforts` drive the

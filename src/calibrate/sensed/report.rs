@@ -1,38 +1,21 @@
 //! `report.json` and the folder of results.
 
-use super::events::found::sentence;
-use super::events::picture::pictures as events_drawn;
-use super::held;
-use super::hypotheses::Tried;
 use super::left::Left;
 use super::limits::Limit;
 use super::noise::OtherNoise;
-use super::outcome::{Outcome, calibrate};
-use super::page;
-use super::prepare::{Prepared, Way};
-use super::problem::{Problem, Stopped};
-use super::recording::Recording;
-use super::rivals::Rest;
-use super::search::{name, names};
-use super::windows::report::{Windows, into_folder as by_windows};
+use super::outcome::Outcome;
+use super::rest::Rest;
+use super::round::Tried;
+use super::windows::horizons::Windows;
+use super::words::{name, names};
 use crate::calibrate::errors::{ChannelError, worst};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::quantity;
-use crate::calibrate::recording::stem_of;
 use crate::calibrate::report::{
     ActsOn, Depends, EffectReport, Ranked, RattleReport, ResidualReport, Seeds,
 };
-use crate::calibrate::result::{
-    CALIBRATED_FILE, CalibrateError, REPORT_FILE, control, publish, to_json,
-};
-use crate::calibrate::unnamed_picture;
-use crate::report::Picture;
-use crate::scenario::Scenario;
 use crate::simulate::Provenance;
-use crate::study::{Folder, PAGE_FILE, RunError};
 use serde::Serialize;
-use std::path::PathBuf;
-use std::time::Instant as Clock;
 
 /// The report. Keys are promised to scripts; see the README.
 #[derive(Clone, Debug, Serialize)]
@@ -76,150 +59,7 @@ pub struct Report {
     pub windows: Option<Windows>,
 }
 
-/// A finished calibration.
-#[derive(Debug)]
-pub struct Calibrated {
-    /// What it came to.
-    pub report: Report,
-    /// The text of `report.json`.
-    pub json: String,
-    /// Where all files are.
-    pub folder: PathBuf,
-}
-
-impl From<Stopped> for CalibrateError {
-    fn from(stopped: Stopped) -> Self {
-        match stopped {
-            Stopped::Model(problem) => problem.into(),
-            Stopped::Halted(halt) => halt.into(),
-        }
-    }
-}
-
-/// Calibrates and writes everything about it into `folder`. `tell` hears what is being tried.
-///
-/// # Errors
-/// A rig that cannot be simulated, files that cannot be written; the folder is left as it was.
-pub fn into_folder(
-    prepared: Prepared,
-    without: &[&str],
-    folder: Folder,
-    tell: &(dyn Fn(&str) + Sync),
-) -> Result<Calibrated, CalibrateError> {
-    let Prepared { rig, recordings, fits, way } = prepared;
-    match way {
-        Way::Windows => by_windows(&rig, recordings, fits, without, folder, tell),
-        Way::Held => held::report::into_folder(&rig, recordings, without, folder, tell),
-        Way::Residuals => by_residuals(rig, recordings, without, tell)?.written(folder),
-    }
-}
-
-/// A calibration before it is written.
-#[derive(Debug)]
-pub(in crate::calibrate) struct Made {
-    /// What it came to.
-    pub report: Report,
-    calibrated: Scenario,
-    files: Vec<(String, String)>,
-    pictures: Vec<Picture>,
-}
-
-impl Made {
-    /// Writes everything into a folder.
-    ///
-    /// # Errors
-    /// Files that cannot be written; the folder is left as it was.
-    pub fn written(self, folder: Folder) -> Result<Calibrated, CalibrateError> {
-        written(self.report, &self.calibrated, &self.files, &self.pictures, folder)
-    }
-}
-
-/// Calibrates by residuals and simulations. `tell` hears what is being tried.
-///
-/// # Errors
-/// A rig that cannot be simulated.
-pub(in crate::calibrate) fn by_residuals(
-    rig: Scenario,
-    recordings: Vec<Recording>,
-    without: &[&str],
-    tell: &(dyn Fn(&str) + Sync),
-) -> Result<Made, CalibrateError> {
-    let started = Clock::now();
-    let control = control(&rig);
-    let mut problem = Problem::new(rig, recordings, control)?;
-    let outcome = calibrate(&mut problem, without, tell)?;
-    tell("drawing and writing");
-    let mut pictures = page::pictures(&problem, &outcome).map_err(RunError::from)?;
-    let settings = outcome.effects.iter().map(|(effect, _)| effect);
-    pictures.extend(unnamed_picture::pictures(settings).map_err(RunError::from)?);
-    pictures.extend(events_drawn(&outcome.events).map_err(RunError::from)?);
-    let sensors = &problem.declared.sensors;
-    let mut files: Vec<(String, String)> = Vec::new();
-    for (run, predicted) in problem.runs.iter().zip(&outcome.predicted) {
-        let stem = stem_of(&run.recording.name);
-        files.push((format!("predicted-{stem}.csv"), predicted.to_csv(sensors)));
-    }
-    let report = Report {
-        provenance: Provenance::of(&problem.rig),
-        verdict: outcome.verdict,
-        summary: format!(
-            "{}{}{}",
-            summary(&outcome),
-            sentence(&outcome.events),
-            noises(&outcome.noises)
-        ),
-        effects: effects(&outcome),
-        errors: outcome.errors.clone(),
-        ranking: ranking(&outcome),
-        noises: outcome.noises.clone(),
-        limits: outcome.limits.iter().map(limit).collect(),
-        residuals: residuals(&outcome.before, &outcome.after),
-        rattle: RattleReport {
-            chaotic: problem.replicas > 1,
-            difference: outcome.rattle,
-            channel: String::new(),
-            replicas: problem.replicas,
-        },
-        without: without.iter().map(|kind| (*kind).to_owned()).collect(),
-        tolerance_m_s: control.tolerance().unwrap_or(f64::NAN),
-        seeds: Seeds {
-            scenario: problem.rig.seed,
-            replicas: (0..problem.replicas as u64).collect(),
-        },
-        simulations: problem.simulations(),
-        wall_s: started.elapsed().as_secs_f64(),
-        files: names_of_files(&files, &pictures),
-        windows: None,
-    };
-    let mut calibrated = problem.rig.clone();
-    calibrated.effects = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
-    Ok(Made { report, calibrated, files, pictures })
-}
-
-/// Names of all files of a calibration, `files` by name and text among them.
-pub(super) fn names_of_files(files: &[(String, String)], pictures: &[Picture]) -> Vec<String> {
-    let texts = [REPORT_FILE, CALIBRATED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
-    let written = files.iter().map(|(name, _)| name.clone());
-    texts.chain(written).chain(pictures.iter().map(|picture| picture.file.clone())).collect()
-}
-
-/// Writes a report, the calibrated model, the page and these files and pictures.
-pub(super) fn written(
-    report: Report,
-    calibrated: &Scenario,
-    files: &[(String, String)],
-    pictures: &[Picture],
-    folder: Folder,
-) -> Result<Calibrated, CalibrateError> {
-    let json = to_json(&report);
-    let (model, page) = (calibrated.to_toml(), page::page(&report, pictures));
-    let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &model), (PAGE_FILE, &page)];
-    texts.extend(files.iter().map(|(name, text)| (name.as_str(), text)));
-    let folder = publish(folder, &texts, pictures)?;
-    Ok(Calibrated { report, json, folder })
-}
-
-fn summary(outcome: &Outcome) -> String {
+pub(super) fn summary(outcome: &Outcome) -> String {
     let lasting = outcome.effects.iter().filter(|(effect, _)| effect.history().is_none());
     let list = lasting.map(|(e, _)| name(e)).collect::<Vec<_>>().join(", ");
     let worst = worst(&outcome.errors).map_or_else(String::new, |error| {
@@ -274,7 +114,7 @@ fn as_good(outcome: &Outcome) -> String {
 }
 
 /// What is said of instruments that are noisier or quieter than declared.
-fn noises(noises: &[OtherNoise]) -> String {
+pub(super) fn noises(noises: &[OtherNoise]) -> String {
     let one = |noise: &OtherNoise| match noise.declared {
         0.0 => {
             let OtherNoise { column, measured, unit, .. } = noise;
@@ -289,8 +129,8 @@ fn noises(noises: &[OtherNoise]) -> String {
     noises.iter().map(one).collect()
 }
 
-fn effects(outcome: &Outcome) -> Vec<EffectReport> {
-    let report = |(effect, params): &super::outcome::Estimated| {
+pub(super) fn effects(outcome: &Outcome) -> Vec<EffectReport> {
+    let report = |(effect, params): &super::certainty::Estimated| {
         let own = outcome.events.iter().find(|event| Some(&event.history) == effect.history());
         if let Some(event) = own {
             return event.report();
@@ -341,7 +181,7 @@ pub struct LimitReport {
     pub smallest: Option<f64>,
 }
 
-fn limit(limit: &Limit) -> LimitReport {
+pub(super) fn limit(limit: &Limit) -> LimitReport {
     LimitReport {
         kind: limit.kind.name,
         on: ActsOn::at(&limit.target),
@@ -351,7 +191,7 @@ fn limit(limit: &Limit) -> LimitReport {
     }
 }
 
-fn ranking(outcome: &Outcome) -> Vec<Ranked> {
+pub(super) fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     let kept = |tried: &Tried| outcome.effects.iter().any(|(effect, _)| effect.is(&tried.effect));
     let mut ranked = Vec::new();
     for (i, round) in outcome.rounds.iter().enumerate() {
@@ -375,7 +215,7 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     ranked
 }
 
-fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
+pub(super) fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
     let pair = |(before, after): (&Left, &Left)| ResidualReport {
         residual: format!("{} of {}", before.residual.word(), before.of),
         mean_square_before: before.mean_square,

@@ -5,48 +5,15 @@
 //! takes up most of that effect's part there is simulated, too, and compared on all runs. Two models that are no further
 //! apart than chance are as good as each other.
 
-use super::hypotheses::{Round, price};
 use super::linear::Columns;
+use super::model::{Model, price};
 use super::problem::Stopped;
-use super::search::{Search, names};
-use super::settle::Model;
+use super::rest::Rest;
+use super::round::Round;
+use super::search::Search;
 use super::thresholds::{GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
+use super::words::names;
 use crate::effects::Setting;
-
-/// What speaks against a model that leaves no more than noise: what still stands out of that, and by how much it would lower
-/// the sum of squares in units of noise; or an effect of it that may as well not be there.
-#[derive(Clone, Debug)]
-pub enum Rest {
-    /// An effect beside its own.
-    Effect(Setting, f64),
-    /// Other values of its own effects for the runs that they were not fitted to.
-    Values(f64),
-    /// Values of an effect that are no larger than what nobody knows of them.
-    Uncertain(Setting),
-}
-
-const IMITATES: &str = "it imitates something that has no name here";
-
-impl Rest {
-    /// The same in a sentence.
-    pub fn words(&self) -> String {
-        match self {
-            Rest::Effect(effect, gain) => {
-                format!(
-                    "beside it {effect} would still take {gain:.0} off the sum of squares: {IMITATES}"
-                )
-            }
-            Rest::Values(gain) => format!(
-                "other values of it would take {gain:.0} off the sum of squares of the other recordings: {IMITATES}"
-            ),
-            Rest::Uncertain(effect) => {
-                format!(
-                    "{effect} is no larger there than what is uncertain of it: there may be none"
-                )
-            }
-        }
-    }
-}
 
 /// Difference of cost below which rivals are compared at values from whole simulations: those from looks are a little off, by
 /// what looks are wrong by, which differs from rival to rival. In a trial a drive that gives cost 13 more than gains that

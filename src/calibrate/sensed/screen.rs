@@ -2,10 +2,10 @@
 
 use super::candidates::starts;
 use super::fit::Target;
-use super::hypotheses::Tried;
 use super::linear::{Columns, Step, step as linear_step};
+use super::model::Model;
+use super::round::Tried;
 use super::search::Search;
-use super::settle::Model;
 use super::thresholds::{AS_MUCH, CLOSER, GAIN, GAIN_PER_VALUE, JUDGED};
 use crate::calibrate::fit::free;
 use crate::calibrate::least_squares::derivative;

@@ -3,13 +3,13 @@
 
 use super::baseline::Baseline;
 use super::fit::Target;
-use super::hypotheses::{Round, price};
-use super::left::is_noise;
+use super::model::{Model, price};
 use super::problem::{Problem, Split, Stopped};
 use super::residual::Name;
-use super::rivals::Rest;
-use super::settle::Model;
+use super::rest::Rest;
+use super::round::Round;
 use super::thresholds::{BUDGET, EFFECTS, HYPOTHESES, NEAR, TWINS};
+use super::words::names;
 use crate::effects::Setting;
 
 /// What a search found.
@@ -58,10 +58,6 @@ impl<'a> Search<'a> {
         self.problem.simulations() - self.before >= BUDGET
     }
 
-    /// Whether a model leaves nothing but noise.
-    pub fn is_noise(&self, model: &Model) -> bool {
-        is_noise(&self.left(model))
-    }
     pub(super) fn target<'b>(&'b self, baseline: &'b Baseline, held: bool) -> Target<'b> {
         let on = if held { &self.split.hold } else { &self.split.on };
         Target { problem: self.problem, baseline, on }
@@ -214,14 +210,4 @@ fn credited(rounds: &mut [Round], kept: &[Setting]) {
 
 fn same(a: &[Setting], b: &[Setting]) -> bool {
     a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| a.is(b)))
-}
-
-/// An effect in words: its name, and where it is.
-pub fn name(effect: &Setting) -> String {
-    effect.to_string()
-}
-
-/// Effects in words.
-pub fn names(effects: &[Setting]) -> String {
-    effects.iter().map(name).collect::<Vec<_>>().join(" and ")
 }

@@ -3,35 +3,16 @@
 use super::baseline::Baseline;
 use super::errors::{are_met, of_run};
 use super::fit::Fit;
-use super::hypotheses::{Round, Tried, price};
+use super::model::{Model, price};
 use super::problem::{Segment, Stopped};
-use super::search::{Search, name, names};
-use super::thresholds::{GAIN_PER_VALUE, TWINS};
+use super::round::{Round, Tried};
+use super::search::Search;
+use super::thresholds::TWINS;
 use super::trajectory::{Far, fitted, followed, predicted, shorter};
 use super::whole::Whole;
+use super::words::{name, names};
 use crate::calibrate::fit::values;
 use crate::effects::Setting;
-
-/// A model that simulations of itself have been held against.
-#[derive(Clone, Debug)]
-pub struct Model {
-    /// Its effects at their best values.
-    pub fit: Fit,
-    /// Bias and noise from simulations at (nearly) these values.
-    pub baseline: Baseline,
-    /// Σ of squares on the data that candidates are judged on.
-    pub held: f64,
-    /// −2 log likelihood there, but for a constant.
-    pub misfit: f64,
-}
-
-impl Model {
-    /// What the model costs: its misfit and the price of its values.
-    pub fn cost(&self) -> f64 {
-        let values: usize = self.fit.effects.iter().map(|effect| effect.values().count()).sum();
-        self.misfit + GAIN_PER_VALUE * values as f64
-    }
-}
 
 /// A change of a value, in its standard deviations, that is none.
 const SETTLED: f64 = 0.3;

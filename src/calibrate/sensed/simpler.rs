@@ -2,11 +2,12 @@
 
 use super::certainty::uncertain;
 use super::fit::Fit;
+use super::model::Model;
 use super::problem::Stopped;
-use super::search::{Search, name};
-use super::settle::Model;
+use super::search::Search;
 use super::thresholds::{GAIN_PER_VALUE, TWINS};
 use super::trajectory::Far;
+use super::words::name;
 use crate::effects::{CONTAINS, Kind, Setting};
 
 impl Search<'_> {

@@ -2,10 +2,10 @@
 
 use super::estimate::position_sensor;
 use super::fit::Target;
+use super::model::Model;
 use super::problem::{Problem, Segment, Split, Stopped};
 use super::residual::{Kind, Name};
 use super::search::Search;
-use super::settle::Model;
 use super::thresholds::{TABLE, TABLE_PASSES};
 use crate::effects::{Efforts, Over, Setting};
 use crate::mechanism::JointIndex;

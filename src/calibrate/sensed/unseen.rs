@@ -1,19 +1,19 @@
 //! Effects that residuals hardly see without a simulation.
 
 use super::baseline::Baseline;
-use super::hypotheses::{Tried, price};
-use super::linear::step;
+use super::linear::stepped_along;
+use super::model::{Model, price};
 use super::other_laws::other_laws;
 use super::problem::{Segment, Stopped};
+use super::round::Tried;
 use super::search::Search;
-use super::settle::Model;
 use super::thresholds::NEAR;
 use super::trajectory::{Far, followed, shorter};
 use super::whole::Whole;
 use crate::calibrate::fit::free;
 use crate::calibrate::least_squares::{Free, Look, derivative};
 use crate::effects::Setting;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -180,23 +180,6 @@ fn linear_step(
 fn turns_round(names: &[&str], listed: &[Vec<f64>]) -> bool {
     let angle = names.last().is_some_and(|name| name.ends_with("_rad"));
     angle && names.len() == 2 && listed.len() >= 4 && listed.len().is_multiple_of(4)
-}
-
-/// The sum of squares that is left after one step along these columns, the first `known` of which are not bounded, and the
-/// step.
-pub(super) fn stepped_along(
-    columns: &[DVector<f64>],
-    known: usize,
-    left: &DVector<f64>,
-    own: &[f64],
-    free: &[Free],
-) -> Option<(f64, DVector<f64>)> {
-    if columns.is_empty() {
-        return Some((left.norm_squared(), DVector::zeros(0)));
-    }
-    let columns = DMatrix::from_columns(columns);
-    let change = step(&columns, known, left, own, free)?.change;
-    Some(((left + &columns * &change).norm_squared(), change))
 }
 
 /// An effect some way from its values, for what only simulations show.

@@ -1,7 +1,8 @@
 //! What the laws of a journal in line contact with its bearing have in common.
 
-use super::damped::{Damped, Loss};
+use super::damped::Damped;
 use super::kind::Given;
+use super::loss::Loss;
 use super::spring::{Logarithmic, Spring};
 use crate::contact::ForceLaw;
 use std::f64::consts::PI;

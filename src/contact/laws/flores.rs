@@ -1,7 +1,7 @@
 //! The law of Flores, Machado, Silva and Martins.
 
-use super::damped::Loss;
 use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 8 (1 − e)/(5 e)`.
 pub(super) static KIND: Kind = Kind {

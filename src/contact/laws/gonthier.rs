@@ -1,7 +1,7 @@
 //! The law of Gonthier, McPhee, Lange and Piedboeuf.
 
-use super::damped::Loss;
 use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = (1 − e²)/e`: an approximate root of `h (1 + e) = ln((1 + h)/(1 − h e))`, which is exact
 /// for a free mass and any n.

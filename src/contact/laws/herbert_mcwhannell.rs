@@ -1,7 +1,7 @@
 //! Herbert and McWhannell's law.
 
-use super::damped::Loss;
 use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 6 (1 − e)/((2e − 1)² + 3)`.
 pub(super) static KIND: Kind = Kind {

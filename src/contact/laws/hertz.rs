@@ -1,7 +1,7 @@
 //! Hertz' law: an elastic contact.
 
-use super::damped::Loss;
 use super::kind::{ELASTIC, Kind, Losses};
+use super::loss::Loss;
 
 /// `F = K δⁿ`, K as in [`hertz_stiffness`](crate::contact::hertz_stiffness).
 pub(super) static KIND: Kind = Kind {

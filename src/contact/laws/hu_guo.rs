@@ -1,7 +1,7 @@
 //! Hu and Guo's law.
 
-use super::damped::Loss;
 use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 3 (1 − e)/(2 e)`.
 pub(super) static KIND: Kind = Kind {

@@ -1,10 +1,10 @@
 //! Hunt and Crossley's law.
 
-use super::damped::Loss;
 use super::kind::{
     EXPONENT, Kind, Losses, POISSON_RATIO, Parameter, Range, STIFFNESS, STIFFNESS_FORM,
     YOUNGS_MODULUS,
 };
+use super::loss::Loss;
 
 /// α in s/m where none is given: e = 0.73 at 0.1 m/s by the authors' `e = 1 − α v`. Their steel has 0.08–0.32 s/m,
 /// bronze 0.1–0.5.

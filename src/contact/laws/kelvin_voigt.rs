@@ -1,9 +1,10 @@
 //! The linear spring and damper of Kelvin and Voigt.
 
-use super::damped::{Damped, Loss};
+use super::damped::Damped;
 use super::kind::{
     Kind, Losses, POISSON_RATIO, Parameter, Range, STIFFNESS, STIFFNESS_FORM, YOUNGS_MODULUS,
 };
+use super::loss::Loss;
 use super::spring::Power;
 use std::sync::Arc;
 

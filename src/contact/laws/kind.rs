@@ -1,6 +1,7 @@
 //! What is said of a law once, whatever joint it acts in.
 
-use super::damped::{Damped, Loss};
+use super::damped::Damped;
+use super::loss::Loss;
 use super::spring::Power;
 use crate::contact::{ForceLaw, Material, StiffnessForm, hertz_stiffness};
 use std::sync::Arc;

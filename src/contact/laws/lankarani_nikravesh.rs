@@ -1,7 +1,7 @@
 //! Lankarani and Nikravesh's law.
 
-use super::damped::Loss;
 use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 3 (1 − e²)/4`: the loss of an impact set equal to the work of a hysteresis that follows the
 /// elastic path both ways.

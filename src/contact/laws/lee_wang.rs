@@ -1,7 +1,7 @@
 //! Lee and Wang's law.
 
-use super::damped::Loss;
 use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 3 (1 − e)/4`.
 pub(super) static KIND: Kind = Kind {

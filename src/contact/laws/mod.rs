@@ -1,6 +1,6 @@
 //! The normal force laws of the literature, one file each; [`ALL`] is their list.
 //!
-//! Most are a [`spring`](spring::Spring) with a [`loss`](damped::Loss), so that a law's file says its equation,
+//! Most are a [`spring`](spring::Spring) with a [`loss`](Loss), so that a law's file says its equation,
 //! its source, where it holds, and the numbers that it puts into them. Symbols: δ penetration, δ̇ its rate,
 //! δ̇⁻ the impact speed (`rate`, `impact_speed` in texts), e the coefficient of restitution.
 
@@ -22,14 +22,16 @@ mod kind;
 mod lankarani_nikravesh;
 mod lee_wang;
 mod liu;
+mod loss;
 mod radzimovsky;
 mod spring;
 mod zhiying_qishao;
 
-pub use damped::{Damped, Loss};
+pub use damped::Damped;
 pub use flores::factor as dissipation;
 pub use hertz_step::HERTZ_STEP;
 pub use kind::{Given, Kind, Losses, Parameter, RESTITUTION, Range};
+pub use loss::Loss;
 pub use spring::{Logarithmic, Power, Spring};
 
 /// All laws, in the order in which they are listed.

@@ -1,7 +1,8 @@
 //! What drives read, what their controllers hold, and the efforts that follow.
 
+use super::Dynamics;
+use super::contacts::add;
 use super::pairs::PlainServo;
-use super::{Dynamics, add};
 use crate::mechanism::telescope::Telescope;
 use crate::mechanism::{BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, angle_near};
 use nalgebra::Vector3;

@@ -9,6 +9,8 @@ mod drives;
 mod groups;
 mod pairs;
 mod projection;
+mod remembered;
+mod solved;
 
 use self::contacts::{Touched, reached, touch, touches};
 use self::groups::Group;
@@ -61,12 +63,6 @@ pub struct Dynamics {
     touched: f64,
     /// Workspace of a group.
     constraints: Constraints,
-}
-
-fn add(wrenches: &mut [Vector3<f64>], body: Option<usize>, wrench: Vector3<f64>) {
-    if let Some(i) = body {
-        wrenches[i] += wrench;
-    }
 }
 
 /// Prismatic joints that alone hold two moving bodies, and the other groups of bodies that rigid joints hold together.

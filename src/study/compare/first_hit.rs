@@ -1,7 +1,7 @@
 //! The first hit of a motion: the one place where digits of different steps and laws can be compared
 //! before chaos has its say.
 
-use super::SAMPLE_INTERVAL;
+use super::plan::SAMPLE_INTERVAL;
 use super::plan::{Plan, Row, machine, tolerance};
 use super::statistics::{Mean, line};
 use crate::engine::{self, Schedule, StepControl};

@@ -11,21 +11,24 @@ mod quantities;
 mod result;
 mod statistics;
 mod table;
+mod usable;
 mod verdict;
 
 pub use first_hit::{FirstHit, FirstHits};
-pub use plan::Options;
+pub use plan::{Options, SAMPLE_INTERVAL};
 pub(in crate::study) use plan::{machine, tolerance};
 pub(in crate::study) use probe::{Forces, Measured, measure, quantile};
 pub use quantities::{QUANTITIES, Quantity};
 pub use result::{ChaosResult, Comparison, NativeResult, RowResult, TrendResult};
 pub use statistics::{Behaviour, Mean, Trend};
-pub use verdict::{Use, Verdict, in_words};
+pub use usable::{Use, Verdict};
+pub use verdict::in_words;
 
 use super::chaos::{self, Chaos, Look};
+use super::files::{PAGE_FILE, keep_scenario, scenario_files};
 use super::folder::Folder;
-use super::forecast::Watch;
-use super::run::{PAGE_FILE, RunError, keep_scenario, refused, scenario_files};
+use super::run_error::{RunError, refused};
+use super::watch::Watch;
 use crate::engine;
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
@@ -35,10 +38,6 @@ use statrs::statistics::{Data, OrderStatistics};
 use std::fs;
 use std::path::PathBuf;
 use std::time::Instant as Clock;
-
-/// Time in s between two looks at a run: fine enough for the forces of a hit, which lasts 3e-4 s, to
-/// be sampled fairly. Steps are at most as long.
-pub const SAMPLE_INTERVAL: f64 = 1e-4;
 
 /// The JSON file of a comparison, by which its folder is known.
 pub const COMPARE_FILE: &str = "compare.json";
@@ -132,7 +131,7 @@ pub fn compare(
     let texts = [COMPARE_FILE, TABLE_FILE, SUMMARY_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let drawn = pictures.iter().map(|picture| picture.file.clone());
     comparison.files = texts.chain(scenario_files(scenario)).chain(drawn).collect();
-    let json = super::run::to_json(&comparison);
+    let json = super::files::to_json(&comparison);
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
     write(COMPARE_FILE, &json)?;
     write(TABLE_FILE, &table::csv(&comparison))?;

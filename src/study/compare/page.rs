@@ -3,10 +3,11 @@
 use super::quantities::QUANTITIES;
 use super::result::{ChaosResult, Comparison, RowResult};
 use super::statistics::Behaviour;
-use super::verdict::{Use, criteria, in_words};
+use super::usable::Use;
+use super::verdict::{criteria, in_words};
 use crate::report::{Fact, Part, Picture, Table, document, length, number};
 use crate::scenario::Law;
-use crate::study::run::SCENARIO_FILE;
+use crate::study::files::SCENARIO_FILE;
 
 /// The page as HTML.
 pub fn page(comparison: &Comparison, pictures: &[Picture]) -> String {

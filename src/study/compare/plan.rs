@@ -1,12 +1,15 @@
 //! What is simulated for a comparison: laws, steps, starts.
 
-use super::SAMPLE_INTERVAL;
 use crate::engine::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
 use crate::scenario::{Law, Mechanism, Motion, Problem, Scenario};
 use crate::simulate::{Machine, assemble, radial_clearance};
 use crate::study::chaos::DISPLACEMENT;
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
+
+/// Time in s between two looks at a run: fine enough for the forces of a hit, which lasts 3e-4 s, to
+/// be sampled fairly. Steps are at most as long.
+pub const SAMPLE_INTERVAL: f64 = 1e-4;
 
 /// The laws of a comparison, in the order of its tables.
 pub const LAWS: [Law; 3] = [Law::HertzStep, Law::Native, Law::Ideal];

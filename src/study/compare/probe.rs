@@ -1,6 +1,6 @@
 //! One run of a comparison, boiled down to numbers.
 
-use super::SAMPLE_INTERVAL;
+use super::plan::SAMPLE_INTERVAL;
 use super::quantities::COUNT;
 use crate::engine::Instant;
 use crate::mechanism::JointIndex;

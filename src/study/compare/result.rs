@@ -2,7 +2,7 @@
 
 use super::first_hit::FirstHits;
 use super::statistics::{Mean, Trend};
-use super::verdict::Verdict;
+use super::usable::Verdict;
 use crate::scenario::{DriveMode, Law};
 use crate::simulate::Provenance;
 use serde::Serialize;

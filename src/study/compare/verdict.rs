@@ -3,9 +3,9 @@
 use super::quantities::{QUANTITIES, Quantity, index};
 use super::result::{Comparison, RowResult};
 use super::statistics::{Behaviour, Mean, Trend};
+use super::usable::{Use, Verdict};
 use crate::report::{length, number};
 use crate::scenario::Law;
-use serde::Serialize;
 
 /// Difference from the law, as a share of the law's value, within which a value may be used.
 const CLOSE: f64 = 0.1;
@@ -27,32 +27,6 @@ pub fn criteria() -> String {
          errors); \"unclear\" where the scatter over the starts is too large to tell.",
         number(100.0 * CLOSE)
     )
-}
-
-/// What a native quantity may be used for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Use {
-    /// As it is.
-    Yes,
-    /// As a size, not as a value.
-    Size,
-    /// For nothing.
-    No,
-    /// Too few data to say.
-    Unclear,
-}
-
-/// A judgement of one quantity.
-#[derive(Clone, Debug, Serialize)]
-pub struct Verdict {
-    /// Key of the quantity.
-    pub quantity: &'static str,
-    /// What native may be used for.
-    #[serde(rename = "use")]
-    pub usable: Use,
-    /// Why, with the figures.
-    pub reason: String,
 }
 
 /// Judges every quantity that the machine has: one that no row has a value of, such as the actuator

@@ -10,7 +10,9 @@ pub use models::{diff_models, simulated_time};
 pub use result::{Diff, Row};
 pub use results::diff_results;
 
-use super::run::{RunError, SCENARIO_FILE, SUMMARY_FILE};
+use super::files::SCENARIO_FILE;
+use super::run::SUMMARY_FILE;
+use super::run_error::RunError;
 use crate::scenario::{Problem, Problems, Scenario};
 use std::path::{Path, PathBuf};
 

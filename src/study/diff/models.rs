@@ -11,7 +11,7 @@ use crate::simulate::{Provenance, measured};
 use crate::study::Watch;
 use crate::study::compare::{Mean, Measured, QUANTITIES, machine, measure, tolerance};
 use crate::study::folder::Folder;
-use crate::study::run::RunError;
+use crate::study::run_error::RunError;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::time::Instant as Clock;
 

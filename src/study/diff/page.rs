@@ -3,8 +3,9 @@
 use super::result::{Diff, Row};
 use super::{DIFF_FILE, DiffError, Done, TABLE_FILE};
 use crate::report::{Part, Picture, Table, document, length, number};
+use crate::study::files::{PAGE_FILE, to_json};
 use crate::study::folder::Folder;
-use crate::study::run::{PAGE_FILE, RunError, refused, to_json};
+use crate::study::run_error::{RunError, refused};
 use std::fs;
 
 /// The picture of every run.

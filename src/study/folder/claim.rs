@@ -5,17 +5,14 @@
 //! another computer that shares the file system.) No file has to stand for the lock, so none is left
 //! over, and the lock moves with the folder when that gets its name.
 
-use super::{FolderError, files_of_result, making};
+use super::folder_error::FolderError;
+use super::making;
+use super::mark::{MARK, MARK_TEXT, clear, remove};
+use super::marker::files_of_result;
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-
-/// Says to people and to us what the folder is; the last file that is removed.
-const MARK: &str = ".freeplay-unfinished";
-
-const MARK_TEXT: &str = "freeplay is writing a result here. If none is at work, one was killed: the next that writes a \
-     result beside this folder clears it, and so may you.\n";
 
 /// What is added to the name of a result in the making.
 const PARTIAL: &str = ".partial";
@@ -187,38 +184,6 @@ fn foreign(path: &Path, marker: &str) -> Option<String> {
     let ours = files_of_result(&path.join(marker));
     let mut names = entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
     names.find(|name| !ours.contains(name))
-}
-
-/// Removes everything but the mark.
-fn clear(path: &Path) -> io::Result<()> {
-    for entry in fs::read_dir(path)? {
-        let entry = entry?;
-        if entry.file_name() == MARK {
-            continue;
-        }
-        if entry.file_type()?.is_dir() {
-            fs::remove_dir_all(entry.path())?;
-        } else {
-            fs::remove_file(entry.path())?;
-        }
-    }
-    Ok(())
-}
-
-/// Removes a folder of ours so that, interrupted anywhere, what is left is known as ours.
-pub(super) fn remove(path: &Path) -> io::Result<()> {
-    if !path.is_dir() {
-        return Ok(());
-    }
-    // A full disk may refuse the mark; it does not refuse to be emptied.
-    let mark = path.join(MARK);
-    let _ = mark.exists() || fs::write(&mark, MARK_TEXT).is_ok();
-    clear(path)?;
-    match fs::remove_file(mark) {
-        Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
-        _ => {}
-    }
-    fs::remove_dir(path)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The folders that this process has in the making, so that a signal can end it without litter.
 
-use super::claim::remove;
+use super::mark::remove;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

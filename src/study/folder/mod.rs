@@ -8,13 +8,18 @@
 //! clears it; a live one's is locked, and a second process that uses the same `OUT` is told.
 
 mod claim;
+mod folder_error;
 mod making;
+mod mark;
+mod marker;
 mod swap;
 pub(in crate::study) mod sync;
 
+pub use folder_error::FolderError;
 pub use making::abandon;
 
 use claim::Claim;
+use marker::files_of_result;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -30,64 +35,6 @@ pub struct Folder {
     claim: Claim,
     marker: &'static str,
     force: bool,
-}
-
-/// Why a folder cannot take results.
-#[derive(Debug, thiserror::Error)]
-pub enum FolderError {
-    /// It holds a result, and nobody said to replace it.
-    #[error(
-        "`{0}` already holds a result; replace it with --force, or choose another folder with --out"
-    )]
-    Taken(PathBuf),
-    /// It holds something else.
-    #[error(
-        "`{folder}` holds `{entry}`, which is not part of a result: nothing there is replaced, not \
-         even with --force; choose another folder with --out"
-    )]
-    Foreign {
-        /// The folder.
-        folder: PathBuf,
-        /// What lies in it.
-        entry: String,
-    },
-    /// There is a file of that name.
-    #[error("`{0}` is a file; --out needs the name of a folder")]
-    File(PathBuf),
-    /// Another process makes a result of that name.
-    #[error(
-        "another freeplay is at work on `{0}`; wait for it, or choose another folder with --out"
-    )]
-    Busy(PathBuf),
-    /// Somebody's unfinished result is there, and nothing says whether its process lives.
-    #[error(
-        "`{0}` was left by a freeplay that was killed, or one is at work there (this file system \
-         has no locks to tell): delete it if none is, or choose another folder with --out"
-    )]
-    Left(PathBuf),
-    /// The file system refuses.
-    #[error("cannot write to `{folder}`: {source}; choose another folder with --out")]
-    Io {
-        /// The folder.
-        folder: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// The file system refuses the finished result its name.
-    #[error("cannot give the result its name `{folder}`: {source}")]
-    Name {
-        /// The folder.
-        folder: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-}
-
-impl FolderError {
-    fn io(folder: &Path) -> impl FnOnce(io::Error) -> FolderError {
-        let folder = folder.to_owned();
-        |source| FolderError::Io { folder, source }
-    }
 }
 
 /// Name of the folder of a command's results where the user gives none: command and scenario, with
@@ -209,17 +156,6 @@ fn may_replace(target: &Path, marker: &str, force: bool) -> Result<(), FolderErr
         empty = false;
     }
     if empty || force { Ok(()) } else { Err(FolderError::Taken(target.to_owned())) }
-}
-
-/// The names of the files of a result, or none if `marker` is not a result's.
-fn files_of_result(marker: &Path) -> Vec<String> {
-    let text = fs::read_to_string(marker).unwrap_or_default();
-    let value: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    if value["program"] != env!("CARGO_PKG_NAME") {
-        return Vec::new();
-    }
-    let files = value["files"].as_array().map(Vec::as_slice).unwrap_or_default();
-    files.iter().filter_map(|name| name.as_str().map(str::to_owned)).collect()
 }
 
 #[cfg(test)]

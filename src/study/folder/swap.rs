@@ -1,6 +1,7 @@
 //! How a finished folder gets its name, also where an earlier result has it.
 
-use super::claim::{beside, keep_locked, remove};
+use super::claim::{beside, keep_locked};
+use super::mark::remove;
 use super::{files_of_result, sync};
 use std::fs;
 use std::io;

@@ -7,46 +7,9 @@ use super::estimate::Estimate;
 use super::items::Item;
 use super::result::CaseResult;
 use super::variants::{LARGE, SMALL};
+use super::verdict::{Judged, Verdict};
 use crate::report::{length, number};
 use crate::study::compare::in_words;
-use serde::Serialize;
-
-/// What the simulations say of a claim.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Verdict {
-    /// The interval agrees with it.
-    Supported,
-    /// The interval excludes it.
-    Contradicted,
-    /// The interval allows both, or there is none.
-    Undecided,
-}
-
-/// A claim in the light of one variant.
-#[derive(Clone, Debug, Serialize)]
-pub struct Judged {
-    /// Key of the claim.
-    pub key: &'static str,
-    /// What the simulations say.
-    pub verdict: Verdict,
-    /// The value that the claim is judged by; `null` for a ratio to nothing.
-    #[serde(flatten)]
-    pub estimate: Estimate,
-    /// The numbers behind it, in words.
-    pub evidence: String,
-}
-
-impl Verdict {
-    /// In one word.
-    pub fn in_words(self) -> &'static str {
-        match self {
-            Verdict::Supported => "supported",
-            Verdict::Contradicted => "contradicted",
-            Verdict::Undecided => "undecided",
-        }
-    }
-}
 
 impl Limit {
     /// What an interval says of a claim with this limit.

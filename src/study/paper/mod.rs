@@ -7,23 +7,27 @@ mod figures;
 mod items;
 mod judgement;
 mod page;
+mod paper_error;
 mod parameters;
 mod probe;
 mod result;
 mod variants;
+mod verdict;
 
 pub use estimate::{Estimate, RunMean};
 pub use items::Item;
-pub use judgement::{Judged, Verdict};
+pub use paper_error::PaperError;
 pub use parameters::{Origin, Parameter};
 pub use result::{CaseResult, ClaimResult, Moves, Paper, VariantResult};
 pub use variants::{CLEARANCES, Variant, scenarios};
+pub use verdict::{Judged, Verdict};
 
 use super::chaos;
+use super::files::{PAGE_FILE, SCENARIO_FILE, to_json};
 use super::folder::Folder;
-use super::forecast::Watch;
-use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused, to_json};
-use crate::scenario::{Problem, Problems, Scenario};
+use super::run_error::{RunError, refused};
+use super::watch::Watch;
+use crate::scenario::{Problem, Scenario};
 use crate::simulate::Provenance;
 use claims::CLAIMS;
 use judgement::judge;
@@ -45,23 +49,6 @@ pub struct Studied {
     pub json: String,
     /// Where all files are.
     pub folder: PathBuf,
-}
-
-/// Why the study has no files.
-#[derive(Debug, thiserror::Error)]
-pub enum PaperError {
-    /// Something is wrong with the scenario or one of its variants.
-    #[error(transparent)]
-    Scenario(#[from] Problems),
-    /// A file cannot be written.
-    #[error(transparent)]
-    Files(#[from] RunError),
-}
-
-impl From<Problem> for PaperError {
-    fn from(problem: Problem) -> Self {
-        Problems::from(problem).into()
-    }
 }
 
 /// Simulated time in s of the study, by which its progress counts.

@@ -2,10 +2,10 @@
 
 use super::estimate::Estimate;
 use super::items::QUANTITIES;
-use super::judgement::{Judged, Verdict};
 use super::result::Paper;
+use super::verdict::{Judged, Verdict};
 use crate::report::{Part, Picture, Table, document, length, number};
-use crate::study::run::SCENARIO_FILE;
+use crate::study::files::SCENARIO_FILE;
 
 /// The page as HTML.
 pub fn page(paper: &Paper, pictures: &[Picture]) -> String {

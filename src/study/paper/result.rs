@@ -2,9 +2,9 @@
 
 use super::estimate::RunMean;
 use super::items::{COUNT, Item, QUANTITIES};
-use super::judgement::{Judged, Verdict};
 use super::parameters::Parameter;
 use super::probe::Measured;
+use super::verdict::{Judged, Verdict};
 use crate::simulate::Provenance;
 use crate::study::compare::Quantity;
 use serde::{Serialize, Serializer};

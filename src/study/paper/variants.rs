@@ -1,6 +1,6 @@
 //! What the study varies: clearances, starts, and everything that the paper leaves open.
 
-use super::PaperError;
+use super::paper_error::PaperError;
 use crate::scenario::{Law, Mechanism, Motion, PerJoint, Problem, Problems, Scenario, Source};
 use crate::simulate::{Machine, Severity, assemble, findings};
 use crate::study::compare::SAMPLE_INTERVAL;

@@ -6,7 +6,7 @@
 
 use super::record::sha256;
 use super::{Identity, Shard, SweepError};
-use crate::study::run::{RunError, refused};
+use crate::study::run_error::{RunError, refused};
 use csv::StringRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

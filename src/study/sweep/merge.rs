@@ -3,8 +3,9 @@
 use super::journal::{self, JOURNAL_FILE, Rows};
 use super::result::{Outcome, put, refuse_edited_table, write};
 use super::{RECORD_FILE, Record, Shard, SweepError};
+use crate::study::files::SCENARIO_FILE;
 use crate::study::folder::Folder;
-use crate::study::run::{RunError, SCENARIO_FILE};
+use crate::study::run_error::RunError;
 use std::fs;
 use std::path::{Path, PathBuf};
 

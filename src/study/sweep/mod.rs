@@ -38,7 +38,7 @@ pub use standing::Standing;
 pub use vary::{Range, Values, Vary};
 pub use work::{Ongoing, on_threads, sweep};
 
-use super::run::RunError;
+use super::run_error::RunError;
 use crate::scenario::Problems;
 use std::path::PathBuf;
 

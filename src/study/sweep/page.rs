@@ -7,7 +7,7 @@ use super::row::{FORCES, Status, of_joint, status};
 use super::statistics::{self, Spread, groups, has_starts, shared};
 use crate::report::{self, Fact, Part, Picture, Table, number};
 use crate::study::compare::QUANTITIES;
-use crate::study::run::SCENARIO_FILE;
+use crate::study::files::SCENARIO_FILE;
 use statrs::statistics::{Data, OrderStatistics};
 
 /// The page as HTML.

@@ -3,8 +3,9 @@
 use super::journal::{JOURNAL_FILE, Journal, Rows, kept, lock};
 use super::result::{Outcome, PARQUET_FILE, TABLE_FILE, put, refuse_edited_table, write};
 use super::{Identity, Plan, RECORD_FILE, Record, Shard, SweepError};
+use crate::study::files::SCENARIO_FILE;
 use crate::study::folder::Folder;
-use crate::study::run::{RunError, SCENARIO_FILE, refused};
+use crate::study::run_error::{RunError, refused};
 use rayon::prelude::*;
 use std::fs;
 use std::io;

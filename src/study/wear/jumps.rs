@@ -4,8 +4,9 @@
 //! one run rubs (Euler's method, with the cycles for time). Each jump is made twice, in one and in two halves with a run
 //! between them; their distance is the error of the one, and twice that of the two, which are kept.
 
+use super::request::{Request, WearError};
 use super::rings::Ring;
-use super::{Request, WearError};
+use super::stage::Stage;
 use crate::contact::Play;
 
 /// Depth of the first jump tried, as a share of the clearance: a twentieth is surely seen, and hardly changes the motion.
@@ -19,19 +20,6 @@ const LARGEST_SHRINKAGE: f64 = 0.2;
 
 /// Shortest jump as a share of all cycles: a prediction that takes more runs than that has no end.
 const SHORTEST: f64 = 1e-3;
-
-/// The rings after some cycles.
-#[derive(Clone, Debug)]
-pub struct Stage {
-    /// Cycles since the start.
-    pub cycles: f64,
-    /// What the journal of each ring can reach.
-    pub plays: Vec<Play>,
-    /// Force times sliding of each ring in J per cycle, in the run that led here.
-    pub rubbed: Vec<Vec<f64>>,
-    /// Sum of the errors of all jumps until here in m, of each ring.
-    pub errors: Vec<f64>,
-}
 
 /// What a run with rings that leave these rooms rubs, J per cycle; `cycles` is when, for what is said of it.
 pub(super) type Rub<'a> = dyn FnMut(&[Play], f64) -> Result<Vec<Vec<f64>>, WearError> + 'a;

@@ -6,48 +6,35 @@
 //! [`Play`] grows by it; `jumps.rs` takes as many cycles at once as their error allows.
 
 mod around;
+mod files;
 mod jumps;
 mod page;
+mod request;
 mod result;
 mod rings;
+mod stage;
 
-pub use jumps::Stage;
+pub use files::WEAR_PREDICTED_FILE;
+pub use request::{Request, WearError};
 pub use result::{JointWear, RingWear, WearSummary};
+pub use stage::Stage;
 
 pub(super) use around::{WEAR_FILE, wear_csv, wear_picture, wearing};
 
+use super::files::{PAGE_FILE, SCENARIO_FILE, to_json};
 use super::folder::Folder;
-use super::forecast::Watch;
-use super::run::{PAGE_FILE, RunError, SCENARIO_FILE, refused, to_json};
+use super::run_error::{RunError, refused};
+use super::watch::Watch;
 use crate::contact::Play;
 use crate::engine;
 use crate::model::{Machine, assemble, expand};
-use crate::report::ReportError;
-use crate::scenario::{Problem, Scenario};
+use crate::scenario::Scenario;
+use files::{SHAPES_FILE, STAGES_FILE, WORN_FILE};
 use rings::Ring;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant as Clock;
-
-/// The JSON file of a prediction of wear, by which its folder is known.
-pub const WEAR_PREDICTED_FILE: &str = "wear.json";
-
-/// The worn machine, a scenario like any other.
-const WORN_FILE: &str = "worn.toml";
-const STAGES_FILE: &str = "clearances.csv";
-const SHAPES_FILE: &str = "rings.csv";
-
-/// What is to be predicted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Request {
-    /// How many cycles.
-    pub cycles: f64,
-    /// Time of one cycle in s.
-    pub period: f64,
-    /// Largest error of a jump over cycles, as a share of a joint's clearance.
-    pub tolerance: f64,
-}
 
 /// A finished prediction and its files.
 #[derive(Debug)]
@@ -58,42 +45,6 @@ pub struct Predicted {
     pub json: String,
     /// Where the files are.
     pub folder: PathBuf,
-}
-
-/// Why a prediction has no files.
-#[derive(Debug, thiserror::Error)]
-pub enum WearError {
-    /// The scenario has something that wear cannot be predicted of.
-    #[error(transparent)]
-    Problem(#[from] Problem),
-    /// A file cannot be written.
-    #[error(transparent)]
-    Files(#[from] RunError),
-    /// A run broke down on the way.
-    #[error("after {cycles:.3e} cycles: {reason}")]
-    Halted {
-        /// Cycles until then.
-        cycles: f64,
-        /// Why.
-        reason: String,
-    },
-    /// Jumps became too short to come to an end.
-    #[error(
-        "after {cycles:.3e} cycles jumps of {jump:.1e} cycles still err by more than the tolerance: what is rubbed \
-         differs too much from run to run; try a longer --duration, or a larger --tolerance"
-    )]
-    TooShort {
-        /// Cycles until then.
-        cycles: f64,
-        /// Length of the jump that was tried.
-        jump: f64,
-    },
-}
-
-impl From<ReportError> for WearError {
-    fn from(error: ReportError) -> Self {
-        WearError::Files(error.into())
-    }
 }
 
 /// Time in s of one cycle of a scenario's motion, where the motion says it: a circle's period, a turn of the one joint

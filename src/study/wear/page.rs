@@ -1,14 +1,14 @@
 //! The page of a prediction of wear.
 
 use super::around::{rings as round_rings, round};
-use super::jumps::Stage;
+use super::files::{SHAPES_FILE, STAGES_FILE, WEAR_PREDICTED_FILE, WORN_FILE};
 use super::result::{RingWear, WearSummary, depths};
 use super::rings::Ring;
-use super::{SHAPES_FILE, STAGES_FILE, WEAR_PREDICTED_FILE, WORN_FILE};
+use super::stage::Stage;
 use crate::report::{
     Curve, Panel, Part, Picture, ReportError, Style, Table, document, length, number, panels_svg,
 };
-use crate::study::run::SCENARIO_FILE;
+use crate::study::files::SCENARIO_FILE;
 
 /// Stages whose shapes are drawn beside the last.
 const DRAWN: usize = 4;

@@ -1,9 +1,9 @@
 //! What a prediction of wear comes to.
 
-use super::Request;
 use super::around::{angles, table};
-use super::jumps::Stage;
+use super::request::Request;
 use super::rings::Ring;
+use super::stage::Stage;
 use crate::contact::Play;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;

@@ -1,7 +1,7 @@
 //! The rings of a machine that wear, before and after.
 
 use super::around::wearing;
-use super::jumps::Stage;
+use super::stage::Stage;
 use crate::contact::Play;
 use crate::engine::WEAR_DIRECTIONS;
 use crate::mechanism::{Bearing, Mechanism};

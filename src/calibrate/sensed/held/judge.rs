@@ -2,9 +2,10 @@
 //! hold it in a simulation.
 
 use super::bench::{Bench, Broken};
+use super::candidates::Candidate;
 use super::model::{Model, squares};
 use super::paired::Ratio;
-use super::terms::{Candidate, Term};
+use super::terms::Term;
 use crate::calibrate::sensed::thresholds::{STRETCH, WORTH};
 use crate::effects::Setting;
 use std::ops::Range;

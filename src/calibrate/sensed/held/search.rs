@@ -2,10 +2,11 @@
 //! so.
 
 use super::bench::{Bench, Broken};
+use super::candidates::{Candidate, of_declared};
 use super::judge::Judge;
 use super::model::{Model, squares, told};
 use super::paired::Ratio;
-use super::terms::{Candidate, Term, of_declared};
+use super::terms::Term;
 use crate::calibrate::report::Fitted;
 use crate::calibrate::sensed::thresholds::{BETTER, STRETCH, WORTH};
 use crate::effects::{Kind, Setting, Target};

@@ -2,7 +2,23 @@
 
 use super::dice::Dice;
 use crate::effects::{Parameter, Range, Setting};
+use crate::mechanism::Sensor;
 use std::f64::consts::TAU;
+
+/// What is hidden in a trial.
+#[derive(Clone, Debug)]
+pub(super) struct Hidden {
+    /// Effects.
+    pub effects: Vec<Setting>,
+    /// Sensors with the noise that they really have.
+    pub sensors: Vec<Sensor>,
+    /// The column whose noise is not as declared, if there is one.
+    pub noisier: Option<String>,
+    /// Floors of all of it together.
+    pub floors: f64,
+    /// Floors of the effect that shows least of several.
+    pub least: Option<f64>,
+}
 
 /// Steps of a parameter by which a value is off at size one: ten times what can hardly be told from nothing.
 const STEPS: f64 = 10.0;

@@ -1,10 +1,11 @@
 //! Whether an answer is right.
 
-use super::sized::Hidden;
+use super::hidden::Hidden;
 use super::{Answer, Case, Trial};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::self_test::Value;
-use crate::calibrate::sensed::outcome::{Estimated, Outcome};
+use crate::calibrate::sensed::certainty::Estimated;
+use crate::calibrate::sensed::outcome::Outcome;
 use crate::calibrate::sensed::problem::{Problem, Stopped};
 use crate::effects::{Setting, Target};
 use crate::mechanism::Mechanism;

@@ -1,9 +1,9 @@
 //! A trial's rig, and recordings of the machine that it declares with something hidden in it.
 
 use super::Trial;
+use super::hidden::Hidden;
 use super::motion::like;
 use super::rig::rig;
-use super::sized::Hidden;
 use crate::calibrate::record::clean;
 use crate::calibrate::result::control;
 use crate::calibrate::sensed::problem::{Problem, Stopped};

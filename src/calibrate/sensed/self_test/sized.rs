@@ -1,7 +1,7 @@
 //! How large what is hidden is: so that the declared model misses the validation run by as many floors as drawn.
 
 use super::dice::Dice;
-use super::hidden::Shape;
+use super::hidden::{Hidden, Shape};
 use super::record::Bench;
 use super::{Case, NOISE, Trial};
 use crate::calibrate::sensed::candidates::candidates;
@@ -33,21 +33,6 @@ const NOISIER: f64 = 2.0;
 
 /// Run that errors are looked at of.
 const VALIDATION: usize = 1;
-
-/// What is hidden in a trial.
-#[derive(Clone, Debug)]
-pub(super) struct Hidden {
-    /// Effects.
-    pub effects: Vec<Setting>,
-    /// Sensors with the noise that they really have.
-    pub sensors: Vec<Sensor>,
-    /// The column whose noise is not as declared, if there is one.
-    pub noisier: Option<String>,
-    /// Floors of all of it together.
-    pub floors: f64,
-    /// Floors of the effect that shows least of several.
-    pub least: Option<f64>,
-}
 
 /// Hides what a trial has drawn; none where nothing of these kinds shows as it should.
 ///

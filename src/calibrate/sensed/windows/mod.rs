@@ -5,11 +5,12 @@
 //! effects, zeros of runs and starts together; [`sought`] says which values; [`fits`] goes from
 //! short windows to long ones, and [`eliminate`] leaves out what is not certain; [`score`] by how much predictions
 //! miss; [`plausible`] refuses recordings that cannot be right; [`outcome`] is the whole way, [`predict`] that of
-//! a prediction.
+//! a prediction; [`report`] is what is written, [`horizons`] what it says of windows.
 
 pub mod bench;
 pub mod eliminate;
 pub mod fits;
+pub mod horizons;
 pub mod inputs;
 pub mod outcome;
 pub mod plausible;

@@ -1,11 +1,10 @@
 //! A model of a machine that nothing holds beside a recording: predictions over windows.
 
 use super::bench::{Bench, suits};
+use super::horizons::{HorizonErrors, RunZero};
 use super::outcome::{horizons, with};
 use super::plausible;
-use super::report::{
-    HorizonErrors, RunZero, channel_errors, input_columns, pictures, predicted, remarks, run_zeros,
-};
+use super::report::{channel_errors, input_columns, pictures, predicted, remarks, run_zeros};
 use super::score::{Horizon, score};
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};

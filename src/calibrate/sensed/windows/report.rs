@@ -1,8 +1,9 @@
 //! What is written of a calibration by windows.
 
 use super::bench::Bench;
+use super::horizons::{HorizonErrors, RunZero, Windows};
 use super::outcome::{Certain, Judged, LeftOut, Outcome, calibrate, with};
-use super::score::{Horizon, Score};
+use super::score::Score;
 use crate::calibrate::charts::{POINTS, panel, thinned};
 use crate::calibrate::errors::ChannelError;
 use crate::calibrate::outcome::Verdict;
@@ -12,62 +13,14 @@ use crate::calibrate::result::CalibrateError;
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::events::{self, Event};
 use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::report::{Calibrated, Report, names_of_files, written};
-use crate::calibrate::sensed::search::name;
+use crate::calibrate::sensed::report::Report;
+use crate::calibrate::sensed::words::name;
+use crate::calibrate::sensed::written::{Calibrated, names_of_files, written};
 use crate::report::{Curve, Picture, Style, panels_svg};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, RunError};
-use serde::Serialize;
 use std::time::Instant as Clock;
-
-/// What a report says of windows.
-#[derive(Clone, Debug, Serialize)]
-pub struct Windows {
-    /// What the errors are.
-    pub note: &'static str,
-    /// Lengths in s of the windows that values were fitted to.
-    pub fitted_s: Vec<f64>,
-    /// Errors by horizons.
-    pub horizons: Vec<HorizonErrors>,
-    /// Zeros that belong to runs, found in their first seconds.
-    pub run_zeros: Vec<RunZero>,
-    /// What drives gave, by column.
-    pub inputs: Vec<String>,
-    /// What is to be known of recordings.
-    pub remarks: Vec<String>,
-    /// Effects that were fitted and are not certain.
-    pub left_out: Vec<String>,
-}
-
-/// Errors of one run over windows of one length.
-#[derive(Clone, Debug, Serialize)]
-pub struct HorizonErrors {
-    /// File of the run.
-    pub run: String,
-    /// `calibration`, `validation` or `prediction`.
-    pub role: &'static str,
-    /// The windows.
-    #[serde(flatten)]
-    pub horizon: Horizon,
-    /// How many were predicted.
-    pub windows: usize,
-    /// By column.
-    pub errors: Vec<ChannelError>,
-}
-
-/// The zero of a sensor in a run.
-#[derive(Clone, Debug, Serialize)]
-pub struct RunZero {
-    /// File of the run.
-    pub run: String,
-    /// Column.
-    pub sensor: String,
-    /// What it shows beside what the model says, in its unit.
-    pub offset: f64,
-    /// Standard deviation.
-    pub std: f64,
-}
 
 pub(super) const NOTE: &str = "This machine forgets its start, so errors are those of predictions over windows: the start of \
     each is fitted through the model to its first part, the rest is compared, unfiltered. The first horizon is that \

@@ -8,7 +8,8 @@ use crate::study::compare::probe::Measured;
 use crate::study::compare::quantities::{QUANTITIES, Quantity, index};
 use crate::study::compare::statistics::Mean;
 use crate::study::compare::verdict::in_words;
-use crate::study::run::{RunError, SCENARIO_FILE};
+use crate::study::files::SCENARIO_FILE;
+use crate::study::run_error::RunError;
 
 /// Quantities of the first table and of the picture: where the machine is, what its joints and its output feel,
 /// how often.
