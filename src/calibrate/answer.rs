@@ -27,9 +27,9 @@ pub struct Prepared {
 #[derive(Debug)]
 enum Way {
     /// By the sensors that there are.
-    Sensed(sensed::prepare::Prepared),
+    Sensed(Box<sensed::prepare::Prepared>),
     /// By that of a 3-RPR, and by its sensors, if these can be read so.
-    Both(result::Prepared, Option<sensed::prepare::Prepared>),
+    Both(Box<result::Prepared>, Option<Box<sensed::prepare::Prepared>>),
 }
 
 /// Reads recordings of a rig, the first `fits` to calibrate on, the others to validate on.
@@ -38,7 +38,7 @@ enum Way {
 /// Everything that is wrong with them.
 pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, CalibrateError> {
     let by_sensors = |rig| {
-        let way = Way::Sensed(sensed::prepare(rig, paths, fits)?);
+        let way = Way::Sensed(Box::new(sensed::prepare(rig, paths, fits)?));
         Ok(Prepared { way, ignored: Vec::new() })
     };
     if rig.mechanism.has_sensors() {
@@ -58,7 +58,7 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     let ignored = ignored.filter(|(_, columns)| !columns.is_empty()).collect();
     let own = result::prepare(rig.clone(), recordings)?;
     // The first method has looked at more than this one does.
-    let way = Way::Both(own, sensed::prepare(rig, paths, fits).ok());
+    let way = Way::Both(Box::new(own), sensed::prepare(rig, paths, fits).ok().map(Box::new));
     Ok(Prepared { way, ignored })
 }
 
@@ -95,16 +95,16 @@ pub fn into_folder(
 ) -> Result<Calibrated, CalibrateError> {
     let (own, by_sensors) = match prepared.way {
         Way::Sensed(prepared) => {
-            return Ok(sensed::into_folder(prepared, without, folder, tell)?.into());
+            return Ok(sensed::into_folder(*prepared, without, folder, tell)?.into());
         }
         Way::Both(own, by_sensors) => (own, by_sensors),
     };
-    let mut own = result::made(own, without, tell)?;
+    let mut own = result::made(*own, without, tell)?;
     let complete = own.report.verdict == Verdict::NothingMissing;
-    let Some(sensed::prepare::Prepared { rig, recordings, .. }) = by_sensors.filter(|_| !complete)
-    else {
+    let Some(by_sensors) = by_sensors.filter(|_| !complete) else {
         return Ok(own.written(folder)?.into());
     };
+    let sensed::prepare::Prepared { rig, recordings, .. } = *by_sensors;
     let mut other = by_residuals(rig, recordings, without, tell)?;
     let (seconds, runs) = (own.report.wall_s, own.report.simulations);
     own.report.wall_s += other.report.wall_s;

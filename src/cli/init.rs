@@ -31,11 +31,13 @@ Examples:
 
 pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let mut text = format!("name = \"{0}\"\n[mechanism]\nkind = \"{0}\"\n", arguments.kind);
+    let read = |text: &str| Scenario::from_text(text, &arguments.kind, &[]);
+    let mut scenario = read(&text)?;
     // Nothing else moves what has no drives.
-    if ["pendulum", "double-pendulum"].contains(&arguments.kind.as_str()) {
+    if !scenario.mechanism.uses("drive") {
         text += "[environment]\ngravity = [0, -9.81]\n";
+        scenario = read(&text)?;
     }
-    let scenario = Scenario::from_text(&text, &arguments.kind, &[])?;
     let scenario = if arguments.rig { instrumented(&scenario)? } else { scenario };
     Ok(output::print(&annotated(&scenario))?)
 }

@@ -2,6 +2,7 @@
 
 use crate::cli_common::{Place, names};
 use crate::files::FOUR_BAR;
+use freeplay::scenario::Mechanism;
 use serde_json::Value;
 
 /// Pictures and pages that every run writes.
@@ -15,17 +16,6 @@ const FILES: [&str; 9] = [
     "scenario.toml",
     "summary.json",
     "timeseries.csv",
-];
-
-const KINDS: [&str; 8] = [
-    "3rpr",
-    "3rrr",
-    "double-pendulum",
-    "drive-stage",
-    "five-bar",
-    "four-bar",
-    "pendulum",
-    "slider-crank",
 ];
 
 fn json(text: &str) -> Value {
@@ -125,7 +115,7 @@ fn a_mechanism_file_is_checked_run_compared_and_swept() {
 #[test]
 fn every_template_is_checked_run_compared_and_swept() {
     let place = Place::new();
-    for kind in KINDS {
+    for kind in Mechanism::KINDS {
         let file = format!("{kind}.toml");
         let gravity = "[environment]\ngravity = [0.0, -9.81]\n";
         let text = format!(

@@ -1,6 +1,8 @@
 //! A machine with a kind and the mechanism file that it expands to are the same machine.
 
 use crate::cli_common::Place;
+use freeplay::scenario::Mechanism;
+use std::collections::BTreeSet;
 
 /// Runs a scenario and its expansion: the time series must be equal to the byte.
 fn same_bytes(place: &Place, name: &str, text: &str, sets: &str) {
@@ -67,6 +69,14 @@ const TEMPLATES: [(&str, [&str; 2]); 7] = [
     ("3rrr", ["", "--set joints.clearance=1e-4"]),
     ("double-pendulum", ["", "--set simulation.tolerance=1e-6"]),
 ];
+
+/// A new kind is among them, too; the 3-RPR has tests of its own.
+#[test]
+fn every_kind_has_a_line_here() {
+    let tried = TEMPLATES.iter().map(|(kind, _)| *kind).chain(["3rpr"]);
+    let tried: BTreeSet<&str> = tried.collect();
+    assert_eq!(tried, BTreeSet::from(Mechanism::KINDS));
+}
 
 const DOWN: &str = "--set environment.gravity=[0,-9.81]";
 

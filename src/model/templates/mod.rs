@@ -34,3 +34,26 @@ pub fn expand(scenario: &Scenario) -> Result<Scenario, Problem> {
         Mechanism::DoublePendulum(machine) => Ok(double_pendulum::expand(scenario, machine)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Joint;
+
+    /// Lists of clearances and frictions are in the order of these names.
+    #[test]
+    fn revolute_joints_are_those_that_the_kind_names() {
+        for kind in Mechanism::KINDS {
+            let text = format!("mechanism = {{ kind = \"{kind}\" }}\n");
+            let scenario = Scenario::from_text(&text, "test.toml", &[]).unwrap();
+            let expanded = expand(&scenario).unwrap();
+            let joints = &expanded.mechanism.described().unwrap().joints;
+            let revolute = joints.iter().filter(|joint| matches!(joint, Joint::Revolute(_)));
+            let mut made: Vec<&str> = revolute.map(Joint::name).collect();
+            let mut named = scenario.mechanism.revolute_names();
+            made.sort_unstable();
+            named.sort_unstable();
+            assert_eq!(made, named, "{kind}");
+        }
+    }
+}
