@@ -4,6 +4,9 @@ use crate::measure::log::{Channel, Log};
 use crate::measure::spline::CubicSpline;
 use crate::mechanism::{Command, Commands};
 
+/// Time in s for which the machine was held at its first command before a log begins.
+pub const LEAD: f64 = 0.25;
+
 /// Commanded lengths of a log, interpolated by cubic splines; before and after the log they rest.
 #[derive(Clone, Debug)]
 pub struct LoggedCommands {

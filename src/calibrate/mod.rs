@@ -18,7 +18,7 @@
 //!     residuals are white.
 //!   * [`needed`], [`evidence`], [`unnamed`]: effects that the model can do without, rivals that explain as much, and a table
 //!     of forces for what no effect explains.
-//!   * [`errors`], `summary`, [`report`], `charts`, `page`, [`result`]: the folder of results.
+//!   * [`errors`], `summary`, [`report`], `charts`, `page`, [`result`]: the folder of results; [`predict`], [`predicted`]: that of a prediction.
 //!   * [`self_test`]: how often all of it is right.
 
 pub mod answer;
@@ -47,6 +47,7 @@ pub mod plan;
 pub mod plausibility;
 pub mod predict;
 mod predict_page;
+pub mod predicted;
 pub mod rattle;
 pub mod record;
 pub mod recording;

@@ -1,6 +1,6 @@
 //! A model and the runs it is held against.
 
-use super::commands::LoggedCommands;
+use super::commands::{LEAD, LoggedCommands};
 use super::lens::Lens;
 use super::rattle;
 use super::replica::Simulator;
@@ -16,9 +16,6 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Time in s for which the machine was held at its first command before a log begins.
-pub const LEAD: f64 = 0.25;
 
 /// Step in s by which simulations are counted: a position servo's damping leaves 125 µs to light legs, impacts
 /// take more steps.

@@ -2,10 +2,12 @@
 
 use super::LoggedCommands;
 use super::charts;
-use super::errors::{self, ChannelError};
+use super::errors;
 use super::model::{Case, released};
 use super::plausibility;
 use super::predict_page;
+use super::predicted::PREDICTED_FILE;
+pub use super::predicted::{ERRORS_FILE, Predicted, Prediction};
 use super::rattle::{self, Rattle};
 use super::recording::Recording;
 use super::report::RattleReport;
@@ -20,49 +22,9 @@ use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use serde::Serialize;
 use std::fs;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant as Clock;
-
-/// The JSON file by which a prediction is known.
-pub const ERRORS_FILE: &str = "errors.json";
-
-/// The predicted recording.
-pub(super) const PREDICTED_FILE: &str = "predicted.csv";
-
-/// `errors.json`.
-#[derive(Clone, Debug, Serialize)]
-pub struct Prediction {
-    /// Program, versions, model.
-    #[serde(flatten)]
-    pub provenance: Provenance,
-    /// The log.
-    pub run: String,
-    /// Names of the model's effects.
-    pub effects: Vec<String>,
-    /// Errors by channel: `after` of the model, `before` of the model without its effects (null where it
-    /// has none), `floor` null where the model declares no sensors.
-    pub errors: Vec<ChannelError>,
-    /// Whether the model rattles by more than its sensors see.
-    pub rattle: RattleReport,
-    /// Time of computing in s.
-    pub wall_s: f64,
-    /// What stands beside this file.
-    pub files: Vec<String>,
-}
-
-/// A finished prediction.
-#[derive(Debug)]
-pub struct Predicted {
-    /// What it came to.
-    pub prediction: Prediction,
-    /// The text of `errors.json`.
-    pub json: String,
-    /// Where all files are.
-    pub folder: PathBuf,
-}
 
 /// Whether a model says that instruments are wrong: then its sensors are asked, one by one, what they show.
 pub fn reads_by_instruments(model: &Scenario) -> bool {

@@ -3,7 +3,7 @@
 use super::errors::worst;
 use super::outcome::MET;
 use super::page::errors_table;
-use super::predict::Prediction;
+use super::predicted::Prediction;
 use crate::report::{Part, Picture, document, number};
 
 /// The page as HTML.

@@ -5,7 +5,7 @@
 //! command, and is kicked twice a quarter of a swing apart just before the log begins, swings with any
 //! amplitude and phase along x, y and φ: six numbers, found by Gauss and Newton from the measured pose.
 
-use super::model::LEAD;
+use super::commands::LEAD;
 use super::rattle::noise;
 use super::replica::Simulator;
 use crate::engine::{Halt, Schedule};

@@ -7,7 +7,7 @@ use super::plausible;
 use super::report::{channel_errors, input_columns, pictures, predicted, remarks, run_zeros};
 use super::score::{Horizon, score};
 use crate::calibrate::errors::ChannelError;
-use crate::calibrate::predict::{ERRORS_FILE, PREDICTED_FILE};
+use crate::calibrate::predicted::{ERRORS_FILE, PREDICTED_FILE};
 use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, publish, refuse, to_json};
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
