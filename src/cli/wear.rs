@@ -93,7 +93,6 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         );
         return Err(wrong(message));
     }
-    warn_of_part_cycles(period, &scenario);
     if !whole {
         let settle = scenario.simulation.settle();
         scenario.simulation.settle = Some(settle);
@@ -105,6 +104,7 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     refuse_errors(findings(&scenario, &mut assemble(&scenario)?))?;
+    warn_of_part_cycles(period, &scenario);
     let folder = arguments.folder.prepare("wear", &scenario.name, WEAR_PREDICTED_FILE)?;
     let request = Request { cycles, period, tolerance };
     let mut progress = Progress::counted(cycles, "cycles", arguments.print.quiet);

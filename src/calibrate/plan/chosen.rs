@@ -117,10 +117,12 @@ impl Search<'_> {
         let found = best(self.ground.maker.numbers(), seed, self.effort, &worth, &said);
         (self.ground.tell)("looking at the best motions with clearance and noise");
         let mut chosen: Option<Chosen> = None;
-        // The present motion as it is, too: a planned one is never worse.
-        let all = self.ground.maker.as_present().into_iter();
-        for numbers in all.chain(found.into_iter().map(|candidate| candidate.numbers)) {
-            let Some(finished) = self.finished(&numbers)? else { continue };
+        // The present motion as well: a planned one is never worse.
+        let present = self.ground.maker.present().into_iter();
+        let largest = |numbers: &[f64]| self.ground.way.largest(self.ground.maker, numbers);
+        let found = found.iter().filter_map(|candidate| largest(&candidate.numbers));
+        for motion in present.chain(found.map(|(motion, _)| motion)) {
+            let Some(finished) = self.finished(&motion)? else { continue };
             if chosen.as_ref().is_none_or(|chosen| finished.worth > chosen.worth) {
                 chosen = Some(finished);
             }
@@ -135,13 +137,10 @@ impl Search<'_> {
 
     /// A candidate with clearances, noise of its own, and rivals fitted with all their values; so much smaller that its
     /// drives are strong enough. None where that cannot be.
-    fn finished(&self, numbers: &[f64]) -> Result<Option<Chosen>, CalibrateError> {
+    fn finished(&self, largest: &Motion) -> Result<Option<Chosen>, CalibrateError> {
         let Prepared { described: rig, control, seed, limits, .. } = self.ground.prepared;
-        let Some((largest, _)) = self.ground.way.largest(self.ground.maker, numbers) else {
-            return Ok(None);
-        };
         for share in GENTLER {
-            let motion = self.ground.maker.gentler(&largest, share);
+            let motion = self.ground.maker.gentler(largest, share);
             let like = self.ground.way.like(&motion);
             if self.ground.way.follows(&like, limits).is_err() {
                 continue;

@@ -1,5 +1,4 @@
-//! The present motion of a drive as a part of planned ones: limits bound coordinates, rates and accelerations from both
-//! sides, so that what lies between two motions within them is within them as well.
+//! The present motion of the drives, as a candidate beside those that are searched: what is planned is never worse.
 
 use super::limits::{Limit, positions};
 use crate::calibrate::sensed::recording::Recording;
