@@ -104,12 +104,12 @@ pub(super) fn main(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     refuse_errors(findings(&scenario, &mut assemble(&scenario)?))?;
-    warn_of_part_cycles(period, &scenario);
     let folder = arguments.folder.prepare("wear", &scenario.name, WEAR_PREDICTED_FILE)?;
     let request = Request { cycles, period, tolerance };
     let mut progress = Progress::counted(cycles, "cycles", arguments.print.quiet);
     let predicted =
         progress.watched(arguments.cost.yes, |watch| wear(&scenario, request, folder, watch))?;
+    warn_of_part_cycles(period, &scenario);
     arguments.print.result(&predicted.json, || text(&predicted))?;
     Ok(())
 }
