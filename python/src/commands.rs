@@ -122,10 +122,11 @@ fn predict(
         let model = &model.scenario;
         let tell = |_: &str| end_if(&stop);
         let prepare = || Folder::prepare(&out, calibration::predict::ERRORS_FILE, force);
-        if model.mechanism.has_sensors() {
-            if let Some(prepared) = windows::prepare(model, &data, Asked { window, fit, from })? {
-                return Ok(windows::into_folder(model, &prepared, prepare()?, &tell)?.json);
-            }
+        let asked_of = Asked { window, fit, from };
+        if model.mechanism.has_sensors()
+            && let Some(prepared) = windows::prepare(model, &data, asked_of)?
+        {
+            return Ok(windows::into_folder(model, &prepared, prepare()?, &tell)?.json);
         }
         refuse_windows(asked)?;
         if !model.mechanism.has_sensors() {
@@ -133,7 +134,13 @@ fn predict(
             let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
             calibration::predict::check(model, &recording)?;
             if !calibration::predict::reads_by_instruments(model) {
-                return Ok(calibration::predict::into_folder(model, &recording, prepare()?, &tell)?.json);
+                return Ok(calibration::predict::into_folder(
+                    model,
+                    &recording,
+                    prepare()?,
+                    &tell,
+                )?
+                .json);
             }
         }
         let prepared = along::prepare(model, &data)?;
