@@ -3,6 +3,7 @@
 
 use super::answer::{Answer, answered};
 use super::instruments::worth;
+use super::limits::measured;
 use super::motion::{Maker, Motion};
 use super::path::Way;
 use super::prepare::Prepared;
@@ -10,7 +11,6 @@ use super::search::{Effort, best};
 use super::separation::{Posed, apart};
 use super::sight::{Seen, Sight};
 use crate::calibrate::result::CalibrateError;
-use crate::calibrate::sensed::estimate::effort_sensor;
 use crate::calibrate::sensed::recording::Recording;
 
 /// Share of what a linearised rival leaves that its full fit may leave for the search to have been right about it.
@@ -34,6 +34,7 @@ pub fn search_twice(
         let search = Search { ground, posed: &posed, effort, before: candidates };
         let found = search.run(seed + round)?;
         candidates += effort.candidates();
+        let Some(found) = found else { break };
         let better = chosen.as_ref().is_none_or(|chosen| found.worth > chosen.worth);
         let (linear, full) = (found.linear, found.worth);
         if better {
@@ -100,7 +101,8 @@ pub struct Chosen {
 }
 
 impl Search<'_> {
-    fn run(&self, seed: u64) -> Result<Chosen, CalibrateError> {
+    /// The best motion; none where the machine can follow none that was tried.
+    fn run(&self, seed: u64) -> Result<Option<Chosen>, CalibrateError> {
         let worth = |numbers: &[f64]| {
             let (_, like) = self.ground.way.largest(self.ground.maker, numbers)?;
             let seen =
@@ -117,8 +119,8 @@ impl Search<'_> {
         let found = best(self.ground.maker.numbers(), seed, self.effort, &worth, &said);
         (self.ground.tell)("looking at the best motions with clearance and noise");
         let mut chosen: Option<Chosen> = None;
-        // The present motion as well: a planned one is never worse.
-        let present = self.ground.maker.present().into_iter();
+        // The present motion as well, in the first search: a planned one is never worse.
+        let present = self.ground.maker.present().filter(|_| self.before == 0).into_iter();
         let largest = |numbers: &[f64]| self.ground.way.largest(self.ground.maker, numbers);
         let found = found.iter().filter_map(|candidate| largest(&candidate.numbers));
         for motion in present.chain(found.map(|(motion, _)| motion)) {
@@ -127,7 +129,7 @@ impl Search<'_> {
                 chosen = Some(finished);
             }
         }
-        chosen.ok_or_else(|| no_motion(self.ground.maker, self.ground.way))
+        Ok(chosen)
     }
 
     fn worth(&self, sight: &Sight, seen: &Seen) -> Option<f64> {
@@ -138,7 +140,7 @@ impl Search<'_> {
     /// A candidate with clearances, noise of its own, and rivals fitted with all their values; so much smaller that its
     /// drives are strong enough. None where that cannot be.
     fn finished(&self, largest: &Motion) -> Result<Option<Chosen>, CalibrateError> {
-        let Prepared { described: rig, control, seed, limits, .. } = self.ground.prepared;
+        let Prepared { described: rig, control, seed, limits, present, .. } = self.ground.prepared;
         for share in GENTLER {
             let motion = self.ground.maker.gentler(largest, share);
             let like = self.ground.way.like(&motion);
@@ -147,10 +149,19 @@ impl Search<'_> {
             }
             // What breaks down is no motion for this machine.
             let Ok(sight) = Sight::new(rig, &like, *control, *seed) else { continue };
-            let forces = forces(&sight);
-            let strong = forces.iter().zip(limits).all(|(force, limit)| {
-                force.zip(limit.force).is_none_or(|(force, most)| force <= most)
-            });
+            let machine = sight.declared();
+            let drives = 0..machine.actuators.len();
+            let forces: Vec<Option<f64>> =
+                drives.map(|drive| measured(machine, drive, &sight.clean)).collect();
+            // Of the present motion it is measured what it takes; peaks of a simulation are another draw.
+            let recorded = present.as_ref().filter(|_| motion.is_present());
+            let strong =
+                forces.iter().enumerate().zip(limits).all(|((drive, simulated), limit)| {
+                    let recorded =
+                        recorded.and_then(|recording| measured(machine, drive, recording));
+                    let force = recorded.or(*simulated);
+                    force.zip(limit.force).is_none_or(|(force, most)| force <= most)
+                });
             if !strong {
                 continue;
             }
@@ -164,15 +175,4 @@ impl Search<'_> {
         }
         Ok(None)
     }
-}
-
-/// Largest measured force or torque of each drive, noise aside.
-fn forces(sight: &Sight) -> Vec<Option<f64>> {
-    let machine = sight.declared();
-    (0..machine.actuators.len())
-        .map(|drive| {
-            let column = sight.clean.get(effort_sensor(machine, drive)?)?;
-            Some(column.iter().map(|force| force.abs()).fold(0.0, f64::max))
-        })
-        .collect()
 }

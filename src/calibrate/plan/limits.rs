@@ -175,6 +175,17 @@ pub fn positions(mechanism: &Mechanism, drive: usize, recording: &Recording) -> 
     Some(rows.collect())
 }
 
+fn largest(values: &[f64]) -> f64 {
+    values.iter().map(|value| value.abs()).fold(0.0, f64::max)
+}
+
+/// Largest force (N) or torque (N·m) of a drive in a recording; none where nobody measures it, and where it is zero, as in
+/// a recording of commands alone.
+pub fn measured(mechanism: &Mechanism, drive: usize, recording: &Recording) -> Option<f64> {
+    let force = recording.get(effort_sensor(mechanism, drive)?).map(largest);
+    force.filter(|force| *force > 0.0)
+}
+
 /// What a drive was told in the recordings, and the largest force that was measured of it.
 fn used(mechanism: &Mechanism, drive: usize, recordings: &[Recording]) -> Option<Used> {
     let mut all: Option<Used> = None;
@@ -183,15 +194,13 @@ fn used(mechanism: &Mechanism, drive: usize, recordings: &[Recording]) -> Option
         // Differences of rows, not the spline's curvature: commands are rounded to nine decimals.
         let rate = derivative(&position, recording.interval);
         let acceleration = derivative(&rate, recording.interval);
-        let largest = |values: &[f64]| values.iter().map(|v| v.abs()).fold(0.0, f64::max);
-        let effort = effort_sensor(mechanism, drive).and_then(|sensor| recording.get(sensor));
         let used = Used {
             stroke: position.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| {
                 [low.min(*q), high.max(*q)]
             }),
             speed: largest(&rate),
             acceleration: largest(&acceleration),
-            force: effort.map(largest).filter(|force| *force > 0.0),
+            force: measured(mechanism, drive, recording),
         };
         let both = |before: Used| Used {
             stroke: [before.stroke[0].min(used.stroke[0]), before.stroke[1].max(used.stroke[1])],

@@ -1,5 +1,6 @@
 //! Motions of all drives of a machine, made of numbers so that whatever the numbers are, no limit is left.
 
+use super::course::Course;
 use super::limits::Limit;
 use super::present::Present;
 use super::series::Series;
@@ -28,7 +29,7 @@ const DRIFT: f64 = 0.5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     /// Drive by drive.
-    pub drives: Vec<Series>,
+    pub drives: Vec<Course>,
 }
 
 /// What motions are made for.
@@ -52,11 +53,8 @@ impl Maker {
 
     /// The present motion, as large as the limits allow; none where it is no candidate.
     pub fn present(&self) -> Option<Motion> {
-        let one = |present: &Present| {
-            let still = Series::new(self.period, 0.0, vec![[0.0; 2]; WAVES]);
-            still.scaled(1.0, present.start).beside(present.share, &present.rows)
-        };
-        Some(Motion { drives: self.present.as_ref()?.iter().map(one).collect() })
+        let present = self.present.as_ref()?.iter().cloned();
+        Some(Motion { drives: present.map(Course::Present).collect() })
     }
 
     /// The motion that numbers (of the order of one) stand for, `share` (0 to 1) of its size about home: within strokes,
@@ -64,18 +62,18 @@ impl Maker {
     pub fn motion(&self, numbers: &[f64], share: f64) -> Motion {
         let drives = numbers.chunks(NUMBERS).zip(&self.limits).zip(&self.home);
         let all = drives.map(|((numbers, limit), home)| self.series(numbers, limit, *home, share));
-        Motion { drives: all.collect() }
+        Motion { drives: all.map(Course::New).collect() }
     }
 
     /// A motion of `share` of another one's size, about home.
     pub fn gentler(&self, motion: &Motion, share: f64) -> Motion {
         let drives = motion.drives.iter().zip(&self.limits).zip(&self.home);
-        let one = |((series, limit), home): ((&Series, &Limit), &f64)| {
-            let small = series.scaled(share, 0.0);
+        let one = |((course, limit), home): ((&Course, &Limit), &f64)| {
+            let small = course.scaled(share, 0.0);
             let reach = small.extremes().reach;
             let [low, high] = limit.stroke;
             let room = [low - reach[0], high - reach[1]];
-            let start = home + share * (series.start - home);
+            let start = home + share * (course.start() - home);
             small.scaled(1.0, start.max(room[0]).min(room[1]))
         };
         Motion { drives: drives.map(one).collect() }
@@ -123,9 +121,10 @@ fn logistic(x: f64) -> f64 {
 }
 
 impl Motion {
-    /// Whether it is the present one.
+    /// Whether it is the present one as it is.
     pub fn is_present(&self) -> bool {
-        self.drives.iter().all(Series::is_present)
+        let whole = |course: &Course| matches!(course, Course::Present(of) if of.share == 1.0);
+        self.drives.iter().all(whole)
     }
 
     /// What a machine is recorded like along this motion: its commands, to nine decimals as logs have them, and for what
@@ -139,8 +138,10 @@ impl Motion {
     ) -> Recording {
         let first = |joint: JointIndex| {
             let drive = mechanism.actuators.iter().position(|drive| drive.joint == joint);
-            drive
-                .map_or_else(|| mechanism.start_coordinate(joint), |drive| self.drives[drive].start)
+            drive.map_or_else(
+                || mechanism.start_coordinate(joint),
+                |drive| self.drives[drive].start(),
+            )
         };
         let columns = mechanism.sensors.iter().map(|sensor| {
             let value = |row: usize| match sensor.reads {

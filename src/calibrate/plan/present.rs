@@ -1,13 +1,14 @@
 //! The present motion of the drives, as a candidate beside those that are searched: what is planned is never worse.
 
 use super::limits::{Limit, positions};
+use super::series::Extremes;
 use crate::calibrate::sensed::recording::Recording;
 use crate::measure::filter::derivative;
 use crate::mechanism::Mechanism;
 use std::sync::Arc;
 
 /// What one drive was told, row by row.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Rows {
     interval: f64,
     /// Coordinate from the first row's on, rate and acceleration, by differences of rows.
@@ -25,7 +26,7 @@ impl Rows {
     }
 
     /// At time `t` (s), between rows along their chord; as the last row is from there on.
-    pub fn at(&self, t: f64) -> [f64; 3] {
+    fn at(&self, t: f64) -> [f64; 3] {
         let Some(last) = self.rows.last() else { return [0.0; 3] };
         let place = (t / self.interval).max(0.0);
         let row = place as usize;
@@ -37,8 +38,8 @@ impl Rows {
         }
     }
 
-    /// Lowest and highest of coordinate, rate or acceleration (0, 1, 2).
-    pub fn range(&self, k: usize) -> [f64; 2] {
+    /// Lowest and highest of coordinate, rate or acceleration (0, 1, 2), zero among them.
+    fn range(&self, k: usize) -> [f64; 2] {
         self.rows.iter().fold([0.0, 0.0], |[low, high], row| [low.min(row[k]), high.max(row[k])])
     }
 
@@ -48,15 +49,35 @@ impl Rows {
     }
 }
 
-/// The present motion of a drive within its limits.
+/// The present motion of a drive, or so much of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Present {
     /// What it was told.
     pub rows: Arc<Rows>,
     /// Where it begins, m or rad.
     pub start: f64,
-    /// Share of its size that is within the limits.
+    /// Share of its size.
     pub share: f64,
+}
+
+impl Present {
+    /// `factor` times as large, from another coordinate (m, rad) on.
+    pub fn scaled(&self, factor: f64, start: f64) -> Self {
+        Self { rows: Arc::clone(&self.rows), start, share: factor * self.share }
+    }
+
+    /// Coordinate (m, rad), rate and acceleration at time `t` (s).
+    pub fn at(&self, t: f64) -> [f64; 3] {
+        let [position, rate, acceleration] = self.rows.at(t).map(|value| self.share * value);
+        [self.start + position, rate, acceleration]
+    }
+
+    /// Its bounds.
+    pub fn extremes(&self) -> Extremes {
+        let largest = |k| self.share * self.rows.largest(k);
+        let reach = self.rows.range(0).map(|end| self.start + self.share * end);
+        Extremes { reach, speed: largest(1), acceleration: largest(2) }
+    }
 }
 
 /// The present motion of all drives, as large as the limits allow and no larger than it is; none where it is shorter than

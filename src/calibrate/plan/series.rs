@@ -9,9 +9,7 @@
 //! acceleration there). A drive may end elsewhere than it began, as a crank that turns does: a cycloid is added,
 //! `D (t/T − sin(ω t)/2π)`, whose rate and acceleration vanish at both ends, too.
 
-use super::present::Rows;
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 /// Instants of a period at which extremes are looked for.
 const GRID: usize = 512;
@@ -27,8 +25,6 @@ pub struct Series {
     pub drift: f64,
     /// `[a_l, b_l]` in m/s or rad/s, l = 1, 2, ….
     waves: Vec<[f64; 2]>,
-    /// The present motion, so many times as large, that this one is added to.
-    present: Option<(f64, Arc<Rows>)>,
 }
 
 /// Bounds that a motion does not leave at any instant.
@@ -53,25 +49,13 @@ impl Series {
             *a -= mean;
             *b -= order(l) * along / square;
         }
-        Self { period, start: 0.0, drift, waves, present: None }
+        Self { period, start: 0.0, drift, waves }
     }
 
     /// The same motion, so many times as large, from another coordinate on.
     pub fn scaled(&self, factor: f64, start: f64) -> Self {
         let waves = self.waves.iter().map(|wave| wave.map(|x| factor * x)).collect();
-        let present = self.present.as_ref().map(|(size, rows)| (factor * size, Arc::clone(rows)));
-        Self { start, drift: factor * self.drift, waves, present, ..*self }
-    }
-
-    /// The same motion beside `size` times the present one.
-    pub fn beside(self, size: f64, rows: &Arc<Rows>) -> Self {
-        Self { present: Some((size, Arc::clone(rows))), ..self }
-    }
-
-    /// Whether it is the present motion as it is, and nothing else.
-    pub fn is_present(&self) -> bool {
-        let still = self.drift == 0.0 && self.waves.iter().flatten().all(|wave| *wave == 0.0);
-        still && self.present.as_ref().is_some_and(|(size, _)| *size == 1.0)
+        Self { start, drift: factor * self.drift, waves, ..*self }
     }
 
     /// Coordinate, rate and acceleration at time `t` (s); at rest before and after.
@@ -90,28 +74,13 @@ impl Series {
             sum[1] += a * cos + b * sin;
             sum[2] += rate * (b * cos - a * sin);
         }
-        if let Some((size, rows)) = &self.present {
-            sum.iter_mut().zip(rows.at(t)).for_each(|(sum, present)| *sum += size * present);
-        }
         sum
     }
 
     /// Bounds of the motion. Rate and acceleration are trigonometric polynomials of degree n: between N samples of a
     /// period they are at most `1/cos(π n/N)` times as large as at these (H. Ehlich, K. Zeller, *Math. Z.* 86
-    /// (1964) 41–44). The coordinate leaves the chord between two samples by at most `h²/8` times the acceleration. The
-    /// present motion's bounds are added to those of what it is beside.
+    /// (1964) 41–44). The coordinate leaves the chord between two samples by at most `h²/8` times the acceleration.
     pub fn extremes(&self) -> Extremes {
-        if let Some((size, rows)) = &self.present {
-            let own = Self { present: None, ..self.clone() }.extremes();
-            let [reach, speed, acceleration] =
-                std::array::from_fn(|k| rows.range(k).map(|end| size * end));
-            let largest = |[low, high]: [f64; 2]| high.max(-low);
-            return Extremes {
-                reach: [own.reach[0] + reach[0], own.reach[1] + reach[1]],
-                speed: own.speed + largest(speed),
-                acceleration: own.acceleration + largest(acceleration),
-            };
-        }
         let between = 1.0 / (PI * self.waves.len().max(1) as f64 / GRID as f64).cos();
         let h = self.period / GRID as f64;
         let mut found =
