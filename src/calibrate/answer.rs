@@ -105,39 +105,67 @@ pub fn into_folder(
         return Ok(own.written(folder)?.into());
     };
     let sensed::prepare::Prepared { rig, recordings, .. } = *by_sensors;
-    let mut other = by_residuals(rig, recordings, without, tell)?;
+    // A model that breaks down there takes nothing from what was found.
+    let Ok(mut other) = by_residuals(rig, recordings, without, tell) else {
+        return Ok(own.written(folder)?.into());
+    };
     let (seconds, runs) = (own.report.wall_s, own.report.simulations);
     own.report.wall_s += other.report.wall_s;
     own.report.simulations += other.report.simulations;
     other.report.wall_s += seconds;
     other.report.simulations += runs;
-    match simpler(&own.report, &other.report) {
+    let Report { verdict, effects, errors, .. } = &own.report;
+    let first = Weighed::new(*verdict, effects, errors, 0);
+    let sensed::report::Report { verdict, effects, errors, noises, .. } = &other.report;
+    match Weighed::new(*verdict, effects, errors, noises.len()).goes_before(&first) {
         true => Ok(other.written(folder)?.into()),
         false => Ok(own.written(folder)?.into()),
     }
 }
 
-/// Whether what all sensors say goes before what the method of a 3-RPR found, which holds its instruments for right: it
-/// understands what that one does not, or with fewer effects, or blames instruments alone.
-fn simpler(own: &Report, other: &sensed::report::Report) -> bool {
-    let missed = |errors: &[ChannelError]| worst(errors).map_or(0.0, |e| e.after / e.floor);
-    let instruments = || {
+/// What of an answer the choice between two rests on.
+struct Weighed {
+    verdict: Verdict,
+    /// How many effects it needs.
+    effects: usize,
+    /// Whether instruments alone are wrong, their noise among it.
+    instruments: bool,
+    /// Largest error on data not fitted to, in floors.
+    missed: f64,
+}
+
+impl Weighed {
+    fn new(
+        verdict: Verdict,
+        effects: &[EffectReport],
+        errors: &[ChannelError],
+        noises: usize,
+    ) -> Self {
         let shown = |effect: &EffectReport| named(effect.kind).is_some_and(Kind::is_instrument);
-        other.effects.iter().all(shown) && !(other.effects.is_empty() && other.noises.is_empty())
-    };
-    match (own.verdict, other.verdict) {
-        (Verdict::Unexplained, Verdict::Unexplained) => missed(&other.errors) < missed(&own.errors),
-        (Verdict::Unexplained, _) => true,
-        (_, Verdict::Unexplained) => false,
-        _ => {
-            instruments() || (!other.effects.is_empty() && other.effects.len() < own.effects.len())
+        Self {
+            verdict,
+            effects: effects.len(),
+            instruments: effects.iter().all(shown) && effects.len() + noises > 0,
+            missed: worst(errors).map_or(0.0, |error| error.after / error.floor),
+        }
+    }
+
+    /// Whether what all sensors say goes before what the method of a 3-RPR found, which holds its instruments for right: it
+    /// understands what that one does not, or with fewer effects, or blames instruments alone.
+    fn goes_before(&self, own: &Self) -> bool {
+        match (own.verdict, self.verdict) {
+            (Verdict::Unexplained, Verdict::Unexplained) => self.missed < own.missed,
+            (Verdict::Unexplained, _) => true,
+            (_, Verdict::Unexplained) => false,
+            // Less than that method sees is no simpler answer.
+            _ => self.instruments || (self.effects > 0 && self.effects < own.effects),
         }
     }
 }
 
-impl From<sensed::written::Calibrated> for Calibrated {
-    fn from(done: sensed::written::Calibrated) -> Self {
-        let sensed::written::Calibrated { report, json, folder } = done;
+impl From<result::Calibrated<sensed::report::Report>> for Calibrated {
+    fn from(done: result::Calibrated<sensed::report::Report>) -> Self {
+        let result::Calibrated { report, json, folder } = done;
         Self {
             name: report.provenance.scenario_name,
             summary: report.summary,
@@ -151,8 +179,8 @@ impl From<sensed::written::Calibrated> for Calibrated {
     }
 }
 
-impl From<result::Calibrated> for Calibrated {
-    fn from(done: result::Calibrated) -> Self {
+impl From<result::Calibrated<Report>> for Calibrated {
+    fn from(done: result::Calibrated<Report>) -> Self {
         let result::Calibrated { report, json, folder } = done;
         Self {
             name: report.provenance.scenario_name,
@@ -164,5 +192,36 @@ impl From<result::Calibrated> for Calibrated {
             json,
             folder,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer(verdict: Verdict, effects: usize, instruments: bool, missed: f64) -> Weighed {
+        Weighed { verdict, effects, instruments, missed }
+    }
+
+    #[test]
+    fn instruments_go_before_the_machine_and_few_effects_before_many() {
+        let [wear, anchors] = [1, 3].map(|n| answer(Verdict::Explained, n, false, 1.1));
+        let nothing = answer(Verdict::Unexplained, 0, false, 9.0);
+        let camera = answer(Verdict::Explained, 1, true, 1.1);
+        let noise = answer(Verdict::NothingMissing, 0, true, 1.0);
+        for found in [&camera, &noise] {
+            for own in [&wear, &anchors, &nothing] {
+                assert!(found.goes_before(own));
+            }
+        }
+        assert!(wear.goes_before(&anchors) && wear.goes_before(&nothing));
+        // What both methods explain by one effect each, and what only the first one sees, is the first one's.
+        let blind = answer(Verdict::NothingMissing, 0, false, 1.0);
+        assert!(
+            !wear.goes_before(&wear) && !anchors.goes_before(&wear) && !blind.goes_before(&wear)
+        );
+        assert!(!nothing.goes_before(&wear));
+        let nearer = answer(Verdict::Unexplained, 1, false, 2.0);
+        assert!(nearer.goes_before(&nothing) && !nothing.goes_before(&nearer));
     }
 }

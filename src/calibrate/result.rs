@@ -116,11 +116,11 @@ pub fn prepare(rig: Scenario, recordings: Vec<Recording>) -> Result<Prepared, Ca
     Ok(Prepared { case: Case::new(rig, sensors, runs, control), paths })
 }
 
-/// A finished calibration.
+/// A finished calibration and its report, of whichever method.
 #[derive(Debug)]
-pub struct Calibrated {
+pub struct Calibrated<R> {
     /// What it came to.
-    pub report: Report,
+    pub report: R,
     /// The text of `report.json`.
     pub json: String,
     /// Where all files are.
@@ -142,7 +142,7 @@ impl Made {
     ///
     /// # Errors
     /// Files that cannot be written; the folder is left as it was.
-    pub fn written(self, folder: Folder) -> Result<Calibrated, CalibrateError> {
+    pub fn written(self, folder: Folder) -> Result<Calibrated<Report>, CalibrateError> {
         let Self { report, texts, pictures } = self;
         let json = to_json(&report);
         let mut all = vec![(REPORT_FILE, &json)];

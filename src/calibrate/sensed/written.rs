@@ -2,22 +2,15 @@
 
 use super::page;
 use super::report::Report;
-use crate::calibrate::result::{CALIBRATED_FILE, CalibrateError, REPORT_FILE, publish, to_json};
+use crate::calibrate::result::{
+    self, CALIBRATED_FILE, CalibrateError, REPORT_FILE, publish, to_json,
+};
 use crate::report::Picture;
 use crate::scenario::Scenario;
 use crate::study::{Folder, PAGE_FILE};
-use std::path::PathBuf;
 
 /// A finished calibration.
-#[derive(Debug)]
-pub struct Calibrated {
-    /// What it came to.
-    pub report: Report,
-    /// The text of `report.json`.
-    pub json: String,
-    /// Where all files are.
-    pub folder: PathBuf,
-}
+pub type Calibrated = result::Calibrated<Report>;
 
 /// A calibration before it is written.
 #[derive(Debug)]
