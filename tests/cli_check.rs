@@ -125,6 +125,17 @@ fn doubtful_scenarios_are_warned_about() {
     }
 }
 
+/// Commands that do not run the motion tell of keys that cannot act, too, but for the speed at which a friction sets in
+/// that they may look for.
+#[test]
+fn keys_that_cannot_act_are_told_where_no_motion_is_run() {
+    let place = Place::new();
+    let told = |set: &str| place.freeplay(&format!("expand --set {set}")).err;
+    let idle = told("drive.stiffness=1e5");
+    assert!(idle.starts_with("warning: --set drive.stiffness: changes nothing"), "{idle}");
+    assert_eq!(told("contact.friction_velocity=1e-2"), "");
+}
+
 #[test]
 fn what_is_told_of_zeros_and_first() {
     let place = Place::new();

@@ -110,6 +110,13 @@ fn a_ring_that_turns_wears_evenly() {
     let grown = COEFFICIENT * rubbed * 2e4 / (TAU * RADIUS * LENGTH);
     near(&worn["joints"][0]["clearance_m"], CLEARANCE + grown, 1e-6);
     near(&worn["joints"][0]["largest_clearance_m"], CLEARANCE + grown, 2e-3);
+    // Half a turn a cycle wears half as much here; that it is no whole number of turns is told.
+    let halves =
+        place.freeplay("wear pin.toml --cycles 4e4 --period 0.1 --out halves --json --quiet");
+    assert_eq!(halves.code, 0, "{}", halves.err);
+    assert!(halves.err.starts_with("warning: --period: is 0.1 s"), "{}", halves.err);
+    let halves: Value = serde_json::from_str(&halves.out).unwrap();
+    near(&halves["joints"][0]["clearance_m"], CLEARANCE + grown, 1e-6);
 }
 
 #[test]
