@@ -41,7 +41,7 @@ fn turns(path: &str, base: &Scenario) -> bool {
     assemble(base).is_ok_and(|machine| machine.mechanism.actuators.iter().all(turning))
 }
 
-/// Two starts that are whole turns apart: one run, which means over the starts would count twice.
+/// Two starts that are whole turns apart: one, but for rounding, which chaos takes a while to make another draw of.
 fn a_turn_apart(vary: &Vary) -> Option<String> {
     let values = (0..vary.count()).filter_map(|k| vary.value(k).parse().ok());
     let values: Vec<f64> = values.collect();
@@ -52,8 +52,8 @@ fn a_turn_apart(vary: &Vary) -> Option<String> {
         };
         if let Some(b) = values[k + 1..].iter().find(same) {
             return Some(format!(
-                "--vary {vary}: {a} and {b} rad are whole turns apart, the same start: it counts twice in means over the \
-                 starts; leave one of them out"
+                "--vary {vary}: {a} and {b} rad are whole turns apart, the same start but for rounding, and hardly a draw of \
+                 its own in means over the starts; leave one of them out"
             ));
         }
     }

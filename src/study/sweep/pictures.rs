@@ -44,7 +44,7 @@ const OUTPUTS: [Output; 8] = [
         1.0,
         Some("ideal_peak_actuator_torque_Nm"),
     ),
-    ("rms_path_error_m", "Path error, rms", "distance (m)", 1.0, None),
+    ("rms_path_error_m", "Path error, rms", "distance (mm)", 1e3, None),
     ("contact_fraction", "Share of time in contact, mean of all joints", "share", 1.0, None),
     ("impacts_per_s", "Impacts per second, all joints", "impacts (1/s)", 1.0, None),
 ];
