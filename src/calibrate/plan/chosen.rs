@@ -150,18 +150,16 @@ impl Search<'_> {
             // What breaks down is no motion for this machine.
             let Ok(sight) = Sight::new(rig, &like, *control, *seed) else { continue };
             let machine = sight.declared();
-            let drives = 0..machine.actuators.len();
-            let forces: Vec<Option<f64>> =
-                drives.map(|drive| measured(machine, drive, &sight.clean)).collect();
             // Of the present motion it is measured what it takes; peaks of a simulation are another draw.
             let recorded = present.as_ref().filter(|_| motion.is_present());
-            let strong =
-                forces.iter().enumerate().zip(limits).all(|((drive, simulated), limit)| {
-                    let recorded =
-                        recorded.and_then(|recording| measured(machine, drive, recording));
-                    let force = recorded.or(*simulated);
-                    force.zip(limit.force).is_none_or(|(force, most)| force <= most)
-                });
+            let force = |drive: usize| {
+                let recorded = recorded.and_then(|recording| measured(machine, drive, recording));
+                recorded.or_else(|| measured(machine, drive, &sight.clean))
+            };
+            let forces: Vec<Option<f64>> = (0..machine.actuators.len()).map(force).collect();
+            let strong = forces.iter().zip(limits).all(|(force, limit)| {
+                force.zip(limit.force).is_none_or(|(force, most)| force <= most)
+            });
             if !strong {
                 continue;
             }

@@ -42,7 +42,8 @@ pub struct Outcome {
     pub answers: Vec<Answered>,
     /// Further instruments, the best first.
     pub instruments: Vec<Ranked>,
-    /// Largest force or torque of each drive along it, clearances included; none where nobody measures it.
+    /// Largest force or torque of each drive along it, clearances included, of the present motion as recorded; none where
+    /// nobody measures it.
     pub forces: Vec<Option<f64>>,
     /// Candidates that were tried.
     pub candidates: usize,

@@ -117,7 +117,8 @@ pub struct DriveReport {
     pub used_speed: f64,
     /// Its largest acceleration.
     pub used_acceleration: f64,
-    /// Largest force or torque of the drive in the simulated recording; null where nobody measures it.
+    /// Largest force or torque of the drive in the simulated recording, of the present motion in its own; null where nobody
+    /// measures it.
     pub used_force: Option<f64>,
     /// Unit of that.
     pub force_unit: &'static str,
