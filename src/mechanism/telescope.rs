@@ -66,6 +66,8 @@ pub(super) struct Slideway {
 pub(super) struct PairMasses {
     /// Of base and slider in kg.
     masses: [f64; 2],
+    /// 1/(m₁ + m₂) in 1/kg.
+    inverse_sum: f64,
     /// μ = m₁m₂/(m₁ + m₂) in kg.
     reduced: f64,
     /// I₁ + I₂ in kg m².
@@ -77,13 +79,19 @@ impl PairMasses {
         let masses = bodies.map(|body| body.mass);
         let [m1, m2] = masses;
         let inertia = bodies[0].inertia + bodies[1].inertia;
-        Self { masses, reduced: m1 * m2 / (m1 + m2), inertia }
+        let inverse_sum = 1.0 / (m1 + m2);
+        Self { masses, inverse_sum, reduced: m1 * m2 / (m1 + m2), inertia }
     }
 
-    /// Shares of a distance between the two that base and slider take so that their common centre of mass
-    /// stays, with the signs of the base's way towards the slider.
+    /// Shares of the masses of slider and base in their sum: with d from the base's centre of mass to the slider's,
+    /// their common one is `s₀ d` from the base's and `s₁ d` from the slider's.
     pub fn shares(&self) -> [f64; 2] {
-        [self.reduced / self.masses[0], -self.reduced / self.masses[1]]
+        [self.masses[1] * self.inverse_sum, self.masses[0] * self.inverse_sum]
+    }
+
+    /// Radius in m of gyration of both about their common centre of mass, `length` m apart: `√((I₁ + I₂ + μL²)/m)`.
+    pub fn radius(&self, length: f64) -> f64 {
+        ((self.inertia + self.reduced * length * length) * self.inverse_sum).sqrt()
     }
 }
 
@@ -132,9 +140,46 @@ impl Telescope {
         [Vector3::new(-f.x, -f.y, self.offset[1] * force), Vector3::new(f.x, f.y, 0.0)]
     }
 
-    /// Accelerations of base and slider under the given wrenches, and the force of the drive, for
-    /// two moving bodies that no other rigid joint holds. `extension` is the prescribed q̈, if the
-    /// drive prescribes it.
+    /// The same from the direction of the base and where the joint stands: L in m and L̇ in m/s, with the
+    /// joint's spin in rad/s; off the axis by nothing.
+    #[inline(always)]
+    pub fn reaching(
+        way: &Slideway,
+        rotation: UnitComplex<f64>,
+        [length, length_rate]: [f64; 2],
+        spin: f64,
+    ) -> Self {
+        let axis = rotation * way.axis;
+        let (u, n) = (Vector2::new(axis.re, axis.im), Vector2::new(-axis.im, axis.re));
+        let [base, slider] = way.points;
+        let side = base.y - slider.y;
+        Self {
+            u,
+            n,
+            offset: [length, side],
+            rate: u * (length_rate - spin * side) + n * (spin * length),
+            spin,
+            length: length + slider.x - base.x,
+            length_rate,
+        }
+    }
+
+    /// d, from the base's centre of mass to the slider's, in m.
+    #[inline(always)]
+    pub fn between_centres(&self) -> Vector2<f64> {
+        let [length, side] = self.offset;
+        self.u * length + self.n * side
+    }
+
+    /// q̈ in m/s² from d̈ (m/s²) and the angular acceleration α (rad/s²): `d̈·u + α w + 2ω ḋ·n − ω² L`.
+    #[inline(always)]
+    pub fn extension(&self, apart: Vector3<f64>, alpha: f64) -> f64 {
+        let Self { u, n, offset: [length, side], rate, spin, .. } = *self;
+        apart.xy().dot(&u) + alpha * side + 2.0 * spin * rate.dot(&n) - spin * spin * length
+    }
+
+    /// How the two bodies go on under the given wrenches, if no other rigid joint holds them. `extension` is the
+    /// prescribed q̈, if the drive prescribes it.
     ///
     /// The rod's force R is what `b = d̈` takes: `R = μ (b − f₂/m₂ + f₁/m₁)`, μ = m₁m₂/(m₁ + m₂);
     /// both turn with α, `(I₁ + I₂) α = τ₁ + τ₂ − d × R`. Prescribed, b is known but for α,
@@ -144,31 +189,66 @@ impl Telescope {
     ///
     /// free along the axis, R has no part along u, and L² stands for L² + w².
     #[inline(always)]
-    pub fn accelerations(
+    pub fn motion(
         &self,
         masses: &PairMasses,
-        wrenches: [Vector3<f64>; 2],
+        wrenches: &[Vector3<f64>; 2],
         extension: Option<f64>,
-    ) -> ([Vector3<f64>; 2], f64) {
+    ) -> PairMotion {
         let Self { u, n, offset: [length, side], spin, .. } = *self;
-        let PairMasses { masses: [m1, m2], reduced, inertia } = *masses;
+        let PairMasses { masses: [m1, m2], reduced, inertia, .. } = *masses;
         let free = wrenches[1].xy() / m2 - wrenches[0].xy() / m1;
         let (free_u, free_n) = (free.dot(&u), free.dot(&n));
         let b_n = 2.0 * self.length_rate * spin - spin * spin * side;
         let inertia = inertia + reduced * length * length;
         let torque = wrenches[0].z + wrenches[1].z - reduced * length * (b_n - free_n);
-        let (alpha, force) = match extension {
+        let (alpha, extension, force) = match extension {
             Some(extension) => {
                 let b_u = extension - spin * spin * length;
                 let alpha =
                     (torque + reduced * side * (b_u - free_u)) / (inertia + reduced * side * side);
-                (alpha, reduced * (b_u - alpha * side - free_u))
+                (alpha, extension, reduced * (b_u - alpha * side - free_u))
             }
-            None => (torque / inertia, 0.0),
+            None => {
+                let alpha = torque / inertia;
+                (alpha, free_u + spin * spin * length + alpha * side, 0.0)
+            }
         };
         let reaction = u * force + n * (reduced * (b_n + alpha * length - free_n));
-        let a1 = (wrenches[0].xy() - reaction) / m1;
-        let a2 = (wrenches[1].xy() + reaction) / m2;
-        ([Vector3::new(a1.x, a1.y, alpha), Vector3::new(a2.x, a2.y, alpha)], force)
+        PairMotion { alpha, extension, force, reaction }
+    }
+}
+
+/// How two bodies on one slide go on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PairMotion {
+    /// Angular acceleration of both in rad/s².
+    pub alpha: f64,
+    /// q̈ in m/s².
+    pub extension: f64,
+    /// Force of a drive that prescribes it, in N.
+    pub force: f64,
+    /// Force of the base on the slider, that drive's included, in N.
+    reaction: Vector2<f64>,
+}
+
+impl PairMotion {
+    /// Accelerations of base and slider under those wrenches.
+    #[inline(always)]
+    pub fn of_bodies(
+        &self,
+        masses: &PairMasses,
+        wrenches: &[Vector3<f64>; 2],
+    ) -> [Vector3<f64>; 2] {
+        let [m1, m2] = masses.masses;
+        let a1 = (wrenches[0].xy() - self.reaction) / m1;
+        let a2 = (wrenches[1].xy() + self.reaction) / m2;
+        [a1.push(self.alpha), a2.push(self.alpha)]
+    }
+
+    /// Acceleration of their common centre of mass (m/s²) under those wrenches.
+    #[inline(always)]
+    pub fn of_centre(masses: &PairMasses, wrenches: &[Vector3<f64>; 2]) -> Vector2<f64> {
+        (wrenches[0].xy() + wrenches[1].xy()) * masses.inverse_sum
     }
 }

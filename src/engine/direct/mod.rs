@@ -19,12 +19,12 @@ mod tsitouras;
 use self::node::Node;
 use self::onset::next_onset;
 use self::path::Path;
-use self::tsitouras::{C, STAGES, WEIGHTS};
+use self::tsitouras::{C, WEIGHTS};
 use super::adaptive::share;
 use super::energy::Exchange;
 use super::looks::Looks;
 use super::stepper::Stepper;
-use crate::mechanism::{Body, BodyState, Dynamics, Evaluation, Mechanism, Situation};
+use crate::mechanism::{BodyState, Dynamics, Evaluation, Mechanism, Situation};
 
 /// First step in s, before anything is known of the error.
 const FIRST_STEP: f64 = 1e-5;
@@ -68,8 +68,6 @@ const AFTER_ONSET: f64 = 3.0;
 pub(super) struct Direct {
     tolerance: f64,
     dynamics: Dynamics,
-    /// Radius in m of gyration of each body, which makes speeds of its angular ones.
-    radii: Vec<f64>,
     /// The step made last.
     start: Node,
     end: Node,
@@ -106,11 +104,11 @@ impl Direct {
     pub fn new(mechanism: &Mechanism, tolerance: f64, balanced: bool) -> Self {
         let joints = mechanism.revolutes.len();
         let node = Node::new(mechanism, balanced);
+        let dynamics = Dynamics::new(mechanism);
         Self {
             tolerance: step_tolerance(tolerance) * share(mechanism),
-            dynamics: Dynamics::new(mechanism),
-            radii: mechanism.bodies.iter().map(|b: &Body| (b.inertia / b.mass).sqrt()).collect(),
-            path: Path::new(mechanism.bodies.len(), joints),
+            path: Path::new(mechanism, &dynamics, &node),
+            dynamics,
             work: vec![0.0; if balanced { 2 * joints } else { joints }],
             start: node.clone(),
             inside: node.clone(),
@@ -162,7 +160,7 @@ impl Direct {
     fn step(&mut self, mechanism: &Mechanism, until: f64) {
         self.dynamics.remember(mechanism, self.end.t, &self.end.states);
         std::mem::swap(&mut self.start, &mut self.end);
-        self.path.begin(&self.start);
+        self.path.begin(&mut self.dynamics, &self.start);
         self.forced = false;
         let [mut h, after_onset] = self.bounds(mechanism);
         loop {
@@ -178,7 +176,7 @@ impl Direct {
             self.dynamics.forget_singular();
             self.go(mechanism, h);
             self.end.t = reached;
-            self.step_error = self.path.error(h, &self.radii);
+            self.step_error = self.path.error(h);
             let ratio = self.step_error / self.tolerance;
             // Shorter steps do not help against the errors of a nearly singular pose.
             self.forced = self.dynamics.was_singular() && h <= SINGULAR_STEP && ratio > 1.0;
@@ -211,20 +209,9 @@ impl Direct {
     }
 
     fn stage<const I: usize>(&mut self, mechanism: &Mechanism, h: f64) {
-        let end = &mut self.end;
-        end.t = self.start.t + C[I] * h;
-        self.path.go::<I>(h, &self.start.states, &mut end.states);
-        if I + 1 == STAGES {
-            for state in &mut end.states {
-                state.rotation.renormalize_fast();
-            }
-            let Node { t, states, evaluation, .. } = end;
-            self.dynamics.project(mechanism, *t, states, self.path.arrive(), evaluation);
-            end.evaluate(&mut self.dynamics, mechanism);
-        } else {
-            end.evaluate_on_path(&mut self.dynamics, mechanism);
-        }
-        self.path.keep(I, end);
+        let Self { start, end, path, dynamics, .. } = self;
+        end.t = start.t + C[I] * h;
+        path.go::<I>(dynamics, mechanism, h, [start, end]);
         if WEIGHTS[I] != 0.0 {
             for (amount, flow) in end.amounts.iter_mut().zip(&end.flows) {
                 *amount += h * WEIGHTS[I] * flow;

@@ -51,10 +51,15 @@ impl Node {
         self.count(dynamics, mechanism);
     }
 
-    /// The same where contacts in flight need not be described.
-    pub fn evaluate_on_path(&mut self, dynamics: &mut Dynamics, mechanism: &Mechanism) {
-        dynamics.forces_on_path(mechanism, self.t, &self.states, &mut self.evaluation);
-        dynamics.accelerations_on_path(mechanism, &self.states, &mut self.evaluation);
+    /// The same where contacts in flight need not be described, at states that the coordinates have made; fills `row` with
+    /// their accelerations.
+    pub fn evaluate_on_path(
+        &mut self,
+        dynamics: &mut Dynamics,
+        mechanism: &Mechanism,
+        row: &mut [f64],
+    ) {
+        dynamics.act(mechanism, &self.states, &mut self.evaluation, (row, self.balanced));
         self.count(dynamics, mechanism);
     }
 

@@ -1,14 +1,18 @@
-//! The way from a step's start to its end: the coordinates of all bodies in a row, three of each, so that
-//! the sums over stages take four of them at once.
+//! The way from a step's start to its end: the coordinates of the machine in a row, so that the sums over stages
+//! take four of them at once.
 
 use super::super::looks::Looks;
 use super::node::Node;
 use super::tsitouras::{Accelerations, Lanes, STAGES, error, stage};
-use crate::mechanism::{BodyState, turn};
-use nalgebra::{UnitComplex, Vector2, Vector3};
+use crate::mechanism::{Dynamics, Mechanism};
+use nalgebra::Vector3;
 
 /// The way from a step's start to its end.
 pub struct Path {
+    /// How many coordinates there are; behind the last one lanes may be left over.
+    count: usize,
+    /// Radii in m of gyration of what turns: each has three coordinates, which come first.
+    radii: Vec<f64>,
     /// Rates of all coordinates at the start.
     starts: Vec<Lanes>,
     /// Their accelerations at each stage.
@@ -23,79 +27,82 @@ pub struct Path {
     looks: Looks,
 }
 
-/// The three coordinates of each body, of all in a row; behind the last body lanes may be left over.
-fn of_bodies(lanes: &[Lanes]) -> impl Iterator<Item = &[f64; 3]> {
-    lanes.as_flattened().as_chunks().0.iter()
-}
-
 impl Path {
-    /// A way of so many bodies, with so many joints to look at.
-    pub fn new(bodies: usize, joints: usize) -> Self {
-        let row = vec![[0.0; 4]; (3 * bodies).div_ceil(4)];
+    /// A way of that mechanism.
+    pub fn new(mechanism: &Mechanism, dynamics: &Dynamics, start: &Node) -> Self {
+        let count = dynamics.coordinates();
+        let row = vec![[0.0; 4]; count.div_ceil(4)];
         Self {
+            count,
+            radii: dynamics.radii(mechanism, &start.states),
             accelerations: vec![[[0.0; 4]; STAGES]; row.len()],
             starts: row.clone(),
             ways: row.clone(),
             row,
-            shifts: vec![Vector3::zeros(); bodies],
-            looks: Looks::new(STAGES, joints),
+            shifts: vec![Vector3::zeros(); mechanism.bodies.len()],
+            looks: Looks::new(STAGES, mechanism.revolutes.len()),
         }
     }
 
     /// Starts at an instant.
-    pub fn begin(&mut self, start: &Node) {
-        let twists = start.states.iter().map(|state| &state.twist);
-        for (rates, twist) in
-            self.starts.as_flattened_mut().as_chunks_mut().0.iter_mut().zip(twists)
-        {
-            *rates = [twist.x, twist.y, twist.z];
-        }
+    pub fn begin(&mut self, dynamics: &mut Dynamics, start: &Node) {
+        let Self { count, starts, row, .. } = self;
+        let [rates, accelerations] = [starts, row].map(|row| &mut row.as_flattened_mut()[..*count]);
+        dynamics.start(&start.states, &start.evaluation.accelerations, rates, accelerations);
         self.keep(0, start);
     }
 
-    /// Keeps what acts at a stage.
+    /// Goes to stage `I` of a step of `h` s, puts bodies to where they are there, and finds what acts there.
     #[inline]
-    pub fn keep(&mut self, stage: usize, node: &Node) {
-        let row = self.row.as_flattened_mut().as_chunks_mut().0.iter_mut();
-        for (a, now) in row.zip(&node.evaluation.accelerations) {
-            *a = [now.x, now.y, now.z];
-        }
-        for (a, now) in self.accelerations.iter_mut().zip(&self.row) {
-            a[stage] = *now;
-        }
-        self.looks.set(stage, node.t, &node.evaluation.contacts);
-    }
-
-    /// Puts bodies to where they are at stage `I` of a step of `h` s.
-    #[inline]
-    pub fn go<const I: usize>(&mut self, h: f64, start: &[BodyState], states: &mut [BodyState]) {
+    pub fn go<const I: usize>(
+        &mut self,
+        dynamics: &mut Dynamics,
+        mechanism: &Mechanism,
+        h: f64,
+        [start, now]: [&mut Node; 2],
+    ) {
         let lanes = self.ways.iter_mut().zip(&mut self.row);
         for ((way, rate), (start, a)) in lanes.zip(self.starts.iter().zip(&self.accelerations)) {
             stage::<I>(h, start, a, way, rate);
         }
-        let bodies = start.iter().zip(states);
-        // Bodies that slide on each other turn alike.
-        let (mut angle, mut turned) = (0.0, UnitComplex::identity());
-        for ((from, state), (by, twist)) in
-            bodies.zip(of_bodies(&self.ways).zip(of_bodies(&self.row)))
-        {
-            if by[2] != angle {
-                (angle, turned) = (by[2], turn(by[2]));
-            }
-            *state = BodyState {
-                position: from.position + Vector2::new(by[0], by[1]),
-                rotation: from.rotation * turned,
-                twist: Vector3::from(*twist),
-            };
+        let row = [&self.ways, &self.row].map(|row| &row.as_flattened()[..self.count]);
+        let Node { t, states, evaluation, .. } = &mut *now;
+        dynamics.place(mechanism, *t, &start.states, row, (states, evaluation));
+        if I + 1 == STAGES {
+            self.arrive(dynamics, mechanism, [start, now]);
+        } else {
+            let row = &mut self.row.as_flattened_mut()[..self.count];
+            now.evaluate_on_path(dynamics, mechanism, row);
         }
+        self.keep(I, now);
     }
 
-    /// How far each body has come at the present stage, the last one, to be kept (m, m, rad).
-    pub fn arrive(&mut self) -> &mut [Vector3<f64>] {
-        for (shift, by) in self.shifts.iter_mut().zip(of_bodies(&self.ways)) {
-            *shift = Vector3::from(*by);
+    /// Finds what acts at the last stage, the step's end.
+    fn arrive(
+        &mut self,
+        dynamics: &mut Dynamics,
+        mechanism: &Mechanism,
+        [start, end]: [&mut Node; 2],
+    ) {
+        for state in &mut end.states {
+            state.rotation.renormalize_fast();
         }
-        &mut self.shifts
+        let ways = &self.ways.as_flattened()[..self.count];
+        dynamics.shifts(ways, [&start.states, &end.states], &mut self.shifts);
+        let Node { t, states, evaluation, .. } = &mut *end;
+        dynamics.project(mechanism, *t, states, &mut self.shifts, evaluation);
+        end.evaluate(dynamics, mechanism);
+        let row = &mut self.row.as_flattened_mut()[..self.count];
+        dynamics.gather(&end.evaluation.accelerations, row);
+    }
+
+    /// Keeps what acts at a stage.
+    #[inline]
+    fn keep(&mut self, stage: usize, node: &Node) {
+        for (a, now) in self.accelerations.iter_mut().zip(&self.row) {
+            a[stage] = *now;
+        }
+        self.looks.set(stage, node.t, &node.evaluation.contacts);
     }
 
     /// How far each body comes from start to end (m, m, rad).
@@ -108,15 +115,17 @@ impl Path {
         &self.looks
     }
 
-    /// Estimated error of the step of `h` s in m/s; an angular speed counts with the body's radius of gyration (m).
-    pub fn error(&mut self, h: f64, radii: &[f64]) -> f64 {
+    /// Estimated error of the step of `h` s in m/s; an angular speed counts with the radius of gyration (m).
+    pub fn error(&mut self, h: f64) -> f64 {
         for (lanes, a) in self.row.iter_mut().zip(&self.accelerations) {
             *lanes = error(h, a);
         }
+        let errors = &self.row.as_flattened()[..self.count];
+        let (turning, lengths) = errors.split_at(3 * self.radii.len());
+        let turning = turning.as_chunks().0.iter().zip(&self.radii);
+        let squares = turning.map(|([x, y, z], radius)| x * x + y * y + (z * radius).powi(2));
         let mut worst = 0.0;
-        for ([x, y, z], radius) in of_bodies(&self.row).zip(radii) {
-            let turn = z * radius;
-            let square = x * x + y * y + turn * turn;
+        for square in squares.chain(lengths.iter().map(|length| length * length)) {
             // What is no number stays.
             if square.is_nan() || square > worst {
                 worst = square;

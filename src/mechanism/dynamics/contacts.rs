@@ -1,7 +1,8 @@
 //! What journals do to their rings, and what is to be remembered of it.
 
+use super::Dynamics;
 use crate::contact::{After, Contact, Touch, circle_in_ring};
-use crate::mechanism::{Bearing, BodyState, Mechanism, Revolute};
+use crate::mechanism::{Attachment, Bearing, BodyState, Evaluation, Mechanism, Revolute};
 use nalgebra::{Vector2, Vector3};
 
 /// Where the contact of a joint is described, the force on its journal, and the wrenches that it adds to.
@@ -39,6 +40,64 @@ pub(super) fn touch(joint: &Revolute, memory: Option<After>, states: &[BodyState
         *reaction = on_journal.xy();
         add(wrenches, joint.ring.body, on_bearing);
         add(wrenches, joint.journal.body, on_journal);
+    }
+}
+
+/// What of a joint with clearance says whether its journal flies.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flight {
+    /// Index of the joint.
+    joint: usize,
+    /// Centres of ring and journal.
+    ring: Attachment,
+    journal: Attachment,
+    /// Square of the distance in m² up to which it flies; negative where only the whole description says so.
+    reach: f64,
+}
+
+impl Flight {
+    /// Those of all joints with clearance.
+    pub fn all(mechanism: &Mechanism) -> Vec<Self> {
+        let joints = mechanism.revolutes.iter().enumerate();
+        let flight = |(joint, revolute): (usize, &Revolute)| {
+            let Bearing::Clearance(clearance) = &revolute.bearing else { return None };
+            let round = revolute.out_of_round.is_none();
+            let reach = if round { clearance.radial().powi(2) } else { -1.0 };
+            Some(Self { joint, ring: revolute.ring, journal: revolute.journal, reach })
+        };
+        joints.filter_map(flight).collect()
+    }
+
+    #[inline(always)]
+    fn flies(&self, states: &[BodyState]) -> bool {
+        let eccentricity = self.journal.centre(states) - self.ring.centre(states);
+        eccentricity.norm_squared() <= self.reach
+    }
+}
+
+impl Dynamics {
+    /// Fills `out` with the weights and what contacts add to them, where nobody asks where journals in flight are: contacts
+    /// without a force are not described.
+    #[inline]
+    pub(super) fn touch_on_path(
+        &self,
+        mechanism: &Mechanism,
+        t: f64,
+        states: &[BodyState],
+        out: &mut Evaluation,
+    ) {
+        out.wrenches.copy_from_slice(&self.weights);
+        let Evaluation { contacts, reactions, wrenches, .. } = out;
+        for flight in &self.flights {
+            let i = flight.joint;
+            let (contact, reaction) = (&mut contacts[i], &mut reactions[i]);
+            if !flight.flies(states) {
+                let joint = &mechanism.revolutes[i];
+                touch(joint, self.memory(i, t), states, Touched { contact, reaction, wrenches });
+            } else if contact.normal_force != 0.0 {
+                (*contact, *reaction) = (Contact::default(), Vector2::zeros());
+            }
+        }
     }
 }
 

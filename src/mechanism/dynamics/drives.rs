@@ -2,7 +2,6 @@
 
 use super::Dynamics;
 use super::contacts::add;
-use super::pairs::PlainServo;
 use crate::mechanism::telescope::Telescope;
 use crate::mechanism::{BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, angle_near};
 use nalgebra::Vector3;
@@ -61,14 +60,16 @@ impl Dynamics {
             Some(servos) => {
                 out.command(mechanism);
                 for servo in servos {
-                    self.prismatics[servo.joint] = serve(servo, states, out);
+                    let state = servo.telescope(states);
+                    servo.push(&state, out);
+                    self.prismatics[servo.joint] = state;
                 }
             }
         }
     }
 
     /// The same of drives of all kinds.
-    fn drive_any(
+    pub(super) fn drive_any(
         &mut self,
         mechanism: &Mechanism,
         t: f64,
@@ -115,20 +116,4 @@ impl Dynamics {
             }
         }
     }
-}
-
-/// Adds the effort of a plain servo; the state of its joint.
-#[inline(always)]
-fn serve(servo: &PlainServo, states: &[BodyState], out: &mut Evaluation) -> Telescope {
-    let PlainServo { drive, bodies: [base, slider], gains: [stiffness, damping], .. } = *servo;
-    let state = servo.telescope(states);
-    let Command { position, rate, .. } = out.commands[drive];
-    let (error, error_rate) = (position - state.length, rate - state.length_rate);
-    let effort = stiffness * error + damping * error_rate;
-    out.coordinates[drive] = state.length;
-    out.drive_forces[drive] = effort;
-    let [on_base, on_slider] = state.drive(effort);
-    out.wrenches[base] += on_base;
-    out.wrenches[slider] += on_slider;
-    state
 }

@@ -5,6 +5,7 @@
 //! through clearance joints only, so each is a small dense system: a leg has three rows.
 
 mod contacts;
+mod coordinates;
 mod drives;
 mod groups;
 mod pairs;
@@ -12,17 +13,18 @@ mod projection;
 mod remembered;
 mod solved;
 
-use self::contacts::{Touched, reached, touch, touches};
+use self::contacts::{Flight, Touched, reached, touch, touches};
+use self::coordinates::PairStart;
 use self::groups::Group;
 use self::pairs::{Pair, PlainServo};
 use super::constraints::{Constraints, Rigid, groups};
 use super::telescope::{Slideway, Telescope};
 use super::{
-    Bearing, BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic,
-    Situation, angle_near,
+    BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic, Situation,
+    angle_near,
 };
-use crate::contact::{Contact, Touch};
-use nalgebra::{Vector2, Vector3};
+use crate::contact::Touch;
+use nalgebra::Vector3;
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
 #[derive(Clone, Debug)]
@@ -32,6 +34,10 @@ pub struct Dynamics {
     masses: Vec<Vector3<f64>>,
     /// Prismatic joints that alone hold two moving bodies, and these: solved in closed form.
     telescopes: Vec<Pair>,
+    /// Where each of them was when a step [started](Self::start).
+    starts: Vec<PairStart>,
+    /// Joints with clearance.
+    flights: Vec<Flight>,
     /// The other rigid joints, group by group.
     groups: Vec<Group>,
     /// Bodies that none of these holds.
@@ -127,7 +133,9 @@ impl Dynamics {
             unpaired: (0..bodies.len())
                 .filter(|body| telescopes.iter().all(|pair| !pair.bodies.contains(body)))
                 .collect(),
+            starts: Vec::with_capacity(telescopes.len()),
             telescopes,
+            flights: Flight::all(mechanism),
             groups: others,
             singular: false,
             ways: mechanism.prismatics.iter().map(Slideway::new).collect(),
@@ -208,19 +216,7 @@ impl Dynamics {
         out: &mut Evaluation,
     ) {
         out.t = t;
-        out.wrenches.copy_from_slice(&self.weights);
-        let Evaluation { contacts, reactions, wrenches, .. } = out;
-        let joints = mechanism.revolutes.iter().zip(contacts.iter_mut().zip(reactions));
-        for (i, (joint, (contact, reaction))) in joints.enumerate() {
-            let Bearing::Clearance(clearance) = &joint.bearing else { continue };
-            let eccentricity = joint.journal.centre(states) - joint.ring.centre(states);
-            let flies = eccentricity.norm() - clearance.radial() <= 0.0;
-            if flies && joint.out_of_round.is_none() {
-                (*contact, *reaction) = (Contact::default(), Vector2::zeros());
-            } else {
-                touch(joint, self.memory(i, t), states, Touched { contact, reaction, wrenches });
-            }
-        }
+        self.touch_on_path(mechanism, t, states, out);
         self.push(mechanism, t, states, out);
     }
 
@@ -259,7 +255,18 @@ impl Dynamics {
         states: &[BodyState],
         out: &mut Evaluation,
     ) {
-        self.accelerations_on_path(mechanism, states, out);
+        self.accelerate_unpaired(mechanism, states, out);
+        for pair in &self.telescopes {
+            let state = &mut self.prismatics[pair.joint];
+            if pair.passive {
+                *state = pair.telescope(states);
+            }
+            let wrenches = pair.bodies.map(|body| out.wrenches[body]);
+            let motion = pair.go_on(state, &wrenches, out);
+            let [base, slider] = pair.bodies;
+            [out.accelerations[base], out.accelerations[slider]] =
+                motion.of_bodies(&pair.masses, &wrenches);
+        }
         for (length, state) in out.lengths.iter_mut().zip(&self.prismatics) {
             *length = state.length;
         }
@@ -273,8 +280,9 @@ impl Dynamics {
         }
     }
 
-    /// The same at a point of a step's path, where nobody asks for lengths and coordinates.
-    pub fn accelerations_on_path(
+    /// Accelerations of bodies that no pair holds, and the forces of what holds them together.
+    #[inline]
+    fn accelerate_unpaired(
         &mut self,
         mechanism: &Mechanism,
         states: &[BodyState],
@@ -288,20 +296,6 @@ impl Dynamics {
         }
         if self.prescribes {
             out.command(mechanism);
-        }
-        for pair in &self.telescopes {
-            let state = &mut self.prismatics[pair.joint];
-            if pair.passive {
-                *state = pair.telescope(states);
-            }
-            let extension = pair.prescribed.map(|drive| out.commands[drive].acceleration);
-            let wrenches = pair.bodies.map(|body| out.wrenches[body]);
-            let ([a1, a2], force) = state.accelerations(&pair.masses, wrenches, extension);
-            let [base, slider] = pair.bodies;
-            (out.accelerations[base], out.accelerations[slider]) = (a1, a2);
-            if let Some(drive) = pair.prescribed {
-                out.drive_forces[drive] = force;
-            }
         }
         for g in 0..self.groups.len() {
             self.solve_group(g, mechanism, states, out);

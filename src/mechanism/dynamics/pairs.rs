@@ -1,8 +1,11 @@
 //! Pairs of bodies on one slide, solved in closed form.
 
 use crate::mechanism::constraints::Rigid;
-use crate::mechanism::telescope::{PairMasses, Slideway, Telescope};
-use crate::mechanism::{Actuator, BodyState, Drive, JointIndex, Mechanism, Prismatic};
+use crate::mechanism::telescope::{PairMasses, PairMotion, Slideway, Telescope};
+use crate::mechanism::{
+    Actuator, BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, Prismatic,
+};
+use nalgebra::{UnitComplex, Vector3};
 
 /// Two moving bodies on one prismatic joint, which no other rigid joint holds.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +59,35 @@ impl Pair {
         let [base, slider] = self.bodies;
         Telescope::between(&self.way, &states[base], &states[slider])
     }
+
+    /// The joint from the base's rotation, L in m with its rate, and the angular velocity of both in rad/s.
+    #[inline(always)]
+    pub fn reaching(&self, base: UnitComplex<f64>, along: [f64; 2], spin: f64) -> Telescope {
+        Telescope::reaching(&self.way, base, along, spin)
+    }
+
+    /// L of the joint with that length, in m.
+    #[inline(always)]
+    pub fn reach(&self, length: f64) -> f64 {
+        let [base, slider] = self.way.points;
+        length - slider.x + base.x
+    }
+
+    /// How it goes on under these wrenches; `out` is given the force of a drive that prescribes the length.
+    #[inline(always)]
+    pub fn go_on(
+        &self,
+        state: &Telescope,
+        wrenches: &[Vector3<f64>; 2],
+        out: &mut Evaluation,
+    ) -> PairMotion {
+        let extension = self.prescribed.map(|drive| out.commands[drive].acceleration);
+        let motion = state.motion(&self.masses, wrenches, extension);
+        if let Some(drive) = self.prescribed {
+            out.drive_forces[drive] = motion.force;
+        }
+        motion
+    }
 }
 
 impl PlainServo {
@@ -82,5 +114,19 @@ impl PlainServo {
     pub fn telescope(&self, states: &[BodyState]) -> Telescope {
         let [base, slider] = self.bodies;
         Telescope::between(&self.way, &states[base], &states[slider])
+    }
+
+    /// Adds what it does to the joint in this state; `out` has the commands.
+    #[inline(always)]
+    pub fn push(&self, state: &Telescope, out: &mut Evaluation) {
+        let Self { drive, bodies: [base, slider], gains: [stiffness, damping], .. } = *self;
+        let Command { position, rate, .. } = out.commands[drive];
+        let (error, error_rate) = (position - state.length, rate - state.length_rate);
+        let effort = stiffness * error + damping * error_rate;
+        out.coordinates[drive] = state.length;
+        out.drive_forces[drive] = effort;
+        let [on_base, on_slider] = state.drive(effort);
+        out.wrenches[base] += on_base;
+        out.wrenches[slider] += on_slider;
     }
 }

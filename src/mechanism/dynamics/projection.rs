@@ -1,6 +1,5 @@
 //! Bodies put back to where rigid joints and prescribed drives hold them.
 
-use super::pairs::Pair;
 use super::{Dynamics, Rigid};
 use crate::mechanism::rows::{Row, angle_row, prismatic_rows, revolute_rows};
 use crate::mechanism::telescope::Telescope;
@@ -19,7 +18,8 @@ impl Dynamics {
     /// Takes out of places and velocities what integrating accelerations over one step left in the rigid joints
     /// and in drives that prescribe their coordinate: each by the smallest change, measured by the masses (one
     /// Gauss–Newton step; what is left is the square of what was missed). `shifts` is given what the bodies moved
-    /// by (m, m, rad), added to what it holds; `out` the commands at time `t` (s).
+    /// by (m, m, rad), added to what it holds; `out` the commands at time `t` (s). Pairs of bodies on one slide are
+    /// where [`place`](Self::place) has put them: on it.
     pub fn project(
         &mut self,
         mechanism: &Mechanism,
@@ -32,38 +32,8 @@ impl Dynamics {
         if self.prescribes {
             out.command(mechanism);
         }
-        for k in 0..self.telescopes.len() {
-            self.project_telescope(k, states, shifts, &out.commands);
-        }
         for g in 0..self.groups.len() {
             self.project_group(g, mechanism, states, shifts, &out.commands);
-        }
-    }
-
-    /// Two bodies on one axis: `d·n = w` and `ḋ·n = ω d·u`, and of a prescribed length the same along u; both
-    /// bodies' common centre of mass stays. (Both turn with one angular acceleration.)
-    fn project_telescope(
-        &self,
-        k: usize,
-        states: &mut [BodyState],
-        shifts: &mut [Vector3<f64>],
-        commands: &[Command],
-    ) {
-        let Pair { joint: i, bodies, masses, prescribed, .. } = self.telescopes[k];
-        let state = self.telescopes[k].telescope(states);
-        let [base, slider] = self.ways[i].points;
-        let Telescope { u, n, offset: [length, side], rate, spin, .. } = state;
-        let mut missed = n * (side + slider.y - base.y);
-        let mut missed_rate = n * (rate.dot(&n) - spin * length);
-        if let Some(drive) = prescribed {
-            missed += u * (state.length - commands[drive].position);
-            missed_rate += u * (state.length_rate - commands[drive].rate);
-        }
-        for (body, share) in bodies.into_iter().zip(masses.shares()) {
-            let (by, faster) = (missed * share, missed_rate * share);
-            states[body].position += by;
-            states[body].twist += faster.push(0.0);
-            shifts[body] += by.push(0.0);
         }
     }
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::mechanism::{Actuator, Attachment, Body, Command, Commands};
-use nalgebra::UnitComplex;
+use nalgebra::{UnitComplex, Vector2};
 use std::sync::Arc;
 
 #[derive(Debug)]
@@ -91,4 +91,50 @@ fn plain_servos_push_as_any_drive_does() {
     let mut pushed = mechanism;
     pushed.actuators[0].drive = Drive::Effort;
     assert!(Dynamics::new(&pushed).servos.is_none(), "no servo");
+}
+
+/// Bodies put to where the coordinates say are where these came from, move as they say, and go on as under the forces on
+/// the bodies themselves.
+#[test]
+fn coordinates_and_bodies_agree() {
+    for drive in [Drive::Prescribed, Drive::Servo { stiffness: 1e3, damping: 10.0 }] {
+        let mut mechanism = bars(drive);
+        // On the axis, and where the command has it.
+        mechanism.prismatics[0].slider.point += Vector2::new(-0.1, 0.03);
+        let start: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
+        let mut dynamics = Dynamics::new(&mechanism);
+        let mut now = Evaluation::new(&mechanism);
+        dynamics.forces(&mechanism, 0.0, &start, &mut now);
+        dynamics.accelerations(&mechanism, &start, &mut now);
+        let count = if drive == Drive::Prescribed { 3 } else { 4 };
+        assert_eq!(dynamics.coordinates(), count);
+        let [mut rates, mut row] = [vec![0.0; count], vec![0.0; count]];
+        dynamics.start(&start, &now.accelerations, &mut rates, &mut row);
+        let mut at = |ways: &[f64]| {
+            let (mut states, mut there) = (start.clone(), Evaluation::new(&mechanism));
+            let to = (&mut states[..], &mut there);
+            dynamics.place(&mechanism, 0.0, &start, [ways, &rates], to);
+            let mut own = vec![0.0; count];
+            dynamics.act(&mechanism, &states, &mut there, (&mut own, true));
+            (states, there, own)
+        };
+        let (states, there, own) = at(&vec![0.0; count]);
+        for i in 0..2 {
+            assert!((states[i].position - start[i].position).norm() < 1e-15, "{drive:?}");
+            assert!((states[i].twist - start[i].twist).norm() < 1e-14, "{drive:?}");
+            let [a, b] = [there.accelerations[i], now.accelerations[i]];
+            assert!((a - b).norm() < 1e-12 * b.norm(), "{drive:?}: {a} {b}");
+        }
+        for (a, b) in own.iter().zip(&row) {
+            assert!((a - b).abs() < 1e-12 * b.abs().max(1.0), "{drive:?}: {own:?} {row:?}");
+        }
+        if drive == Drive::Prescribed {
+            continue; // its length does not move at one instant
+        }
+        let ways: Vec<f64> = rates.iter().map(|rate| 1e-7 * rate).collect();
+        for (i, state) in at(&ways).0.iter().enumerate() {
+            let moved = (state.position - start[i].position) / 1e-7;
+            assert!((moved - start[i].twist.xy()).norm() < 1e-6, "{moved} {}", start[i].twist);
+        }
+    }
 }
