@@ -2,10 +2,10 @@
 
 use super::found::{Event, events};
 use super::series::Series;
-use crate::calibrate::sensed::estimate::View;
-use crate::calibrate::sensed::problem::{Problem, Stopped};
-use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::start::machine;
+use crate::calibrate::sensed::motion::start::machine;
+use crate::calibrate::sensed::recorded::estimate::View;
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::residuals::problem::{Problem, Stopped};
 use crate::effects::Setting;
 
 /// Events beside the effects of a model; `simulated` are noiseless recordings of that model, run by run, which say what

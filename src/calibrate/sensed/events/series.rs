@@ -1,9 +1,9 @@
 //! Efforts that a recorded motion takes beside what a model knows of, over time.
 
-use crate::calibrate::sensed::basis::Basis;
-use crate::calibrate::sensed::estimate::{View, position_sensor};
-use crate::calibrate::sensed::motions::Motions;
-use crate::calibrate::sensed::residual::{Kind, residuals};
+use crate::calibrate::sensed::motion::basis::Basis;
+use crate::calibrate::sensed::motion::motions::Motions;
+use crate::calibrate::sensed::recorded::estimate::{View, position_sensor};
+use crate::calibrate::sensed::residuals::residual::{Kind, residuals};
 use crate::measure::filter::derivative;
 use crate::mechanism::{JointIndex, Mechanism};
 

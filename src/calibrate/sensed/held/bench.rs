@@ -1,14 +1,15 @@
 //! A machine that sampled controllers hold, its recordings, and what is left of its efforts along the measured motion.
 
 use super::terms::{Term, is_sought};
-use crate::calibrate::sensed::basis::Basis;
-use crate::calibrate::sensed::estimate::{View, output_sensor, position_sensor};
-use crate::calibrate::sensed::motions::Motions;
-use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::residual::{Kind, residuals};
-use crate::calibrate::sensed::start::machine;
+use crate::calibrate::sensed::intake::noise;
+use crate::calibrate::sensed::motion::basis::Basis;
+use crate::calibrate::sensed::motion::motions::Motions;
+use crate::calibrate::sensed::motion::simulate;
+use crate::calibrate::sensed::motion::start::machine;
+use crate::calibrate::sensed::recorded::estimate::{View, output_sensor, position_sensor};
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::residuals::residual::{Kind, residuals};
 use crate::calibrate::sensed::thresholds::{OUTPUT_FILTER, OUTPUT_TRIM, RATE};
-use crate::calibrate::sensed::{noise, simulate};
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
 use crate::measure::filter::{ZeroPhase, derivative};
@@ -244,7 +245,7 @@ impl Bench {
     pub fn simulated(&self, run: usize, effects: &[Setting]) -> Result<Recording, Broken> {
         let recording = &self.runs[run].recording;
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        let released = crate::calibrate::sensed::released::released(
+        let released = crate::calibrate::sensed::motion::released::released(
             &self.rig,
             effects,
             recording,
@@ -321,7 +322,7 @@ impl Run {
 pub enum Broken {
     /// Its start.
     #[error(transparent)]
-    Start(#[from] crate::calibrate::sensed::released::StartError),
+    Start(#[from] crate::calibrate::sensed::motion::released::StartError),
     /// What follows.
     #[error(transparent)]
     Halted(#[from] Halt),

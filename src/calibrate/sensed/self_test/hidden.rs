@@ -120,7 +120,7 @@ mod tests {
     use super::super::record::Bench;
     use super::super::{NOISE, Trial};
     use super::*;
-    use crate::calibrate::sensed::candidates::candidates;
+    use crate::calibrate::sensed::values::candidates::candidates;
 
     /// Every effect that a search has for a machine can be hidden in it: a size of nothing changes nothing, and a
     /// small one gives a machine.

@@ -4,9 +4,9 @@ use super::hidden::Hidden;
 use super::{Answer, Case, Trial};
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::self_test::Value;
-use crate::calibrate::sensed::certainty::Estimated;
-use crate::calibrate::sensed::outcome::Outcome;
-use crate::calibrate::sensed::problem::{Problem, Stopped};
+use crate::calibrate::sensed::residuals::problem::{Problem, Stopped};
+use crate::calibrate::sensed::results::outcome::Outcome;
+use crate::calibrate::sensed::values::certainty::Estimated;
 use crate::effects::{Setting, Target};
 use crate::mechanism::Mechanism;
 use std::collections::BTreeSet;
@@ -119,7 +119,7 @@ fn answer(outcome: &Outcome) -> String {
             outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
         return list(&found) + &noises;
     }
-    let most = |score: &dyn Fn(&crate::calibrate::sensed::left::Left) -> f64| {
+    let most = |score: &dyn Fn(&crate::calibrate::sensed::judged::left::Left) -> f64| {
         let left = outcome.after.iter().max_by(|a, b| score(a).total_cmp(&score(b)));
         left.map_or_else(String::new, |left| {
             format!("{} of {} {:.2}", left.residual.word(), left.of, score(left))

@@ -22,8 +22,8 @@ pub use families::machines;
 pub use rates::rates;
 pub use trial::{Answer, Case, NOISE, Trial, Tried};
 
-use super::outcome::calibrate;
-use super::problem::{Problem, Stopped};
+use super::residuals::problem::{Problem, Stopped};
+use super::results::outcome::calibrate;
 use judge::{judge, stopped_short};
 use record::Bench;
 use sized::hide;

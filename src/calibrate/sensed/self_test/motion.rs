@@ -4,7 +4,7 @@ use super::Trial;
 use super::dice::Dice;
 use super::families::Moves;
 use crate::calibrate::record::passed;
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::mechanism::{JointIndex, Mechanism, Reads};
 use std::f64::consts::TAU;
 

@@ -4,11 +4,11 @@ use super::dice::Dice;
 use super::hidden::{Hidden, Shape};
 use super::record::Bench;
 use super::{Case, NOISE, Trial};
-use crate::calibrate::sensed::candidates::candidates;
-use crate::calibrate::sensed::errors::of_run;
-use crate::calibrate::sensed::problem::{Problem, Stopped};
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::residuals::problem::{Problem, Stopped};
 use crate::calibrate::sensed::thresholds::SEEN;
+use crate::calibrate::sensed::values::candidates::candidates;
+use crate::calibrate::sensed::values::errors::of_run;
 use crate::effects::Setting;
 use crate::mechanism::Sensor;
 

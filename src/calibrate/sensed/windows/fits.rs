@@ -4,7 +4,7 @@ use super::bench::Bench;
 use super::eliminate::gain;
 use super::sought::Sought;
 use super::window::{Window, cut};
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds::{COVERED, HORIZONS, PHASE, WINDOWS};
 use nalgebra::{DMatrix, DVector};
 

@@ -9,7 +9,7 @@ use super::sought::sought;
 use crate::calibrate::outcome::Verdict;
 use crate::calibrate::report::Fitted as Estimate;
 use crate::calibrate::sensed::events::Event;
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds::{CERTAIN, HORIZONS, MET, OWN, WINDOWS};
 use crate::effects::{Setting, Target, UNNAMED, named};
 use crate::scenario::{Problem, Scenario};

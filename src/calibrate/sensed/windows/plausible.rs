@@ -5,7 +5,7 @@
 use super::bench::Bench;
 use super::outcome::horizons;
 use super::score::score;
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds::{ASTRAY, FACTORS, FOLLOWED};
 use crate::measure::splice::{Samples, one_run};
 use crate::mechanism::{Mechanism, Reads};

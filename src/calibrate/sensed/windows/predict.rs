@@ -12,7 +12,7 @@ use crate::calibrate::report::EffectReport;
 use crate::calibrate::result::{CalibrateError, publish, refuse, to_json};
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::events::{Event, found};
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::report::{Part, Style, Table, document, number};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;

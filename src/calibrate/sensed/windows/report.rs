@@ -12,10 +12,10 @@ use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds
 use crate::calibrate::result::CalibrateError;
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::events::{self, Event};
-use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::report::Report;
-use crate::calibrate::sensed::words::name;
-use crate::calibrate::sensed::written::{Calibrated, names_of_files, written};
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::results::report::Report;
+use crate::calibrate::sensed::results::written::{Calibrated, names_of_files, written};
+use crate::calibrate::sensed::rounds::words::name;
 use crate::report::{Curve, Picture, Style, panels_svg};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;

@@ -2,7 +2,7 @@
 
 use super::bench::Bench;
 use super::window::{Window, cut};
-use crate::calibrate::sensed::simulate::deviation;
+use crate::calibrate::sensed::motion::simulate::deviation;
 use crate::mechanism::Mechanism;
 use nalgebra::DMatrix;
 use rayon::prelude::*;

@@ -6,7 +6,7 @@
 
 use super::pose::{Coordinates, Pose};
 use super::roll::{Rows, roll};
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::mechanism::{Mechanism, Reads};
 use nalgebra::{DMatrix, DVector};
 
