@@ -4,12 +4,13 @@
 //! twelve columns are all there is tried by the method that was made for it first, which follows rattling joints and pairs of
 //! effects further, but holds its instruments for right: what it finds missing is found by both.
 
-use super::errors::{ChannelError, worst};
-use super::outcome::Verdict;
-use super::report::{EffectReport, Report};
-use super::result::{self, CalibrateError, refuse};
+use super::measured::recording;
+use super::results::outcome::Verdict;
+use super::results::report::{EffectReport, Report};
+use super::results::result::{self, CalibrateError, refuse};
 use super::sensed::ways::by_residuals;
-use super::{plausibility, recording, sensed};
+use super::values::errors::{ChannelError, worst};
+use super::{plausibility, sensed};
 use crate::effects::{Kind, named};
 use crate::scenario::Scenario;
 use crate::study::Folder;

@@ -3,7 +3,7 @@
 //! ([`held`](crate::calibrate::sensed::held)).
 
 use super::{Missing, Table};
-use crate::calibrate::result::control;
+use crate::calibrate::results::result::control;
 use crate::calibrate::sensed::held::bench::Bench;
 use crate::calibrate::sensed::held::candidates::of_declared;
 use crate::calibrate::sensed::held::model::{Model, share};

@@ -1,8 +1,8 @@
 //! The pages of the hardware studies.
 
 use super::{Missing, Table, emps, pendulum};
-use crate::calibrate::charts::{POINTS, thinned};
-use crate::calibrate::result::to_json;
+use crate::calibrate::results::charts::{POINTS, thinned};
+use crate::calibrate::results::result::to_json;
 use crate::report::{self, Curve, Panel, Part, Picture, Style, panels_svg};
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use serde_json::json;

@@ -10,7 +10,7 @@ use super::prepare::Prepared;
 use super::search::{Effort, best};
 use super::separation::{Posed, apart};
 use super::sight::{Seen, Sight};
-use crate::calibrate::result::CalibrateError;
+use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 
 /// Share of what a linearised rival leaves that its full fit may leave for the search to have been right about it.

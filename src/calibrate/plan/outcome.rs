@@ -10,7 +10,7 @@ use super::prepare::Prepared;
 use super::present::present;
 use super::separation::{Posed, named};
 use super::sight::Sight;
-use crate::calibrate::result::CalibrateError;
+use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::SURE;
 use rayon::prelude::*;

@@ -5,7 +5,7 @@ use super::motion::Motion;
 use super::prepare::Prepared;
 use super::separation::{Posed, detectable, nearest, shows, sized};
 use super::sight::{Seen, Sight};
-use crate::calibrate::result::CalibrateError;
+use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 use crate::effects::Setting;
 use rayon::prelude::*;
@@ -34,7 +34,7 @@ pub fn pose_all(
             Err(message) => wrong.push(message),
         }
     }
-    crate::calibrate::result::refuse(wrong)?;
+    crate::calibrate::results::result::refuse(wrong)?;
     Ok(posed)
 }
 

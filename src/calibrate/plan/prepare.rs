@@ -5,7 +5,7 @@ use super::limits::{self, GAIN, Given, Limit};
 use super::path::held;
 use super::search::Effort;
 use crate::calibrate::record::{Made, like};
-use crate::calibrate::result::{CalibrateError, control, refuse};
+use crate::calibrate::results::result::{CalibrateError, control, refuse};
 use crate::calibrate::sensed::prepare::{Way, against_rig};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::start::{commands, machine};

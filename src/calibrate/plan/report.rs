@@ -5,7 +5,7 @@ use super::limits::{Limit, units};
 use super::outcome::{Answered, Outcome, chance};
 use super::prepare::Prepared;
 use super::separation::Posed;
-use crate::calibrate::report::ActsOn;
+use crate::calibrate::results::report::ActsOn;
 use crate::effects::Setting;
 use crate::report::number;
 use crate::simulate::Provenance;

@@ -11,10 +11,10 @@
 //! values. Either of the two may be the truth: the smaller of both counts.
 
 use super::sight::{Seen, Sight};
-use crate::calibrate::fit::{free, values, with_values};
-use crate::calibrate::least_squares::{Effort, jacobian, least_squares};
 use crate::calibrate::sensed::limits::ways;
 use crate::calibrate::sensed::thresholds::{GAIN, GAIN_PER_VALUE, SURE, TWINS};
+use crate::calibrate::values::fit::{free, values, with_values};
+use crate::calibrate::values::least_squares::{Effort, jacobian, least_squares};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

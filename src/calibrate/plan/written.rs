@@ -8,7 +8,7 @@ use super::report::{
     MOTION_FILE, PLAN_FILE, PLANNED_FILE, Planned, QuestionReport, SensorReport, drives,
     is_answered, question, summary,
 };
-use crate::calibrate::result::{CalibrateError, publish, to_json};
+use crate::calibrate::results::result::{CalibrateError, publish, to_json};
 use crate::calibrate::sensed::start::machine;
 use crate::mechanism::{Imposed, Mechanism, Tracker, angle_near};
 use crate::scenario::{self, Scenario};

@@ -1,7 +1,7 @@
 //! Lengths and poses of a log held against each other and against the rig's geometry, in every unit that
 //! somebody might have written them in.
 
-use crate::calibrate::recording::triple;
+use crate::calibrate::measured::recording::triple;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::three_rpr::Geometry;
 use crate::scenario::{Mechanism, Scenario, ThreeRpr};

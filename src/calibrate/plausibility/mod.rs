@@ -10,7 +10,7 @@ mod geometry;
 pub use forces::{forces, mixed_up};
 pub use geometry::start_pose;
 
-use super::recording::Recording;
+use super::measured::recording::Recording;
 use super::sensed::thresholds::LOWEST_RATE;
 use crate::measure::log::{Channel, Log, LogError};
 use crate::scenario::{Law, Mechanism, Problem, Scenario};

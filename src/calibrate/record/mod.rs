@@ -8,8 +8,7 @@ mod run;
 pub use pace::passed;
 pub use run::clean;
 
-use super::errors::ChannelError;
-use super::result::{CalibrateError, control, publish, refuse, to_json};
+use super::results::result::{CalibrateError, control, publish, refuse, to_json};
 use super::sensed::charts::{Drawn, of_run};
 use super::sensed::errors::{self, mean};
 use super::sensed::predict::Along;
@@ -17,6 +16,7 @@ use super::sensed::recording::Recording;
 use super::sensed::simulate::noisy;
 use super::sensed::start::machine;
 use super::sensed::thresholds::PREDICTING;
+use super::values::errors::ChannelError;
 use crate::mechanism::Mechanism;
 use crate::report::{Picture, Style};
 use crate::scenario::{self, Law, Scenario};

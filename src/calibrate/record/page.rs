@@ -1,6 +1,6 @@
 //! The page of synthetic recordings.
 
-use super::super::page::errors_table;
+use super::super::results::page::errors_table;
 use super::{RIG_FILE, Recorded, TRUTH_FILE};
 use crate::report::{Part, Picture, document, number};
 

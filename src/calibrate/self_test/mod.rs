@@ -12,10 +12,10 @@ pub use rates::rates;
 pub(in crate::calibrate) use rates::{covered, is_phase, near, share};
 pub use rig::recorded;
 
-use super::errors;
-use super::model::{Case, SearchError};
-use super::outcome::{Outcome, Verdict, calibrate};
-use super::way::names;
+use super::results::outcome::{Outcome, Verdict, calibrate};
+use super::rounds::way::names;
+use super::values::errors;
+use super::values::model::{Case, SearchError};
 use crate::effects::Setting;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

@@ -2,9 +2,9 @@
 
 use super::Trial;
 use super::hidden::{hide, uniform};
-use crate::calibrate::model::{Case, Run, SearchError};
-use crate::calibrate::outcome::canonical;
-use crate::calibrate::replica;
+use crate::calibrate::measured::replica;
+use crate::calibrate::results::outcome::canonical;
+use crate::calibrate::values::model::{Case, Run, SearchError};
 use crate::effects::Setting;
 use crate::engine::StepControl;
 use crate::measure::log::{Channel, Log};

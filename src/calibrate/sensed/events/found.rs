@@ -3,7 +3,7 @@
 use super::lasting::{Lasting, low};
 use super::scan::{Peak, Rulers, scan};
 use super::series::{Series, means, scatter};
-use crate::calibrate::report::{ActsOn, Depends, EffectReport, Fitted};
+use crate::calibrate::results::report::{ActsOn, Depends, EffectReport, Fitted};
 use crate::calibrate::sensed::thresholds::{EVENT_SHARE, RESTLESS};
 use crate::effects::{History, OverTime, Setting};
 

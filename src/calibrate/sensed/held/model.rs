@@ -6,7 +6,7 @@
 
 use super::bench::Bench;
 use super::terms::{Term, given};
-use crate::calibrate::report::Fitted;
+use crate::calibrate::results::report::Fitted;
 use crate::calibrate::sensed::thresholds::APART;
 use crate::effects::{Kind, Setting};
 use nalgebra::{DMatrix, DVector};

@@ -2,17 +2,17 @@
 
 use super::bench::{Bench, Broken};
 use super::search::{Failed, Found, Outcome, search};
-use crate::calibrate::errors::{ChannelError, judged};
-use crate::calibrate::outcome::Verdict;
-use crate::calibrate::recording::stem_of;
-use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
-use crate::calibrate::result::{CalibrateError, control};
+use crate::calibrate::measured::recording::stem_of;
+use crate::calibrate::results::outcome::Verdict;
+use crate::calibrate::results::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
+use crate::calibrate::results::result::{CalibrateError, control};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::results::charts::{Drawn, of_run};
 use crate::calibrate::sensed::results::report::Report;
 use crate::calibrate::sensed::results::written::{Calibrated, names_of_files, written};
 use crate::calibrate::sensed::thresholds::MET;
 use crate::calibrate::sensed::values::errors;
+use crate::calibrate::values::errors::{ChannelError, judged};
 use crate::effects::Setting;
 use crate::report::{Picture, Style};
 use crate::scenario::Scenario;

@@ -7,7 +7,7 @@ use super::judge::Judge;
 use super::model::{Model, squares, told};
 use super::paired::Ratio;
 use super::terms::Term;
-use crate::calibrate::report::Fitted;
+use crate::calibrate::results::report::Fitted;
 use crate::calibrate::sensed::thresholds::{BETTER, STRETCH, WORTH};
 use crate::effects::{Kind, Setting, Target};
 use crate::scenario::Problem;

@@ -1,7 +1,7 @@
 //! Whether recordings of a machine that follows commands can be what they are said to be: readings of driven joints held
 //! against their commands, efforts against the law of their servos.
 
-use crate::calibrate::mistaken::{Mistake, mistakes, rms};
+use crate::calibrate::measured::mistaken::{Mistake, mistakes, rms};
 use crate::calibrate::sensed::motion::start::told_by;
 use crate::calibrate::sensed::recorded::estimate::{effort_sensor, position_sensor};
 use crate::calibrate::sensed::recorded::recording::Recording;

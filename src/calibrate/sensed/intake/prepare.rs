@@ -2,7 +2,7 @@
 
 use super::followed;
 use super::noise;
-use crate::calibrate::result::{CalibrateError, refuse};
+use crate::calibrate::results::result::{CalibrateError, refuse};
 use crate::calibrate::sensed::held;
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::recording::Recording;

@@ -3,10 +3,10 @@
 
 use super::simulate::{deviation, record};
 use super::start::{Closed, LEAD, closed, placed, release};
-use crate::calibrate::least_squares::{Best, Effort, Free, least_squares};
-use crate::calibrate::outcome::inverse_normal;
+use crate::calibrate::results::outcome::inverse_normal;
 use crate::calibrate::sensed::recorded::estimate::position_sensor;
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::values::least_squares::{Best, Effort, Free, least_squares};
 use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};
 use crate::mechanism::{Actuator, Drive, JointIndex, Mechanism};

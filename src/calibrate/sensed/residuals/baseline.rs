@@ -2,13 +2,13 @@
 //! which is noise.
 
 use super::problem::{Problem, Segment, Start, Stopped};
-use crate::calibrate::draws::{Coefficients, difference, mean, without};
+use crate::calibrate::measured::draws::{Coefficients, difference, mean, without};
+use crate::calibrate::measured::spectrum::Noise;
 use crate::calibrate::sensed::motion::simulate::{apart, with_noise};
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::estimate::View;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds::{DRAWS, MISSED, SEEN};
-use crate::calibrate::spectrum::Noise;
 use crate::effects::Setting;
 use crate::mechanism::Mechanism;
 use crate::scenario::Problem as Wrong;

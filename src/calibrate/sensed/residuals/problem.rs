@@ -1,6 +1,7 @@
 //! A rig and the runs that it is held against.
 
 use super::residual::{Residuals, residuals};
+use crate::calibrate::measured::spectrum::transform;
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::motion::motions::Motions;
 use crate::calibrate::sensed::motion::released::{
@@ -11,7 +12,6 @@ use crate::calibrate::sensed::motion::start::{machine, still};
 use crate::calibrate::sensed::recorded::estimate::View;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds;
-use crate::calibrate::spectrum::transform;
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
 use crate::mechanism::Mechanism;
@@ -330,7 +330,7 @@ impl Problem {
         let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
         let sensors = crate::model::parts_of(&rig).unwrap().sensors;
         let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
-        let control = crate::calibrate::result::control(&rig);
+        let control = crate::calibrate::results::result::control(&rig);
         Self::new(rig, vec![recording], control).unwrap()
     }
 }

@@ -6,13 +6,13 @@
 //! * **closure**: each other measured position less where the bodies are, journals leaning on their rings;
 //! * **acceleration**: each measured one less that of the measured motion.
 
+use crate::calibrate::measured::spectrum::Signal;
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::motion::motions::Motions;
 use crate::calibrate::sensed::recorded::estimate::{
     View, effort_sensor, output_sensor, position_sensor,
 };
 use crate::calibrate::sensed::thresholds::{DYNAMICS_BAND, PLAIN_BAND};
-use crate::calibrate::spectrum::Signal;
 use crate::measure::filter::derivative;
 use crate::mechanism::{
     Command, Drive, Evaluation, JointIndex, Mechanism, Posed, Reads, Sensor, Taken, angle_near,

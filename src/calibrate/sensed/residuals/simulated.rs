@@ -1,11 +1,11 @@
 //! Noiseless recordings of models of a problem.
 
 use super::problem::{Problem, Run, Start, Stopped};
-use crate::calibrate::fit::{free, values, with_values};
 use crate::calibrate::sensed::motion::released::let_go_at;
 use crate::calibrate::sensed::motion::simulate;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds;
+use crate::calibrate::values::fit::{free, values, with_values};
 use crate::effects::Setting;
 use crate::engine::Halt;
 use crate::mechanism::Mechanism;

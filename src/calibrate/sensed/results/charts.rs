@@ -1,6 +1,6 @@
 //! Pictures of a recording beside what models predict.
 
-use crate::calibrate::charts::{POINTS, panel, thinned};
+use crate::calibrate::results::charts::{POINTS, panel, thinned};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::mechanism::Mechanism;
 use crate::report::{Curve, Picture, ReportError, Style, panels_svg};

@@ -1,7 +1,6 @@
 //! The whole way: from a rig and its recordings to a verdict, values with intervals, and errors.
 
-use crate::calibrate::errors::{ChannelError, is_worse};
-use crate::calibrate::outcome::Verdict;
+use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::sensed::events::Event;
 use crate::calibrate::sensed::events::search::beside;
 use crate::calibrate::sensed::intake::noise::{self, OtherNoise};
@@ -18,6 +17,7 @@ use crate::calibrate::sensed::values::candidates::candidates;
 use crate::calibrate::sensed::values::certainty::{Estimated, estimated, uncertain};
 use crate::calibrate::sensed::values::errors::{are_met, mean, of_run};
 use crate::calibrate::sensed::values::model::Model;
+use crate::calibrate::values::errors::{ChannelError, is_worse};
 use crate::effects::{Setting, UNNAMED};
 
 /// A calibration.

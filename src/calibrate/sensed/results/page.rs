@@ -3,7 +3,7 @@
 use super::charts::{Drawn, of_run};
 use super::outcome::Outcome;
 use super::report::Report;
-use crate::calibrate::page::{errors_table, verdict, why};
+use crate::calibrate::results::page::{errors_table, verdict, why};
 use crate::calibrate::sensed::residuals::problem::Problem;
 use crate::calibrate::sensed::windows::horizons::Windows;
 use crate::report::{Part, Picture, ReportError, Style, Table, document, known_to, number};

@@ -2,10 +2,10 @@
 //! how much it misses.
 
 use super::charts::{Drawn, of_run};
-use crate::calibrate::predict_page;
-use crate::calibrate::predicted::{ERRORS_FILE, PREDICTED_FILE, Predicted, Prediction};
-use crate::calibrate::report::RattleReport;
-use crate::calibrate::result::{CalibrateError, control, publish, refuse, to_json};
+use crate::calibrate::results::predict_page;
+use crate::calibrate::results::predicted::{ERRORS_FILE, PREDICTED_FILE, Predicted, Prediction};
+use crate::calibrate::results::report::RattleReport;
+use crate::calibrate::results::result::{CalibrateError, control, publish, refuse, to_json};
 use crate::calibrate::sensed::held;
 use crate::calibrate::sensed::intake::followed;
 use crate::calibrate::sensed::intake::noise;

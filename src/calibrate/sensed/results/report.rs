@@ -1,10 +1,9 @@
 //! `report.json` and the folder of results.
 
 use super::outcome::Outcome;
-use crate::calibrate::errors::{ChannelError, worst};
-use crate::calibrate::outcome::Verdict;
 use crate::calibrate::quantity;
-use crate::calibrate::report::{
+use crate::calibrate::results::outcome::Verdict;
+use crate::calibrate::results::report::{
     ActsOn, Depends, EffectReport, Ranked, RattleReport, ResidualReport, Seeds,
 };
 use crate::calibrate::sensed::intake::noise::OtherNoise;
@@ -14,6 +13,7 @@ use crate::calibrate::sensed::rounds::rest::Rest;
 use crate::calibrate::sensed::rounds::round::Tried;
 use crate::calibrate::sensed::rounds::words::{name, names};
 use crate::calibrate::sensed::windows::horizons::Windows;
+use crate::calibrate::values::errors::{ChannelError, worst};
 use crate::simulate::Provenance;
 use serde::Serialize;
 

@@ -2,7 +2,7 @@
 
 use super::page;
 use super::report::Report;
-use crate::calibrate::result::{
+use crate::calibrate::results::result::{
     self, CALIBRATED_FILE, CalibrateError, REPORT_FILE, publish, to_json,
 };
 use crate::report::Picture;

@@ -2,13 +2,13 @@
 
 use super::round::Tried;
 use super::search::Search;
-use crate::calibrate::fit::free;
-use crate::calibrate::least_squares::derivative;
 use crate::calibrate::sensed::thresholds::{AS_MUCH, CLOSER, GAIN, GAIN_PER_VALUE, JUDGED};
 use crate::calibrate::sensed::values::candidates::starts;
 use crate::calibrate::sensed::values::fit::Target;
 use crate::calibrate::sensed::values::linear::{Columns, Step, step as linear_step};
 use crate::calibrate::sensed::values::model::Model;
+use crate::calibrate::values::fit::free;
+use crate::calibrate::values::least_squares::derivative;
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

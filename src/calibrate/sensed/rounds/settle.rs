@@ -3,7 +3,6 @@
 use super::round::{Round, Tried};
 use super::search::Search;
 use super::words::{name, names};
-use crate::calibrate::fit::values;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
 use crate::calibrate::sensed::thresholds::TWINS;
@@ -12,6 +11,7 @@ use crate::calibrate::sensed::values::fit::Fit;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::{Far, fitted, followed, predicted, shorter};
 use crate::calibrate::sensed::values::whole::Whole;
+use crate::calibrate::values::fit::values;
 use crate::effects::Setting;
 
 /// A change of a value, in its standard deviations, that is none.

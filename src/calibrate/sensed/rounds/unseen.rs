@@ -3,8 +3,6 @@
 use super::other_laws::other_laws;
 use super::round::Tried;
 use super::search::Search;
-use crate::calibrate::fit::free;
-use crate::calibrate::least_squares::{Free, Look, derivative};
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
 use crate::calibrate::sensed::thresholds::NEAR;
@@ -12,6 +10,8 @@ use crate::calibrate::sensed::values::linear::stepped_along;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::{Far, followed, shorter};
 use crate::calibrate::sensed::values::whole::Whole;
+use crate::calibrate::values::fit::free;
+use crate::calibrate::values::least_squares::{Free, Look, derivative};
 use crate::effects::Setting;
 use nalgebra::DVector;
 use rayon::prelude::*;

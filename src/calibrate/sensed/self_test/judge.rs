@@ -2,7 +2,7 @@
 
 use super::hidden::Hidden;
 use super::{Answer, Case, Trial};
-use crate::calibrate::outcome::Verdict;
+use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::self_test::Value;
 use crate::calibrate::sensed::residuals::problem::{Problem, Stopped};
 use crate::calibrate::sensed::results::outcome::Outcome;
@@ -125,9 +125,10 @@ fn answer(outcome: &Outcome) -> String {
             format!("{} of {} {:.2}", left.residual.word(), left.of, score(left))
         })
     };
-    let worst = crate::calibrate::errors::worst(&outcome.errors).map_or_else(String::new, |e| {
-        format!("{} of {} by {:.2} floors", e.channel, e.run, e.after / e.floor)
-    });
+    let worst = crate::calibrate::values::errors::worst(&outcome.errors)
+        .map_or_else(String::new, |e| {
+            format!("{} of {} by {:.2} floors", e.channel, e.run, e.after / e.floor)
+        });
     let rest = outcome.rest.as_ref().map_or_else(String::new, |rest| format!("; {}", rest.words()));
     format!(
         "tried {}; leaves mean square {}, largest {}; misses {worst}{rest}{noises}",

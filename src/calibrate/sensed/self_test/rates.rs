@@ -1,7 +1,7 @@
 //! What trials come to: rates by requirement and by machine, each with what chance leaves open.
 
 use super::{Answer, Case, Tried};
-use crate::calibrate::outcome::Verdict;
+use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::self_test::{covered, is_phase, near, share};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -5,7 +5,7 @@ use super::hidden::Hidden;
 use super::motion::like;
 use super::rig::rig;
 use crate::calibrate::record::clean;
-use crate::calibrate::result::control;
+use crate::calibrate::results::result::control;
 use crate::calibrate::sensed::motion::simulate::with_noise;
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::recording::Recording;

@@ -1,6 +1,6 @@
 //! A trial, and what became of it.
 
-use crate::calibrate::outcome::Verdict;
+use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::self_test::Value;
 use serde::{Deserialize, Serialize};
 

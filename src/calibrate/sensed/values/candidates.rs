@@ -2,7 +2,7 @@
 
 use super::fit::{Fit, Target};
 use super::periodic::frequencies;
-use crate::calibrate::least_squares::{REDUCED, REDUCTIONS, too_far};
+use crate::calibrate::values::least_squares::{REDUCED, REDUCTIONS, too_far};
 use crate::effects::{ALL, CONTAINS, Kind, Range, Scan, Setting};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};

@@ -2,8 +2,8 @@
 
 use super::fit::Fit;
 use super::model::Model;
-use crate::calibrate::outcome::{inverse_normal, pull};
-use crate::calibrate::report::Fitted;
+use crate::calibrate::results::outcome::{inverse_normal, pull};
+use crate::calibrate::results::report::Fitted;
 use crate::calibrate::sensed::residuals::problem::{Problem, Segment};
 use crate::calibrate::sensed::thresholds::SURE;
 use crate::effects::Setting;

@@ -1,10 +1,10 @@
 //! By how much predictions miss a recording, column by column, and by how much any would.
 
 use super::by_chance::up_to;
-use crate::calibrate::errors::ChannelError;
 use crate::calibrate::sensed::motion::simulate::noisy;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds::{DRAWS, MET, TRIM};
+use crate::calibrate::values::errors::ChannelError;
 use crate::measure::filter::ZeroPhase;
 use crate::mechanism::Mechanism;
 

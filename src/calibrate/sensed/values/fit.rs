@@ -1,10 +1,10 @@
 //! Values of effects fitted to residuals in units of noise.
 
-use crate::calibrate::fit::{free, values, with_values};
-use crate::calibrate::least_squares::{self, Effort, least_squares};
-use crate::calibrate::outcome::inverse_normal;
+use crate::calibrate::results::outcome::inverse_normal;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{Problem, Segment};
+use crate::calibrate::values::fit::{free, values, with_values};
+use crate::calibrate::values::least_squares::{self, Effort, least_squares};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 

@@ -1,7 +1,7 @@
 //! One linear step of values to what they explain, and what chance makes of it.
 
 use super::by_chance::up_to;
-use crate::calibrate::least_squares::Free;
+use crate::calibrate::values::least_squares::Free;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Derivatives of the residual in units of noise on the data that values are fitted on and on those that they are judged

@@ -4,12 +4,12 @@
 
 use super::errors::{floors_of, in_floors};
 use super::whole::Whole;
-use crate::calibrate::fit::{free, values, with_values};
-use crate::calibrate::least_squares::{Effort, least_squares};
 use crate::calibrate::sensed::motion::simulate::apart;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{Problem, Segment, Stopped};
 use crate::calibrate::sensed::thresholds::ALIKE;
+use crate::calibrate::values::fit::{free, values, with_values};
+use crate::calibrate::values::least_squares::{Effort, least_squares};
 use crate::effects::Setting;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -133,7 +133,7 @@ pub fn shorter(problem: &Problem, segment: &Segment, length: Option<f64>) -> Seg
     let view = &problem.runs[segment.run].view;
     let Some(length) = length else { return segment.clone() };
     let rows = (length / (view.interval * view.stride as f64)) as usize;
-    let rows = crate::calibrate::spectrum::fast_length(rows.max(1)) * view.stride;
+    let rows = crate::calibrate::measured::spectrum::fast_length(rows.max(1)) * view.stride;
     let end = segment.rows.end.min(segment.rows.start + rows);
     Segment { run: segment.run, rows: segment.rows.start..end }
 }

@@ -4,12 +4,12 @@
 //! let go is fitted beside the values of effects, for a recording tells both only together.
 
 use super::errors::{OVERSAMPLED, floors_of, in_floors};
-use crate::calibrate::fit::{free, values, with_values};
-use crate::calibrate::least_squares::{Effort, Free, derivative, jacobian, least_squares};
-use crate::calibrate::outcome::{inverse_normal, pull};
+use crate::calibrate::results::outcome::{inverse_normal, pull};
 use crate::calibrate::sensed::motion::released::SMALL;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{Problem, Segment, Stopped};
+use crate::calibrate::values::fit::{free, values, with_values};
+use crate::calibrate::values::least_squares::{Effort, Free, derivative, jacobian, least_squares};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 

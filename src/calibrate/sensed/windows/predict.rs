@@ -6,13 +6,13 @@ use super::outcome::{horizons, with};
 use super::plausible;
 use super::report::{channel_errors, input_columns, pictures, predicted, remarks, run_zeros};
 use super::score::{Horizon, score};
-use crate::calibrate::errors::ChannelError;
-use crate::calibrate::predicted::{ERRORS_FILE, PREDICTED_FILE};
-use crate::calibrate::report::EffectReport;
-use crate::calibrate::result::{CalibrateError, publish, refuse, to_json};
+use crate::calibrate::results::predicted::{ERRORS_FILE, PREDICTED_FILE};
+use crate::calibrate::results::report::EffectReport;
+use crate::calibrate::results::result::{CalibrateError, publish, refuse, to_json};
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::events::{Event, found};
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::values::errors::ChannelError;
 use crate::report::{Part, Style, Table, document, number};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -174,7 +174,7 @@ pub fn into_folder(
     let prediction = Prediction {
         provenance: Provenance::of(model),
         run: bench.runs[0].name.clone(),
-        effects: model.effects.iter().map(crate::calibrate::way::name).collect(),
+        effects: model.effects.iter().map(crate::calibrate::rounds::way::name).collect(),
         errors: windows[0].errors.clone(),
         windows,
         events: events.iter().map(Event::report).collect(),
