@@ -1,17 +1,17 @@
 //! A mechanism from start to end: what a run is asked for, and what it hands out.
 
-use super::adaptive::Adaptive;
+use super::account::watch::{Peaks, Tally, Watch};
+use super::account::wear::Rubbing;
+use super::account::work::Work;
 use super::clock::Clock;
 use super::control::StepControl;
-use super::direct::Direct;
-use super::energy::{Books, Ledger, drift};
-use super::fixed::Fixed;
 use super::halt::{Halt, Pace, TOO_MANY_STEPS, impossible, likely_cause};
-use super::native::Native;
-use super::stepper::{Stepper, meant};
-use super::watch::{Peaks, Tally, Watch};
-use super::wear::Rubbing;
-use super::work::Work;
+use super::stepping::adaptive::Adaptive;
+use super::stepping::direct::Direct;
+use super::stepping::energy::{Books, Ledger, drift};
+use super::stepping::fixed::Fixed;
+use super::stepping::native::Native;
+use super::stepping::stepper::{Stepper, meant};
 use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};

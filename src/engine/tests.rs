@@ -1,9 +1,9 @@
 //! What ways of stepping have in common.
 
-use super::adaptive::Adaptive;
-use super::fixed::Fixed;
-use super::stepper::Stepper;
-use super::world::World;
+use super::physics::world::World;
+use super::stepping::adaptive::Adaptive;
+use super::stepping::fixed::Fixed;
+use super::stepping::stepper::Stepper;
 use crate::mechanism::{BodyState, Mechanism};
 use crate::model::assemble;
 use crate::scenario::Scenario;

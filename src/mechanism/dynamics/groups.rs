@@ -1,6 +1,6 @@
 //! Rigid joints that are solved together.
 
-use crate::mechanism::constraints::Rigid;
+use crate::mechanism::equations::constraints::Rigid;
 
 /// How much closer than usual to a lower rank a group's rows are where it counts as nearly singular: a
 /// thousandth of a radian away from the singular pose of a common linkage.

@@ -15,8 +15,8 @@ mod solved;
 use self::contacts::{Touched, reached, touch, touches};
 use self::groups::Group;
 use self::pairs::{Pair, PlainServo};
-use super::constraints::{Constraints, Rigid, groups};
-use super::telescope::{Slideway, Telescope};
+use super::equations::constraints::{Constraints, Rigid, groups};
+use super::equations::telescope::{Slideway, Telescope};
 use super::{
     Bearing, BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic,
     Situation, angle_near,

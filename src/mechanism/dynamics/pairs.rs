@@ -1,7 +1,7 @@
 //! Pairs of bodies on one slide, solved in closed form.
 
-use crate::mechanism::constraints::Rigid;
-use crate::mechanism::telescope::{PairMasses, Slideway, Telescope};
+use crate::mechanism::equations::constraints::Rigid;
+use crate::mechanism::equations::telescope::{PairMasses, Slideway, Telescope};
 use crate::mechanism::{Actuator, BodyState, Drive, JointIndex, Mechanism, Prismatic};
 
 /// Two moving bodies on one prismatic joint, which no other rigid joint holds.

@@ -2,8 +2,8 @@
 
 use super::pairs::Pair;
 use super::{Dynamics, Rigid};
-use crate::mechanism::rows::{Row, angle_row, prismatic_rows, revolute_rows};
-use crate::mechanism::telescope::Telescope;
+use crate::mechanism::equations::rows::{Row, angle_row, prismatic_rows, revolute_rows};
+use crate::mechanism::equations::telescope::Telescope;
 use crate::mechanism::{BodyState, Command, Evaluation, Mechanism, angle_near};
 use nalgebra::Vector3;
 
