@@ -1,9 +1,9 @@
 //! What the drives of a machine are told: to carry a body or a point along a path, or joint by joint.
 
-use super::build::{Built, located};
+use super::built::build::{Built, located};
+use super::built::names::joint_named;
 use super::commands::{Each, Source};
 use super::motion;
-use super::names::joint_named;
 use super::path::{self, NoTable};
 use crate::mechanism::motion::Motion;
 use crate::mechanism::{Attachment, Drive, Imposed, Mechanism, TelescopicLegs, angle_near};

@@ -6,28 +6,17 @@
 //! `--set`), and what would be right. What needs the mechanism to judge (reach, singularities,
 //! step against stiffness) is judged later, by way of [`Scenario::problem`].
 //!
-//! SI units throughout: m, kg, s, N, rad.
+//! `reading` makes sections of a text, `sections` says what they are, `validate` what is wrong with them; `write`, `annotate` and
+//! `schema` are texts of them again. SI units throughout: m, kg, s, N, rad.
 
 mod annotate;
-mod connected;
-mod document;
-mod lists;
 mod problem;
-mod read;
-mod read_motion;
-mod reader;
+mod reading;
 mod schema;
 mod sections;
 #[cfg(test)]
 mod tests;
-mod unusable;
 mod validate;
-mod validate_described;
-mod validate_guides;
-mod validate_laws;
-mod validate_names;
-mod validate_revolute;
-mod validate_shape;
 mod write;
 
 use std::path::{Path, PathBuf};
@@ -41,7 +30,7 @@ pub use sections::*;
 
 use crate::effects::Setting;
 use crate::measure::bounded;
-use document::{Document, Origins};
+use reading::document::{Document, Origins};
 
 /// The text of the scenario that is used when no file is given.
 pub const DEFAULT_TOML: &str = include_str!("../../assets/default.toml");
@@ -205,7 +194,7 @@ impl Scenario {
         if !refused.is_empty() {
             return Err(Problems(refused));
         }
-        let scenario = read::scenario(document)?;
+        let scenario = reading::read::scenario(document)?;
         scenario.validate()?;
         Ok(scenario)
     }

@@ -1,6 +1,6 @@
 //! A scenario as TOML with every default filled in.
 
-use super::validate_laws::used;
+use super::validate::laws::used;
 use super::{
     Body, Contact, Described, Drive, DriveMode, Environment, Ground, Joint, JointDrive, Joints,
     Legs, Mechanism, Motion, Native, Output, PerJoint, Scenario, Sensor, Sensors, Simulation,

@@ -6,9 +6,10 @@ use crate::mechanism::motion::looks;
 use crate::mechanism::{Actuator, Body, BodyState, Drive, JointIndex, Loop, Mechanism, Revolute};
 use crate::model::DrivenPath;
 use crate::scenario::{self, Law, Problem, Scenario};
+use crate::simulate::unacting;
 use crate::simulate::{
     Finding, Machine, OwnError, Severity, driven_path, findings_along, leg_use, neutral,
-    radial_clearance, unacting,
+    radial_clearance,
 };
 use serde::Serialize;
 

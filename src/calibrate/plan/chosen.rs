@@ -1,15 +1,15 @@
 //! From questions with numbers to the motion that answers them best: searches without clearance, then the best
 //! candidates with clearance, noise of their own and rivals fitted.
 
-use super::answer::{Answer, answered};
-use super::instruments::worth;
-use super::limits::measured;
-use super::motion::{Maker, Motion};
-use super::path::Way;
+use super::motions::limits::measured;
+use super::motions::motion::{Maker, Motion};
+use super::motions::path::Way;
+use super::motions::search::{Effort, best};
 use super::prepare::Prepared;
-use super::search::{Effort, best};
-use super::separation::{Posed, apart};
-use super::sight::{Seen, Sight};
+use super::questions::answer::{Answer, answered};
+use super::questions::instruments::worth;
+use super::questions::separation::{Posed, apart};
+use super::questions::sight::{Seen, Sight};
 use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 

@@ -1,15 +1,15 @@
 //! The whole way: from what is asked to a motion, and to how far apart it brings the models.
 
-use super::answer::{Answer, answered};
 use super::chosen::{Chosen, Ground, no_motion, search_twice};
-use super::instruments::{Ranked, missing, ranked};
-use super::motion::{Maker, Motion};
-use super::path::Way;
+use super::motions::motion::{Maker, Motion};
+use super::motions::path::Way;
+use super::motions::present::present;
 use super::posing::pose_all;
 use super::prepare::Prepared;
-use super::present::present;
-use super::separation::{Posed, named};
-use super::sight::Sight;
+use super::questions::answer::{Answer, answered};
+use super::questions::instruments::{Ranked, missing, ranked};
+use super::questions::separation::{Posed, named};
+use super::questions::sight::Sight;
 use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::SURE;

@@ -2,8 +2,8 @@
 
 use super::outcome::Outcome;
 use super::prepare::Prepared;
+use super::questions::separation::Posed;
 use super::report::{MOTION_FILE, PLANNED_FILE, Planned};
-use super::separation::Posed;
 use crate::calibrate::record::clean;
 use crate::calibrate::results::charts::{POINTS, panel, thinned};
 use crate::calibrate::results::result::CalibrateError;

@@ -1,10 +1,10 @@
 //! Questions with numbers: how large an effect has to be, and which values make rivals alike.
 
-use super::asked::Question;
-use super::motion::Motion;
+use super::motions::motion::Motion;
 use super::prepare::Prepared;
-use super::separation::{Posed, detectable, nearest, shows, sized};
-use super::sight::{Seen, Sight};
+use super::questions::asked::Question;
+use super::questions::separation::{Posed, detectable, nearest, shows, sized};
+use super::questions::sight::{Seen, Sight};
 use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 use crate::effects::Setting;

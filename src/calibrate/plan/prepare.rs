@@ -1,9 +1,9 @@
 //! A rig, its present motion, what is asked, and within which limits: everything that can be wrong is said here.
 
-use super::asked::{Question, between, detect, left_open};
-use super::limits::{self, GAIN, Given, Limit};
-use super::path::held;
-use super::search::Effort;
+use super::motions::limits::{self, GAIN, Given, Limit};
+use super::motions::path::held;
+use super::motions::search::Effort;
+use super::questions::asked::{Question, between, detect, left_open};
 use crate::calibrate::record::{Made, like};
 use crate::calibrate::results::result::{CalibrateError, control, refuse};
 use crate::calibrate::sensed::prepare::{Way, against_rig};

@@ -1,10 +1,10 @@
 //! `plan.json`, `motion.csv` and the folder of results.
 
-use super::answer::Answer;
-use super::limits::{Limit, units};
+use super::motions::limits::{Limit, units};
 use super::outcome::{Answered, Outcome, chance};
 use super::prepare::Prepared;
-use super::separation::Posed;
+use super::questions::answer::Answer;
+use super::questions::separation::Posed;
 use crate::calibrate::results::report::ActsOn;
 use crate::effects::Setting;
 use crate::report::number;

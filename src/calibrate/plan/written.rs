@@ -1,6 +1,6 @@
 //! From what was prepared to a folder with the plan, its motion, the rig with that motion and a page.
 
-use super::motion::rounded;
+use super::motions::motion::rounded;
 use super::outcome::{Outcome, plan};
 use super::page;
 use super::prepare::Prepared;

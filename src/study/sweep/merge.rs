@@ -1,7 +1,7 @@
 //! The parts of a sweep joined.
 
-use super::journal::{self, JOURNAL_FILE, Rows};
 use super::result::{Outcome, put, refuse_edited_table, write};
+use super::rows::journal::{self, JOURNAL_FILE, Rows};
 use super::{RECORD_FILE, Record, Shard, SweepError};
 use crate::study::files::SCENARIO_FILE;
 use crate::study::folder::Folder;

@@ -1,9 +1,10 @@
 //! The files of a sweep, from its rows: table, pictures, page, record.
 
-use super::journal::{JOURNAL_FILE, Rows};
-use super::record::sha256;
-use super::row::{Status, status};
-use super::{Identity, RECORD_FILE, Record, Shard, SweepError, page, pictures, statistics};
+use super::rows::journal::{JOURNAL_FILE, Rows};
+use super::rows::record::sha256;
+use super::rows::row::{Status, status};
+use super::rows::{page, pictures, statistics};
+use super::{Identity, RECORD_FILE, Record, Shard, SweepError};
 use crate::study::files::{PAGE_FILE, SCENARIO_FILE};
 use crate::study::folder::sync;
 use crate::study::run_error::{RunError, refused};
@@ -81,7 +82,7 @@ pub(super) fn write(
     put(place, TABLE_FILE, &table)?;
     #[cfg(feature = "parquet")]
     {
-        let table = super::parquet::table(identity, rows).map_err(refused(PARQUET_FILE))?;
+        let table = super::rows::parquet::table(identity, rows).map_err(refused(PARQUET_FILE))?;
         put(place, PARQUET_FILE, &table)?;
     }
     if statistics::has_starts(identity) {

@@ -1,7 +1,7 @@
 //! A sweep at work: what is not in the journal yet is run, on all threads.
 
-use super::journal::{JOURNAL_FILE, Journal, Rows, kept, lock};
 use super::result::{Outcome, PARQUET_FILE, TABLE_FILE, put, refuse_edited_table, write};
+use super::rows::journal::{JOURNAL_FILE, Journal, Rows, kept, lock};
 use super::{Identity, Plan, RECORD_FILE, Record, Shard, SweepError};
 use crate::study::files::SCENARIO_FILE;
 use crate::study::folder::Folder;

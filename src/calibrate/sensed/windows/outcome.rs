@@ -1,11 +1,11 @@
 //! The whole way of a calibration by windows: everything that may be wrong is fitted at once, what is not certain
 //! is left out, and the rest is fitted again.
 
-use super::bench::Bench;
-use super::eliminate::{Kept, eliminated, is_nothing};
-use super::fits::Search;
+use super::fitting::bench::Bench;
+use super::fitting::eliminate::{Kept, eliminated, is_nothing};
+use super::fitting::fits::Search;
+use super::fitting::sought::sought;
 use super::score::{Horizon, Score, score};
-use super::sought::sought;
 use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::results::report::Fitted as Estimate;
 use crate::calibrate::sensed::events::Event;

@@ -2,7 +2,7 @@
 //! units. Of machines with drives nothing is refused: their readings jump where a controller loses rows, and wrong
 //! units of efforts are not told from wrong drives.
 
-use super::bench::Bench;
+use super::fitting::bench::Bench;
 use super::outcome::horizons;
 use super::score::score;
 use crate::calibrate::sensed::recorded::recording::Recording;

@@ -1,6 +1,6 @@
 //! A model of a machine that nothing holds beside a recording: predictions over windows.
 
-use super::bench::{Bench, suits};
+use super::fitting::bench::{Bench, suits};
 use super::horizons::{HorizonErrors, RunZero};
 use super::outcome::{horizons, with};
 use super::plausible;

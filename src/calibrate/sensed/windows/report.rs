@@ -1,6 +1,6 @@
 //! What is written of a calibration by windows.
 
-use super::bench::Bench;
+use super::fitting::bench::Bench;
 use super::horizons::{HorizonErrors, RunZero, Windows};
 use super::outcome::{Certain, Judged, LeftOut, Outcome, calibrate, with};
 use super::score::Score;
@@ -85,7 +85,7 @@ pub(in crate::calibrate::sensed) fn remarks(runs: &[Recording]) -> Vec<String> {
 pub(super) fn input_columns(bench: &Bench) -> Vec<String> {
     let first = bench.runs.first();
     (0..bench.mechanism.actuators.len())
-        .filter_map(|drive| super::inputs::input_sensor(&bench.mechanism, first?, drive))
+        .filter_map(|drive| super::fitting::inputs::input_sensor(&bench.mechanism, first?, drive))
         .map(|sensor| bench.mechanism.sensors[sensor].column.clone())
         .collect()
 }
