@@ -16,13 +16,15 @@ mod legs;
 pub mod motion;
 mod parts;
 pub mod pendulum;
+mod reading;
+mod rotor;
+mod sensor;
 pub mod three_rpr;
 
 pub use drives::actuator::{Actuator, Drive};
 pub use drives::cascade::{Cascade, Held};
 pub use drives::command::{Command, Commands, Idle};
 pub use drives::reading_error::ReadingError;
-pub use drives::rotor::Rotor;
 pub use drives::transmission::Transmission;
 pub use dynamics::Dynamics;
 pub use equations::assembly::OpenJoint;
@@ -39,8 +41,9 @@ pub use parts::load::{Load, Memory, Situation};
 pub use parts::mark::Mark;
 pub use parts::names::{Axes, NamedPoint, Names, Use};
 pub use parts::oil::OilFilm;
-pub use parts::sensor::{Reads, Sensor, TrackerFrame};
 pub use parts::spring::{JointSpring, PointSpring, Stop};
+pub use rotor::Rotor;
+pub use sensor::{Reads, Sensor, TrackerFrame};
 
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What a mechanism is made of, as plain data: bodies and points of them, joints, springs, loads, sensors, and their names.
+//! What a mechanism is made of, as plain data: bodies and points of them, joints, springs, loads, and their names.
 
 pub(super) mod body;
 pub(super) mod joint;
@@ -6,5 +6,4 @@ pub(super) mod load;
 pub(super) mod mark;
 pub(super) mod names;
 pub(super) mod oil;
-pub(super) mod sensor;
 pub(super) mod spring;

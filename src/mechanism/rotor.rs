@@ -1,7 +1,7 @@
 //! Rotors of motors that a joint spins through a gear.
 
-use crate::mechanism::Revolute;
-use crate::mechanism::equations::rows::Row;
+use super::Revolute;
+use super::equations::rows::Row;
 use nalgebra::Vector3;
 
 /// A rotor on the ring's body that the joint spins through a gear. With ω_r and ω_j, the rates of the bodies of
@@ -26,7 +26,7 @@ impl Rotor {
 
     /// The rotor as a soft condition: the row `g·α = 0` that gives way by 1/J holds back with
     /// `λ = −J g·α`, the torque of its inertia.
-    pub(in crate::mechanism) fn row(&self, joint: &Revolute) -> Row {
+    pub(super) fn row(&self, joint: &Revolute) -> Row {
         Row {
             bodies: [joint.ring.body, joint.journal.body],
             jacobians: self.shares().map(|share| Vector3::z() * share),
@@ -36,7 +36,7 @@ impl Rotor {
     }
 
     /// Torques (N·m) on the bodies of ring and journal that angular accelerations (rad/s²) of them take.
-    pub(in crate::mechanism) fn torques(&self, turns: [f64; 2]) -> [f64; 2] {
+    pub(super) fn torques(&self, turns: [f64; 2]) -> [f64; 2] {
         let [ring, journal] = self.shares();
         let torque = self.inertia * (ring * turns[0] + journal * turns[1]);
         [ring * torque, journal * torque]

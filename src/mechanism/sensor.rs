@@ -1,6 +1,6 @@
 //! What measures a mechanism: what each sensor reads, in which column of a recording, and how exactly.
 
-use crate::mechanism::{BodyState, Evaluation, JointIndex, Mark, Mechanism};
+use super::{BodyState, Evaluation, JointIndex, Mark, Mechanism};
 use nalgebra::{UnitComplex, Vector2};
 
 /// What a sensor reads.
@@ -68,7 +68,7 @@ pub struct Sensor {
     pub offset: f64,
     /// Waves in what it reads of a joint: amplitude (the joint's unit) and phase (rad) of
     /// `amplitude · sin(q + phase)`, as of an encoder's disk beside its axis. Errors of an encoder that a
-    /// drive follows are not among them: the drive sees those, too ([`ReadingError`](crate::mechanism::ReadingError)).
+    /// drive follows are not among them: the drive sees those, too ([`ReadingError`](super::ReadingError)).
     pub waves: Vec<[f64; 2]>,
     /// The frames, one in the other, in which it shows x, y or an angle.
     pub frames: Vec<TrackerFrame>,

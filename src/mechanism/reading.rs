@@ -1,6 +1,6 @@
 //! What the encoder of a driven joint reads, against its true coordinate.
 
-use crate::mechanism::{Actuator, Command, Evaluation, Mechanism};
+use super::{Actuator, Command, Evaluation, Mechanism};
 
 impl Actuator {
     /// True length in m at a read length, and its first and second derivative by it.
@@ -45,7 +45,7 @@ impl Actuator {
 
 impl Mechanism {
     /// Length in m that the encoder of drive `index` shows at an instant. It sits at the
-    /// drive's end of the [`Transmission`](crate::mechanism::Transmission): play and give show there, beside the
+    /// drive's end of the [`Transmission`](super::Transmission): play and give show there, beside the
     /// errors of the encoder itself.
     pub fn encoder(&self, index: usize, now: &Evaluation) -> f64 {
         let actuator = &self.actuators[index];
