@@ -32,7 +32,7 @@ use std::process::ExitCode;
 #[command(name = "freeplay", version, arg_required_else_help = true, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: CliCommand,
 }
 
 const EXAMPLES: &str = "\
@@ -59,7 +59,7 @@ and SIGTERM (75 where the same command goes on from there: sweep, calibrate
 --self-test), 1 anything else.";
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     Run(runs::run::Arguments),
     Evaluate(runs::evaluate::Arguments),
     Study(recordings::study::Arguments),
@@ -88,27 +88,27 @@ pub fn main() -> ExitCode {
     let command = Cli::parse().command;
     shared::signals::watch();
     let done = match command {
-        Command::Run(arguments) => runs::run::main(&arguments),
-        Command::Evaluate(arguments) => runs::evaluate::main(&arguments),
-        Command::Study(arguments) => recordings::study::main(&arguments),
-        Command::Compare(arguments) => runs::compare::main(&arguments),
-        Command::Paper(arguments) => runs::paper::main(&arguments),
-        Command::Diff(arguments) => runs::diff::main(&arguments),
-        Command::Calibrate(arguments) => recordings::calibrate::main(&arguments),
-        Command::Predict(arguments) => recordings::predict::main(&arguments),
-        Command::Record(arguments) => recordings::record::main(&arguments),
-        Command::Plan(arguments) => recordings::plan::main(&arguments),
-        Command::Check(arguments) => files::check::main(&arguments),
-        Command::Sweep(arguments) => runs::sweep::main(&arguments),
-        Command::Merge(arguments) => runs::merge::main(&arguments),
-        Command::Effects(arguments) => files::effects::main(&arguments),
-        Command::Laws(arguments) => files::laws::main(&arguments),
-        Command::Wear(arguments) => runs::wear::main(&arguments),
-        Command::Expand(arguments) => files::expand::main(&arguments),
-        Command::Init(arguments) => files::init::main(&arguments),
-        Command::Schema(arguments) => files::schema::main(&arguments),
-        Command::Man(arguments) => files::man::main(&arguments),
-        Command::Completions(arguments) => files::completions::main(&arguments),
+        CliCommand::Run(arguments) => runs::run::main(&arguments),
+        CliCommand::Evaluate(arguments) => runs::evaluate::main(&arguments),
+        CliCommand::Study(arguments) => recordings::study::main(&arguments),
+        CliCommand::Compare(arguments) => runs::compare::main(&arguments),
+        CliCommand::Paper(arguments) => runs::paper::main(&arguments),
+        CliCommand::Diff(arguments) => runs::diff::main(&arguments),
+        CliCommand::Calibrate(arguments) => recordings::calibrate::main(&arguments),
+        CliCommand::Predict(arguments) => recordings::predict::main(&arguments),
+        CliCommand::Record(arguments) => recordings::record::main(&arguments),
+        CliCommand::Plan(arguments) => recordings::plan::main(&arguments),
+        CliCommand::Check(arguments) => files::check::main(&arguments),
+        CliCommand::Sweep(arguments) => runs::sweep::main(&arguments),
+        CliCommand::Merge(arguments) => runs::merge::main(&arguments),
+        CliCommand::Effects(arguments) => files::effects::main(&arguments),
+        CliCommand::Laws(arguments) => files::laws::main(&arguments),
+        CliCommand::Wear(arguments) => runs::wear::main(&arguments),
+        CliCommand::Expand(arguments) => files::expand::main(&arguments),
+        CliCommand::Init(arguments) => files::init::main(&arguments),
+        CliCommand::Schema(arguments) => files::schema::main(&arguments),
+        CliCommand::Man(arguments) => files::man::main(&arguments),
+        CliCommand::Completions(arguments) => files::completions::main(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

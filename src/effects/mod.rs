@@ -17,12 +17,12 @@ mod target;
 mod twins;
 mod unnamed;
 
-pub use kind::{Joints, Kind, Parameter, Range, Scan, Senses, Targets};
+pub use kind::{JointKinds, Kind, Parameter, Scan, ScanRange, Senses, Targets};
 pub use setting::{Setting, Wrong};
 pub use target::Target;
 pub use unnamed::efforts::{Efforts, Over};
 pub use unnamed::history::{History, OverTime};
-pub use unnamed::{DependsOn, Map, Motion, UNNAMED};
+pub use unnamed::{DependsOn, Map, MapMotion, UNNAMED};
 
 /// Every effect there is, in the order in which they are listed.
 pub const ALL: &[&Kind] = &[

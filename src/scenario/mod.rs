@@ -128,7 +128,7 @@ pub struct Scenario {
     /// `[joints]`
     pub joints: Joints,
     /// `[contact]`
-    pub contact: Contact,
+    pub contact: ContactKeys,
     /// `[native]`
     pub native: Native,
     /// `[drive]`: all drives, or those that a described machine's `[[drive]]`s leave out.
@@ -142,7 +142,7 @@ pub struct Scenario {
     /// `[motion]`
     pub motion: Motion,
     /// What a described machine's `[motion]` moves.
-    pub target: Option<Target>,
+    pub target: Option<MotionTarget>,
     /// `[simulation]`
     pub simulation: Simulation,
     /// `[[effect]]`, any number of them: what acts on the machine beside what is declared above.
@@ -216,7 +216,7 @@ impl Scenario {
     }
 
     /// Where `[columns]` says that the time of recordings stands; none where nothing is said.
-    pub fn time_column(&self) -> Option<crate::measure::log::Source> {
+    pub fn time_column(&self) -> Option<crate::measure::log::ColumnSource> {
         self.columns.as_ref()?.source("t")
     }
 
@@ -277,7 +277,7 @@ impl Scenario {
         &self,
         described: Described,
         motion: Motion,
-        target: Option<Target>,
+        target: Option<MotionTarget>,
     ) -> Scenario {
         let mechanism = Mechanism::Described(Box::new(described));
         Scenario { mechanism, motion, target, ..self.clone() }

@@ -23,5 +23,5 @@ pub use beforehand::unacting::unacting;
 pub use measured::{measured, measured_until};
 pub use provenance::Provenance;
 pub use summary::{JointSummary, Recorder, Summary};
-pub use timeseries::{Columns, TimeSeries};
+pub use timeseries::{RowColumns, TimeSeries};
 pub use watched::{Balance, OwnError, Watched};

@@ -12,7 +12,7 @@
 //!
 //! Everything about the machine is read off its [`Mechanism`], effects included.
 
-use super::measured_dynamics::{Machine, PlatformMotion};
+use super::measured_dynamics::{MeasuredMachine, PlatformMotion};
 use super::spectrum::{Signal, fast_length};
 use crate::measure::filter::{ZeroPhase, derivative};
 use crate::measure::log::{Channel, Log};
@@ -143,7 +143,7 @@ impl Lens {
     /// The nine residuals: servo, closure, dynamics, of each leg in turn.
     pub fn residuals(&self, mechanism: &Mechanism, rows: Range<usize>) -> Vec<Signal> {
         let mut signals = self.nothing();
-        let mut machine = Machine::new(mechanism);
+        let mut machine = MeasuredMachine::new(mechanism);
         let mut commands = [Command::default(); 3];
         for i in rows.step_by(self.stride) {
             let t = i as f64 * self.interval;

@@ -5,14 +5,14 @@ use crate::mechanism::{Bearing, Body, BodyState, Mechanism, Revolute, Situation}
 use nalgebra::{Matrix3, UnitComplex, Vector2, Vector3};
 
 /// A 3-RPR at measured poses.
-pub struct Machine<'a> {
+pub struct MeasuredMachine<'a> {
     mechanism: &'a Mechanism,
     states: Vec<BodyState>,
     wrenches: Vec<Vector3<f64>>,
 }
 
 /// What the dynamics say at one instant.
-pub struct Look {
+pub struct DynamicsLook {
     /// Force of each drive by inverse dynamics, N.
     pub forces: [f64; 3],
     /// By how much the journals' leaning lengthens each leg as a vector, m.
@@ -44,7 +44,7 @@ type Rod = Option<[f64; 2]>;
 
 /// How a leg lies and turns at one instant.
 #[derive(Clone, Copy)]
-struct Leg {
+struct MeasuredLeg {
     /// Unit vectors along it and across.
     axes: [Vector2<f64>; 2],
     /// From ring to ring in m, and its rates.
@@ -56,7 +56,7 @@ struct Leg {
     spin_rate: f64,
 }
 
-impl Leg {
+impl MeasuredLeg {
     /// The leg that leads to a corner of the platform with this motion from a base at rest.
     fn between(base: Vector2<f64>, [corner, rate, second]: [Vector2<f64>; 3]) -> Self {
         let d = corner - base;
@@ -78,7 +78,7 @@ impl Leg {
 }
 
 /// What friction in joints makes of the balance at one instant.
-struct Rubbing<'a> {
+struct JointRubbing<'a> {
     /// Forces of each leg's joints in N, base and top.
     joint_forces: &'a [[Vector2<f64>; 2]; 3],
     /// The platform's rate of turning in rad/s.
@@ -86,7 +86,7 @@ struct Rubbing<'a> {
 }
 
 /// What keeps bodies in balance.
-struct Balance {
+struct BodyBalance {
     /// Force of each rod's end on the platform, along and across its leg, N.
     along: Vector3<f64>,
     across: [f64; 3],
@@ -96,7 +96,7 @@ fn turned(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 
-impl<'a> Machine<'a> {
+impl<'a> MeasuredMachine<'a> {
     pub fn new(mechanism: &'a Mechanism) -> Self {
         let bodies = mechanism.bodies.len();
         Self {
@@ -125,19 +125,21 @@ impl<'a> Machine<'a> {
         motion: PlatformMotion,
         rods: [Rod; 3],
         measured: [f64; 3],
-    ) -> Look {
+    ) -> DynamicsLook {
         let mut needed = vec![Vector3::zeros(); self.mechanism.bodies.len()];
         self.move_platform(&motion, &mut needed);
         let legs = [0, 1, 2].map(|leg| self.move_leg(leg, &motion, rods[leg], &mut needed));
         self.take_off_given(t, &mut needed);
         // Friction in the joints depends on their forces: once without, once with it.
         let mut joint_forces = [[Vector2::zeros(); 2]; 3];
-        let mut look = Look { forces: [0.0; 3], leans: [Vector2::zeros(); 3] };
+        let mut look = DynamicsLook { forces: [0.0; 3], leans: [Vector2::zeros(); 3] };
         let rubbing = self.mechanism.revolutes.iter().any(|joint| friction(joint).is_some());
         for pass in 0..=usize::from(rubbing) {
-            let rubbing = (pass > 0)
-                .then_some(Rubbing { joint_forces: &joint_forces, platform_spin: motion.rate.z });
-            let Balance { along, across } = self.balance(&legs, &needed, rubbing);
+            let rubbing = (pass > 0).then_some(JointRubbing {
+                joint_forces: &joint_forces,
+                platform_spin: motion.rate.z,
+            });
+            let BodyBalance { along, across } = self.balance(&legs, &needed, rubbing);
             for leg in 0..3 {
                 let [u, n] = legs[leg].axes;
                 let joint = &self.mechanism.prismatics[leg];
@@ -179,14 +181,14 @@ impl<'a> Machine<'a> {
         motion: &PlatformMotion,
         rod: Rod,
         needed: &mut [Vector3<f64>],
-    ) -> Leg {
+    ) -> MeasuredLeg {
         let mechanism = self.mechanism;
         let joint = &mechanism.prismatics[leg];
         let base = mechanism.revolutes[leg].ring.point;
         let top = mechanism.revolutes[leg + 3].ring.point;
         let reference = mechanism.bodies[mechanism.output].reference;
-        let moved = Leg::between(base, motion.of(top - reference));
-        let Leg { axes: [u, n], span, spin, spin_rate, .. } = moved;
+        let moved = MeasuredLeg::between(base, motion.of(top - reference));
+        let MeasuredLeg { axes: [u, n], span, spin, spin_rate, .. } = moved;
         let rotation = UnitComplex::from_cos_sin_unchecked(u.x, u.y);
         // Distances of the centres of mass from A, and their rates along the leg.
         let parts = [
@@ -227,17 +229,17 @@ impl<'a> Machine<'a> {
     /// What legs have to do for all bodies to move like this.
     fn balance(
         &self,
-        legs: &[Leg; 3],
+        legs: &[MeasuredLeg; 3],
         needed: &[Vector3<f64>],
-        rubbing: Option<Rubbing>,
-    ) -> Balance {
+        rubbing: Option<JointRubbing>,
+    ) -> BodyBalance {
         let mechanism = self.mechanism;
         let centre = self.states[mechanism.output].position;
         let mut matrix = Matrix3::zeros();
         let mut rhs = needed[mechanism.output];
         let mut across = [0.0; 3];
         for leg in 0..3 {
-            let Leg { axes: [u, n], span, spin, .. } = legs[leg];
+            let MeasuredLeg { axes: [u, n], span, spin, .. } = legs[leg];
             let base = mechanism.revolutes[leg].ring.point;
             let mut moment = 0.0;
             let joint = &mechanism.prismatics[leg];
@@ -245,7 +247,7 @@ impl<'a> Machine<'a> {
                 let arm = self.states[body].position - base;
                 moment += arm.perp(&needed[body].xy()) + needed[body].z;
             }
-            if let Some(Rubbing { joint_forces, platform_spin }) = rubbing {
+            if let Some(JointRubbing { joint_forces, platform_spin }) = rubbing {
                 let torques =
                     [(leg, spin), (leg + 3, spin - platform_spin)].map(|(joint, slip)| {
                         let force = joint_forces[leg][joint / 3].norm();
@@ -262,7 +264,7 @@ impl<'a> Machine<'a> {
             rhs += Vector3::new(push.x, push.y, arm.perp(&push));
             matrix.set_column(leg, &-Vector3::new(u.x, u.y, arm.perp(&u)));
         }
-        Balance { along: matrix.lu().solve(&rhs).unwrap_or_default(), across }
+        BodyBalance { along: matrix.lu().solve(&rhs).unwrap_or_default(), across }
     }
 
     /// By how much a joint's journal leans from its ring's centre under a force (N), m.

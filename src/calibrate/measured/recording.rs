@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// A log and where it came from.
 #[derive(Clone, Debug)]
-pub struct Recording {
+pub struct LegsRecording {
     /// The file as the user called it.
     pub path: String,
     /// What it holds; its name is that of the file, or the whole path where names are not unique.
@@ -16,16 +16,16 @@ pub struct Recording {
 ///
 /// # Errors
 /// What [`Log::read`] finds.
-pub fn read_one(path: &Path) -> Result<Recording, LogError> {
+pub fn read_one(path: &Path) -> Result<LegsRecording, LogError> {
     let log = Log::read(path, &Channel::all(3))?;
-    Ok(Recording { path: path.display().to_string(), log })
+    Ok(LegsRecording { path: path.display().to_string(), log })
 }
 
 /// Reads logs. Everything wrong with all of them is found before any is refused.
 ///
 /// # Errors
 /// What [`read_one`] finds, file by file.
-pub fn read(paths: &[&Path]) -> Result<Vec<Recording>, Vec<LogError>> {
+pub fn read(paths: &[&Path]) -> Result<Vec<LegsRecording>, Vec<LogError>> {
     let (mut recordings, mut errors) = (Vec::new(), Vec::new());
     for path in paths {
         match read_one(path) {

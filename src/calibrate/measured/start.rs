@@ -70,7 +70,7 @@ pub type Kicks = SVector<f64, KICKS>;
 
 /// How a recorded machine swings when its log begins.
 #[derive(Clone, Debug)]
-pub struct Start {
+pub struct SwingStart {
     /// The kicks, or none where the machine was let go as it is said to have been.
     pub kicks: Option<Kicks>,
     /// The machine with that start.
@@ -80,12 +80,12 @@ pub struct Start {
     /// Whether the machine swings as recorded, rather than with another frequency or phase.
     pub shown: bool,
     /// What else is known of kicks.
-    seen: Option<Seen>,
+    seen: Option<KickedMachine>,
 }
 
 /// What is nearly the same for all models of a machine that is kicked.
 #[derive(Clone, Debug)]
-struct Seen {
+struct KickedMachine {
     /// What kicks change of what is not met of the recorded swing.
     response: DMatrix<f64>,
     /// Squares of what a release and a machine at rest leave of it.
@@ -93,7 +93,7 @@ struct Seen {
     quiet: f64,
 }
 
-impl Seen {
+impl KickedMachine {
     /// Whether kicks that leave so much, as a square, are of the recorded swing.
     fn tracked(&self, left: f64) -> bool {
         left < TRACKED * (self.quiet + self.let_go)
@@ -105,7 +105,7 @@ impl Seen {
     }
 }
 
-impl Start {
+impl SwingStart {
     /// A start that nothing is known of, but how the machine was let go.
     ///
     /// # Errors
@@ -142,11 +142,11 @@ impl Load for Kicked {
 
 /// `f = −D v` on the output.
 #[derive(Debug)]
-struct Calming {
+struct CalmedOutput {
     damping: Vector3<f64>,
 }
 
-impl Load for Calming {
+impl Load for CalmedOutput {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let force = -self.damping.component_mul(&at.mechanism.output_state(at.states).twist);
         at.push_output(force.xy(), force.z, wrenches);
@@ -170,7 +170,7 @@ fn inertia(machine: &Mechanism) -> Vector3<f64> {
 pub fn still(simulator: &Simulator, released: &Mechanism) -> Result<Mechanism, Halt> {
     let mut calmed = released.clone();
     let damping = inertia(released) * (2.0 * TAU * SWING);
-    calmed.loads.push(Arc::new(Calming { damping }));
+    calmed.loads.push(Arc::new(CalmedOutput { damping }));
     let duration = LEAD - SHORT;
     let mut machine = released.clone();
     simulator.run(&calmed, Schedule { duration, interval: duration }, &mut |instant| {
@@ -195,12 +195,12 @@ pub fn kicked(still: &Mechanism, kicks: &Kicks) -> Mechanism {
 }
 
 /// How well starts meet the swing that a log shows.
-struct Judge<'a> {
+struct SwingJudge<'a> {
     simulator: &'a Simulator,
     log: Log,
 }
 
-impl Judge<'_> {
+impl SwingJudge<'_> {
     /// What is not met, in units of noise.
     fn look(&self, machine: &Mechanism) -> Result<DVector<f64>, Halt> {
         let simulated = self.simulator.record(machine, &self.log, 0)?;
@@ -223,8 +223,8 @@ impl Judge<'_> {
     }
 
     /// Better kicks by one step, if they then show the recorded swing.
-    fn first(&self, released: &Start, kicks: Kicks) -> Result<Option<Kicks>, Halt> {
-        let Start { machine, still, .. } = released;
+    fn first(&self, released: &SwingStart, kicks: Kicks) -> Result<Option<Kicks>, Halt> {
+        let SwingStart { machine, still, .. } = released;
         let square = |left: &DVector<f64>| left.norm_squared();
         let limit = TRACKED * (square(&self.look(still)?) + square(&self.look(machine)?));
         let left = self.look(&kicked(still, &kicks))?;
@@ -242,8 +242,8 @@ impl Judge<'_> {
         still: &Mechanism,
         mut kicks: Kicks,
         mut left: DVector<f64>,
-        seen: Seen,
-    ) -> Result<Option<Start>, Halt> {
+        seen: KickedMachine,
+    ) -> Result<Option<SwingStart>, Halt> {
         for _ in 0..STEPS {
             let change = step(&seen.response, &left);
             let promised = (&left + &seen.response * change).norm_squared();
@@ -261,7 +261,7 @@ impl Judge<'_> {
         }
         let left = left.norm_squared();
         let better = left <= SLACK * seen.let_go && seen.tracked(left);
-        Ok(better.then(|| Start {
+        Ok(better.then(|| SwingStart {
             kicks: Some(kicks),
             machine: kicked(still, &kicks),
             still: still.clone(),
@@ -289,13 +289,13 @@ pub fn as_seen(
     simulator: &Simulator,
     released: Mechanism,
     log: &Log,
-    like: Option<&Start>,
+    like: Option<&SwingStart>,
     same: bool,
-) -> Result<Start, Halt> {
+) -> Result<SwingStart, Halt> {
     let still = still(simulator, &released)?;
     let judge = |seen: f64| {
         let log = log.part(0..((seen / log.interval) as usize).min(log.samples));
-        Judge { simulator, log }
+        SwingJudge { simulator, log }
     };
     let whole = judge(SEEN);
     let known = like.and_then(|like| Some((like.kicks?, like.seen.clone()?)));
@@ -312,13 +312,13 @@ pub fn as_seen(
         }
     }
     let left = release.map_or_else(|| whole.look(&released), Ok)?;
-    let released = Start { kicks: None, machine: released, still, shown: true, seen: None };
+    let released = SwingStart { kicks: None, machine: released, still, shown: true, seen: None };
     if met(&left) {
         return Ok(released);
     }
     let (let_go, quiet) = (left.norm_squared(), whole.look(&released.still)?.norm_squared());
-    let seen = Seen { response: DMatrix::zeros(0, 0), let_go, quiet };
-    let released = Start { shown: seen.shown(let_go), ..released };
+    let seen = KickedMachine { response: DMatrix::zeros(0, 0), let_go, quiet };
+    let released = SwingStart { shown: seen.shown(let_go), ..released };
     let still = &released.still;
     let mut kicks = Kicks::zeros();
     for judge in FIRST.map(judge) {
@@ -326,7 +326,7 @@ pub fn as_seen(
         kicks = found;
     }
     let left = whole.look(&kicked(still, &kicks))?;
-    let seen = Seen { response: whole.response(still, &kicks, &left)?, ..seen };
+    let seen = KickedMachine { response: whole.response(still, &kicks, &left)?, ..seen };
     Ok(whole.nearer(still, kicks, left, seen)?.unwrap_or(released))
 }
 
@@ -353,7 +353,7 @@ mod tests {
     /// it twenty times what a model pays that has lost the swing: it was taken for one that shows it.
     #[test]
     fn a_start_that_misses_a_third_of_the_swing_has_lost_it() {
-        let seen = |let_go, quiet| Seen { response: DMatrix::zeros(0, 0), let_go, quiet };
+        let seen = |let_go, quiet| KickedMachine { response: DMatrix::zeros(0, 0), let_go, quiet };
         let worn = seen(14_100.0, 63_131.0);
         assert!(worn.tracked(14_100.0) && !worn.shown(14_100.0));
         // Kicks that are of the recorded swing, and leave half of its square.

@@ -21,6 +21,6 @@ mod written;
 pub use motions::{course, limits, motion, path, search, series};
 pub use questions::{answer, asked, instruments, separation, sight};
 
-pub use prepare::{Prepared, Request, prepare};
+pub use prepare::{PlanRequest, PreparedPlan, prepare};
 pub use report::{PLAN_FILE, Planned};
-pub use written::{Done, into_folder};
+pub use written::{FinishedPlan, into_folder};

@@ -1,9 +1,9 @@
 //! The pictures of a calibration.
 
-use super::outcome::Outcome;
+use super::outcome::LegsOutcome;
 use super::unnamed_picture;
 use crate::calibrate::measured::recording::stem;
-use crate::calibrate::values::model::{Case, Segment};
+use crate::calibrate::values::model::{LegsCase, LegsSegment};
 use crate::effects::Setting;
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log};
@@ -58,7 +58,7 @@ impl Charts {
 }
 
 /// Draws all pictures.
-pub fn draw(case: &Case, outcome: &Outcome) -> Result<Charts, RunError> {
+pub fn draw(case: &LegsCase, outcome: &LegsOutcome) -> Result<Charts, RunError> {
     let mut runs = Vec::new();
     for (i, run) in case.runs.iter().take(DRAWN).enumerate() {
         let role = if i == 0 { "calibration" } else { "validation" };
@@ -175,7 +175,10 @@ pub(in crate::calibrate) fn thinned(points: &[(f64, f64)], count: usize) -> Vec<
 
 /// The residual of the calibration run's dynamics over length, speed and acceleration, actuator by
 /// actuator, and the share of its variance that each explains.
-fn dependence(case: &Case, outcome: &Outcome) -> Result<(Vec<Picture>, Shares), ReportError> {
+fn dependence(
+    case: &LegsCase,
+    outcome: &LegsOutcome,
+) -> Result<(Vec<Picture>, Shares), ReportError> {
     let run = &case.runs[0];
     let rows = run.rows();
     let effects: Vec<Setting> = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
@@ -235,9 +238,9 @@ fn dependence(case: &Case, outcome: &Outcome) -> Result<(Vec<Picture>, Shares), 
 }
 
 /// The dynamics residual of each actuator on the calibration run in N, low-passed.
-fn residual(case: &Case, effects: &[Setting]) -> [Vec<f64>; 3] {
+fn residual(case: &LegsCase, effects: &[Setting]) -> [Vec<f64>; 3] {
     let run = &case.runs[0];
-    let segment = Segment { run: 0, rows: run.rows() };
+    let segment = LegsSegment { run: 0, rows: run.rows() };
     let interval = run.log.interval * run.lens.stride() as f64;
     let filter = ZeroPhase::butterworth(4, CORNER, interval);
     // A model that could be simulated can be looked at.

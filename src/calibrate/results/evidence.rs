@@ -1,12 +1,12 @@
 //! What speaks for an effect, and what does as well.
 
-use super::outcome::{Outcome, Verdict};
+use super::outcome::{LegsOutcome, Verdict};
 use crate::calibrate::rounds::screen::Scored;
-use crate::calibrate::rounds::way::{Round, name};
+use crate::calibrate::rounds::way::{LegsRound, name};
 use crate::effects::Setting;
 
 /// One sentence on what an effect rests on.
-pub fn evidence(outcome: &Outcome, effect: &Setting) -> String {
+pub fn evidence(outcome: &LegsOutcome, effect: &Setting) -> String {
     if let (Some(_), Some(described)) = (effect.map(), &outcome.described) {
         let depends = described.others.first().map_or("", |(class, _)| class.words());
         return format!(
@@ -52,7 +52,7 @@ pub fn evidence(outcome: &Outcome, effect: &Setting) -> String {
 
 /// Effects that explain these recordings as well as one that was found, but for chance; none where another
 /// was found after it, beside which they did worse.
-pub fn as_good<'a>(outcome: &'a Outcome, effect: &Setting) -> Vec<&'a Setting> {
+pub fn as_good<'a>(outcome: &'a LegsOutcome, effect: &Setting) -> Vec<&'a Setting> {
     let last = outcome.rounds.iter().rev().find(|round| round.added.is_some());
     let own = last.filter(|round| round.added.as_ref().is_some_and(|added| added.is(effect)));
     let mut twins: Vec<&Setting> = Vec::new();
@@ -66,7 +66,7 @@ pub fn as_good<'a>(outcome: &'a Outcome, effect: &Setting) -> Vec<&'a Setting> {
 }
 
 /// The round that added an effect, and what it brought.
-fn added<'a>(outcome: &'a Outcome, effect: &Setting) -> Option<(&'a Round, &'a Scored)> {
+fn added<'a>(outcome: &'a LegsOutcome, effect: &Setting) -> Option<(&'a LegsRound, &'a Scored)> {
     let round =
         outcome.rounds.iter().find(|r| r.added.as_ref().is_some_and(|added| added.is(effect)))?;
     let own = round.ranking.iter().find(|scored| scored.simulated && scored.effect.is(effect))?;

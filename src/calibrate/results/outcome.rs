@@ -1,20 +1,20 @@
 //! The whole way: from a rig and its logs to a verdict, a calibrated model and its errors.
 
-use crate::calibrate::rounds::left::{Left, is_noise, left};
-use crate::calibrate::rounds::search::{Found, search};
-use crate::calibrate::rounds::unnamed::{Described, describe};
-use crate::calibrate::rounds::way::{Round, Way};
+use crate::calibrate::rounds::left::{LegsLeft, is_noise, left};
+use crate::calibrate::rounds::search::{LegsFound, search};
+use crate::calibrate::rounds::unnamed::{DescribedMap, describe};
+use crate::calibrate::rounds::way::{LegsRound, Way};
 use crate::calibrate::values::errors::{self, ChannelError};
-use crate::calibrate::values::fit::{self, Fit};
-use crate::calibrate::values::model::{Case, Run, SearchError, Segment};
-use crate::calibrate::values::settle::{Question, Settled};
+use crate::calibrate::values::fit::{self, LegsFit};
+use crate::calibrate::values::model::{LegsCase, LegsRun, LegsSegment, SearchError};
+use crate::calibrate::values::settle::{FitData, Settled};
 use crate::effects::{Scan, Setting, UNNAMED};
 use crate::measure::log::Log;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// Simulations that a calibration takes at most ([`Case::simulated`]): what two slow cores do in two minutes, at
+/// Simulations that a calibration takes at most ([`LegsCase::simulated`]): what two slow cores do in two minutes, at
 /// 0.6 s for a run of three seconds each.
 pub const MOST: f64 = 400.0;
 
@@ -43,7 +43,7 @@ impl Verdict {
 
 /// A fitted value.
 #[derive(Clone, Debug)]
-pub struct Estimate {
+pub struct ValueEstimate {
     /// Name of the parameter.
     pub name: &'static str,
     /// Its value.
@@ -52,7 +52,7 @@ pub struct Estimate {
     pub std: f64,
 }
 
-impl Estimate {
+impl ValueEstimate {
     /// The interval that holds the true value 95 times in 100.
     pub fn ci95(&self) -> [f64; 2] {
         [self.value - 1.96 * self.std, self.value + 1.96 * self.std]
@@ -61,26 +61,26 @@ impl Estimate {
 
 /// A calibration.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct LegsOutcome {
     /// What it comes to.
     pub verdict: Verdict,
     /// The effects that were found, each with its estimates.
-    pub effects: Vec<(Setting, Vec<Estimate>)>,
+    pub effects: Vec<(Setting, Vec<ValueEstimate>)>,
     /// What was described where nothing could be named.
-    pub described: Option<Described>,
+    pub described: Option<DescribedMap>,
     /// What is left of the residuals under the declared and under the calibrated model.
-    pub before: Vec<Left>,
+    pub before: Vec<LegsLeft>,
     /// The same under the named effects alone.
-    pub after: Vec<Left>,
+    pub after: Vec<LegsLeft>,
     /// Round by round.
-    pub rounds: Vec<Round>,
+    pub rounds: Vec<LegsRound>,
     /// Errors, run by run and channel by channel.
     pub errors: Vec<ChannelError>,
     /// What the calibrated model predicts, run by run.
     pub predictions: Vec<Log>,
     /// What the declared model predicts, run by run.
     pub declared: Vec<Log>,
-    /// Simulations that it took, in runs like the recorded ones ([`Case::simulated`]).
+    /// Simulations that it took, in runs like the recorded ones ([`LegsCase::simulated`]).
     pub simulations: usize,
 }
 
@@ -90,23 +90,23 @@ pub struct Outcome {
 /// # Errors
 /// A rig that cannot be simulated.
 pub fn calibrate(
-    case: &Case,
+    case: &LegsCase,
     without: &[&str],
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Outcome, SearchError> {
-    let whole = |run: usize| Segment { run, rows: case.runs[run].rows() };
+) -> Result<LegsOutcome, SearchError> {
+    let whole = |run: usize| LegsSegment { run, rows: case.runs[run].rows() };
     let (on, hold) = match case.runs.len() {
         1 => {
             let rows = case.runs[0].rows();
             let middle = rows.start + rows.len() / 2;
             let [first, second] = [rows.start..middle, middle..rows.end];
-            (vec![Segment { run: 0, rows: first }], vec![Segment { run: 0, rows: second }])
+            (vec![LegsSegment { run: 0, rows: first }], vec![LegsSegment { run: 0, rows: second }])
         }
         count => (vec![whole(0)], (1..count).map(whole).collect()),
     };
-    let question = Question { on: &on, hold: &hold, without };
+    let question = FitData { on: &on, hold: &hold, without };
     let simulated = case.simulated();
-    let Found { best, declared, certain } = search(case, &question, tell)?;
+    let LegsFound { best, declared, certain } = search(case, &question, tell)?;
     let before = left(case, &question, &declared);
     let after = left(case, &question, &best.model);
     let noise = if is_noise(&after) {
@@ -138,10 +138,10 @@ pub fn calibrate(
         }
     };
     let effects = last.fit.effects.iter().map(canonical).collect();
-    let last = Settled { fit: Fit { effects, ..last.fit }, ..last };
+    let last = Settled { fit: LegsFit { effects, ..last.fit }, ..last };
     let estimates = estimates(&last, &on);
-    let Prediction { declared, predicted, errors } = prediction;
-    Ok(Outcome {
+    let TwoPredictions { declared, predicted, errors } = prediction;
+    Ok(LegsOutcome {
         verdict,
         effects: last.fit.effects.iter().cloned().zip(estimates).collect(),
         described,
@@ -156,7 +156,7 @@ pub fn calibrate(
 }
 
 /// What two models predict, and by how much they miss.
-struct Prediction {
+struct TwoPredictions {
     /// Of the declared model, `[run][replica]`.
     declared: Vec<Vec<Log>>,
     /// The same of the calibrated one.
@@ -169,7 +169,7 @@ struct Prediction {
 /// another there gives the platform another swing, and missed recordings by 3.3 floors.
 pub const MET: f64 = 2.0;
 
-impl Prediction {
+impl TwoPredictions {
     /// Whether the calibrated model meets the runs that it is judged by.
     fn met(&self) -> bool {
         errors::judged(&self.errors).iter().all(|error| error.after < MET * error.floor)
@@ -177,17 +177,21 @@ impl Prediction {
 }
 
 /// What models predict of all runs.
-fn predicted(case: &Case, declared: &Settled, model: &Settled) -> Result<Prediction, SearchError> {
+fn predicted(
+    case: &LegsCase,
+    declared: &Settled,
+    model: &Settled,
+) -> Result<TwoPredictions, SearchError> {
     let effects: Vec<Setting> = model.fit.effects.iter().map(canonical).collect();
     let predicted = case.predictions(&effects, &model.baseline)?;
     let declared =
         if effects.is_empty() { predicted.clone() } else { declared.baseline.logs.to_vec() };
     let role = |run: usize| if run == 0 { "calibration" } else { "validation" };
-    let errors = case.runs.iter().enumerate().flat_map(|(i, run): (usize, &Run)| {
+    let errors = case.runs.iter().enumerate().flat_map(|(i, run): (usize, &LegsRun)| {
         errors::of_run(case, &run.log, role(i), &declared[i], &predicted[i])
     });
     let errors = errors.collect();
-    Ok(Prediction { declared, predicted, errors })
+    Ok(TwoPredictions { declared, predicted, errors })
 }
 
 /// The same repeating effects in one of the many ways to write them: the first amplitude is not negative,
@@ -208,14 +212,14 @@ pub(in crate::calibrate) fn canonical(effect: &Setting) -> Setting {
 /// What is certain although something else remains, and a map of that: of all models whose effects are
 /// certain, the declared one among them, the one that explains most together with its map.
 fn remaining(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     declared: Way,
     mut certain: Vec<Way>,
-) -> Result<(Way, Option<Described>), SearchError> {
+) -> Result<(Way, Option<DescribedMap>), SearchError> {
     certain.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     certain.truncate(BASES);
-    let mut best: Option<(Way, Option<Described>)> = None;
+    let mut best: Option<(Way, Option<DescribedMap>)> = None;
     for way in [declared].into_iter().chain(certain) {
         let described = if question.without.contains(&UNNAMED) {
             None
@@ -242,7 +246,7 @@ const WORTH_A_MAP: f64 = 0.05;
 
 /// Estimates of each effect's values: `(JᵀJ)⁻¹` in units of noise, wider where the fit's own residual
 /// is larger than noise, and where rattle pulls the values further than noise of one frequency by itself.
-fn estimates(model: &Settled, on: &[Segment]) -> Vec<Vec<Estimate>> {
+fn estimates(model: &Settled, on: &[LegsSegment]) -> Vec<Vec<ValueEstimate>> {
     let count = fit::values(&model.fit.effects).len();
     let mean_square = model.fit.chi2 / (model.fit.white.len().saturating_sub(count).max(1)) as f64;
     let jacobian = model.fit.jacobian.as_ref().filter(|_| count > 0);
@@ -268,7 +272,10 @@ fn estimates(model: &Settled, on: &[Segment]) -> Vec<Vec<Estimate>> {
         .effects
         .iter()
         .map(|effect| {
-            effect.values().map(|(name, value)| Estimate { name, value, std: next() }).collect()
+            effect
+                .values()
+                .map(|(name, value)| ValueEstimate { name, value, std: next() })
+                .collect()
         })
         .collect()
 }

@@ -1,36 +1,41 @@
 //! The page of a calibration: the verdict first, then how it came about.
 
 use super::charts::{Charts, OVER};
-use super::outcome::{Outcome, Verdict};
-use super::report::{EffectReport, Report};
+use super::outcome::{LegsOutcome, Verdict};
+use super::report::{EffectReport, LegsReport};
 use crate::calibrate::rounds::left::is_noise;
-use crate::calibrate::rounds::unnamed::Described;
-use crate::calibrate::rounds::way::{Round, name as in_words};
+use crate::calibrate::rounds::unnamed::DescribedMap;
+use crate::calibrate::rounds::way::{LegsRound, name as in_words};
 use crate::calibrate::values::errors::{ChannelError, worst};
-use crate::calibrate::values::model::Case;
+use crate::calibrate::values::model::LegsCase;
 use crate::effects::{Map, Setting};
-use crate::report::{Fact, Part, Table, document, known_to, length, number};
+use crate::report::{Fact, PagePart, PageTable, document, known_to, length, number};
 
 /// Candidates of a round that the page lists; the others are in `report.json`.
 const LISTED: usize = 8;
 
 /// The page as HTML.
-pub fn page(case: &Case, outcome: &Outcome, report: &Report, charts: &Charts) -> String {
+pub fn page(
+    case: &LegsCase,
+    outcome: &LegsOutcome,
+    report: &LegsReport,
+    charts: &Charts,
+) -> String {
     let facts = facts(outcome, report);
     let equations = equations(report);
     let provenance = provenance(case, report);
-    let mut parts = vec![Part::Facts(&facts)];
+    let mut parts = vec![PagePart::Facts(&facts)];
     if !outcome.effects.is_empty() {
-        parts.push(Part::Table(values(outcome, report)));
-        parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });
+        parts.push(PagePart::Table(values(outcome, report)));
+        parts.push(PagePart::Text { id: "why", title: "Why these", paragraphs: &equations });
     }
-    parts.push(Part::Table(errors_table(&report.errors, ERRORS_NOTE)));
-    parts.push(Part::Pictures(&charts.runs));
-    parts.push(Part::Table(dependence(charts)));
-    parts.push(Part::Pictures(&charts.over));
-    parts.push(Part::Table(candidates(outcome)));
-    parts.push(Part::Table(residuals(report)));
-    parts.push(Part::Provenance(&provenance));
+    parts.push(PagePart::Table(errors_table(&report.errors, ERRORS_NOTE)));
+    parts.push(PagePart::Pictures(&charts.runs));
+    parts.push(PagePart::Table(dependence(charts)));
+    parts.push(PagePart::Pictures(&charts.over));
+    parts.push(PagePart::Table(candidates(outcome)));
+    parts.push(PagePart::Table(residuals(report)));
+    parts.push(PagePart::Provenance(&provenance));
     let title = format!("Calibration of {}: {}", case.rig.name, verdict(outcome.verdict));
     document(&title, &report.summary, &parts)
 }
@@ -44,7 +49,7 @@ pub fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {
+fn facts(outcome: &LegsOutcome, report: &LegsReport) -> Vec<Fact> {
     let fact = |label: &str, value: String, note: String| Fact { label: label.into(), value, note };
     let note = match outcome.verdict {
         Verdict::Explained => {
@@ -96,7 +101,7 @@ fn facts(outcome: &Outcome, report: &Report) -> Vec<Fact> {
     facts
 }
 
-fn values(outcome: &Outcome, report: &Report) -> Table {
+fn values(outcome: &LegsOutcome, report: &LegsReport) -> PageTable {
     let mut rows = Vec::new();
     for ((effect, _), found) in outcome.effects.iter().zip(&report.effects) {
         for (name, fitted) in &found.params {
@@ -124,7 +129,7 @@ fn values(outcome: &Outcome, report: &Report) -> Table {
             ]);
         }
     }
-    Table {
+    PageTable {
         id: "effects",
         title: "What the model was given".into(),
         header: ["effect", "parameter", "value", "± standard deviation", "95 % interval", "meaning"]
@@ -150,7 +155,7 @@ fn coefficients(map: &Map) -> [String; 2] {
     [format!("{count} for each {component}"), format!("{acts}, over {over}; in calibrated.toml")]
 }
 
-fn equations(report: &Report) -> Vec<String> {
+fn equations(report: &LegsReport) -> Vec<String> {
     report.effects.iter().map(why).collect()
 }
 
@@ -171,7 +176,7 @@ const ERRORS_NOTE: &str = "Root mean square of measured less predicted, both thr
      leave to any model: 1 in the last column is as good as it gets.";
 
 /// Errors by run and channel.
-pub fn errors_table(errors: &[ChannelError], note: &str) -> Table {
+pub fn errors_table(errors: &[ChannelError], note: &str) -> PageTable {
     let rows = errors.iter().map(|e| {
         vec![
             format!("{} ({})", e.run, e.role),
@@ -182,7 +187,7 @@ pub fn errors_table(errors: &[ChannelError], note: &str) -> Table {
             number(e.after / e.floor),
         ]
     });
-    Table {
+    PageTable {
         id: "errors",
         title: "Errors".into(),
         header: ["run", "channel", "before", "after", "floor", "after/floor"]
@@ -203,7 +208,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
     }
 }
 
-fn dependence(charts: &Charts) -> Table {
+fn dependence(charts: &Charts) -> PageTable {
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     let rows = charts.shares.iter().enumerate().map(|(leg, shares)| {
         let cells = shares
@@ -212,7 +217,7 @@ fn dependence(charts: &Charts) -> Table {
         std::iter::once(format!("actuator {}", leg + 1)).chain(cells).collect()
     });
     let over = OVER.iter().map(|(what, _)| format!("over {what}"));
-    Table {
+    PageTable {
         id: "depends-on",
         title: "What the residual depends on".into(),
         header: std::iter::once("force not accounted for".to_owned()).chain(over).collect(),
@@ -225,7 +230,7 @@ fn dependence(charts: &Charts) -> Table {
 }
 
 /// What was tried in a round, which has this number.
-fn of_round(number_of_round: usize, round: &Round, outcome: &Outcome) -> Vec<Vec<String>> {
+fn of_round(number_of_round: usize, round: &LegsRound, outcome: &LegsOutcome) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     let mut seen: Vec<&Setting> = Vec::new();
     for scored in &round.ranking {
@@ -263,7 +268,7 @@ fn of_round(number_of_round: usize, round: &Round, outcome: &Outcome) -> Vec<Vec
 }
 
 /// Tables over one quantity or another that stand in for what has no name.
-fn of_tables(described: &Described) -> impl Iterator<Item = Vec<String>> {
+fn of_tables(described: &DescribedMap) -> impl Iterator<Item = Vec<String>> {
     described.others.iter().map(|(depends_on, share)| {
         let kept = described.effect.map().is_some_and(|map| map.depends_on == *depends_on);
         vec![
@@ -277,12 +282,12 @@ fn of_tables(described: &Described) -> impl Iterator<Item = Vec<String>> {
     })
 }
 
-fn candidates(outcome: &Outcome) -> Table {
+fn candidates(outcome: &LegsOutcome) -> PageTable {
     let rounds = outcome.rounds.iter().enumerate();
     let mut rows: Vec<Vec<String>> =
         rounds.flat_map(|(i, round)| of_round(i + 1, round, outcome)).collect();
     rows.extend(outcome.described.iter().flat_map(of_tables));
-    Table {
+    PageTable {
         id: "candidates",
         title: "Candidates, round by round".into(),
         header: ["round", "candidate", "removes of what is above noise", "gain", "simulated", ""]
@@ -297,7 +302,7 @@ fn candidates(outcome: &Outcome) -> Table {
     }
 }
 
-fn residuals(report: &Report) -> Table {
+fn residuals(report: &LegsReport) -> PageTable {
     let rows = report.residuals.iter().map(|r| {
         vec![
             r.residual.to_owned(),
@@ -306,7 +311,7 @@ fn residuals(report: &Report) -> Table {
             format!("{} → {}", number(r.largest_before), number(r.largest_after)),
         ]
     });
-    Table {
+    PageTable {
         id: "residuals",
         title: "Residuals in units of noise".into(),
         header: ["residual", "mean square", "noise up to", "largest"].map(str::to_owned).into(),
@@ -318,7 +323,7 @@ fn residuals(report: &Report) -> Table {
     }
 }
 
-fn provenance(case: &Case, report: &Report) -> Vec<(String, String)> {
+fn provenance(case: &LegsCase, report: &LegsReport) -> Vec<(String, String)> {
     let runs: Vec<&str> = case.runs.iter().map(|run| run.log.name.as_str()).collect();
     let replicas = report.seeds.replicas.len();
     let more = [

@@ -3,16 +3,16 @@
 use super::charts;
 use super::predict_page;
 use super::predicted::PREDICTED_FILE;
-pub use super::predicted::{ERRORS_FILE, Predicted, Prediction};
+pub use super::predicted::{ERRORS_FILE, Predicted, PredictionReport};
 use super::report::RattleReport;
 use super::result::{CalibrateError, control, refuse, sensors, to_json};
 use crate::calibrate::LoggedCommands;
 use crate::calibrate::measured::rattle::{self, Rattle};
-use crate::calibrate::measured::recording::Recording;
+use crate::calibrate::measured::recording::LegsRecording;
 use crate::calibrate::measured::start::as_seen;
 use crate::calibrate::plausibility;
 use crate::calibrate::values::errors;
-use crate::calibrate::values::model::{Case, released};
+use crate::calibrate::values::model::{LegsCase, released};
 use crate::engine::Halt;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
@@ -35,7 +35,7 @@ pub fn reads_by_instruments(model: &Scenario) -> bool {
 ///
 /// # Errors
 /// Everything that is wrong with them.
-pub fn check(model: &Scenario, recording: &Recording) -> Result<(), CalibrateError> {
+pub fn check(model: &Scenario, recording: &LegsRecording) -> Result<(), CalibrateError> {
     if !matches!(model.mechanism, scenario::Mechanism::ThreeRpr(_)) {
         return refuse(vec![plausibility::without_sensors(model).to_string()]);
     }
@@ -57,14 +57,14 @@ pub fn check(model: &Scenario, recording: &Recording) -> Result<(), CalibrateErr
 /// A model that cannot be simulated, forces in a wrong unit, files that cannot be written.
 pub fn into_folder(
     model: &Scenario,
-    recording: &Recording,
+    recording: &LegsRecording,
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Predicted, CalibrateError> {
     let started = Clock::now();
     let log = complete(model, &recording.log);
     // What errors are counted against is the model's instruments alone.
-    let case = Case::new(model.clone(), sensors(model), Vec::new(), control(model));
+    let case = LegsCase::new(model.clone(), sensors(model), Vec::new(), control(model));
     let machine = machine(model, &log)?;
     tell("simulating two replicas: does it rattle?");
     let rattle = rattle::look(&case.simulator, &machine, &log)?;
@@ -99,7 +99,7 @@ pub fn into_folder(
     models.push(("predicted", &predicted, Style::Solid));
     let pictures = charts::of_run(&recording.log, "prediction", &models).map_err(RunError::from)?;
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
-    let prediction = Prediction {
+    let prediction = PredictionReport {
         provenance: Provenance::of(model),
         run: recording.log.name.clone(),
         effects: model.effects.iter().map(crate::calibrate::rounds::way::name).collect(),
@@ -118,9 +118,9 @@ pub fn into_folder(
 
 /// Replicas of a machine that a log's commands drive; where joints stay loaded, started as it was seen.
 fn simulated(
-    case: &Case,
+    case: &LegsCase,
     mut machine: Mechanism,
-    recording: &Recording,
+    recording: &LegsRecording,
     log: &Log,
     rattle: &Rattle,
 ) -> Result<Vec<Log>, Halt> {
@@ -132,7 +132,7 @@ fn simulated(
 }
 
 fn written(
-    prediction: Prediction,
+    prediction: PredictionReport,
     predicted: &Log,
     pictures: &[Picture],
     folder: Folder,

@@ -2,12 +2,12 @@
 
 use super::outcome::MET;
 use super::page::errors_table;
-use super::predicted::Prediction;
+use super::predicted::PredictionReport;
 use crate::calibrate::values::errors::worst;
-use crate::report::{Part, Picture, document, number};
+use crate::report::{PagePart, Picture, document, number};
 
 /// The page as HTML.
-pub fn page(prediction: &Prediction, pictures: &[Picture]) -> String {
+pub fn page(prediction: &PredictionReport, pictures: &[Picture]) -> String {
     let effects = if prediction.effects.is_empty() {
         "as declared, without effects".to_owned()
     } else {
@@ -19,10 +19,10 @@ pub fn page(prediction: &Prediction, pictures: &[Picture]) -> String {
     let provenance = provenance(prediction);
     let mut parts = Vec::new();
     if !prediction.errors.is_empty() {
-        parts.push(Part::Table(errors_table(&prediction.errors, note)));
+        parts.push(PagePart::Table(errors_table(&prediction.errors, note)));
     }
-    parts.push(Part::Pictures(pictures));
-    parts.push(Part::Provenance(&provenance));
+    parts.push(PagePart::Pictures(pictures));
+    parts.push(PagePart::Provenance(&provenance));
     let lead = format!(
         "{}The model is {}, {effects}, driven by the commands of {}. {}",
         verdict(prediction),
@@ -41,7 +41,7 @@ pub fn page(prediction: &Prediction, pictures: &[Picture]) -> String {
 }
 
 /// How well it predicts, by the worst channel.
-fn verdict(p: &Prediction) -> String {
+fn verdict(p: &PredictionReport) -> String {
     let Some(error) = worst(&p.errors).filter(|error| (error.after / error.floor).is_finite())
     else {
         return String::new();
@@ -59,7 +59,7 @@ fn verdict(p: &Prediction) -> String {
     }
 }
 
-fn provenance(p: &Prediction) -> Vec<(String, String)> {
+fn provenance(p: &PredictionReport) -> Vec<(String, String)> {
     let more = [
         ("Run", p.run.clone()),
         ("Figures", "errors.json, predicted.csv beside this page".to_owned()),

@@ -14,7 +14,7 @@ pub(in crate::calibrate) const PREDICTED_FILE: &str = "predicted.csv";
 
 /// `errors.json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Prediction {
+pub struct PredictionReport {
     /// Program, versions, model.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -37,7 +37,7 @@ pub struct Prediction {
 #[derive(Debug)]
 pub struct Predicted {
     /// What it came to.
-    pub prediction: Prediction,
+    pub prediction: PredictionReport,
     /// The text of `errors.json`.
     pub json: String,
     /// Where all files are.

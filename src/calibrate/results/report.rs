@@ -1,13 +1,13 @@
 //! `report.json`: what a calibration came to.
 
 use super::evidence::{as_good, evidence};
-use super::outcome::{Outcome, Verdict};
+use super::outcome::{LegsOutcome, Verdict};
 use super::summary::summary;
 use crate::calibrate::measured::rattle::Rattle;
-use crate::calibrate::rounds::left::Left;
+use crate::calibrate::rounds::left::LegsLeft;
 use crate::calibrate::rounds::way::name;
 use crate::calibrate::values::errors::ChannelError;
-use crate::calibrate::values::model::Case;
+use crate::calibrate::values::model::LegsCase;
 use crate::effects::{DependsOn, Over, OverTime, Setting, Target};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -16,7 +16,7 @@ use serde_json::{Map, Value, json};
 
 /// The report. Keys are promised to scripts; see the README.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct LegsReport {
     /// Program, versions, rig as declared.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -232,16 +232,16 @@ pub struct Seeds {
 #[derive(Clone, Copy, Debug)]
 pub struct Sources<'a> {
     /// The rig and its runs.
-    pub case: &'a Case,
+    pub case: &'a LegsCase,
     /// What became of them.
-    pub outcome: &'a Outcome,
+    pub outcome: &'a LegsOutcome,
     /// What two replicas said.
     pub rattle: &'a Rattle,
     /// Kinds that were excluded.
     pub without: &'a [&'a str],
 }
 
-impl Report {
+impl LegsReport {
     /// The report, but for the time it took and the files beside it.
     pub fn new(from: Sources) -> Self {
         let Sources { case, outcome, rattle, without } = from;
@@ -275,13 +275,13 @@ impl Report {
 }
 
 /// The rig with what was found: a scenario like any other.
-pub fn calibrated(rig: &Scenario, outcome: &Outcome) -> Scenario {
+pub fn calibrated(rig: &Scenario, outcome: &LegsOutcome) -> Scenario {
     let mut scenario = rig.clone();
     scenario.effects = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
     scenario
 }
 
-fn effect_report(outcome: &Outcome, effect: &Setting) -> EffectReport {
+fn effect_report(outcome: &LegsOutcome, effect: &Setting) -> EffectReport {
     let estimates = outcome.effects.iter().find(|(e, _)| e == effect).map(|(_, e)| e.as_slice());
     let params = estimates.unwrap_or_default().iter().map(|estimate| {
         let fitted = Fitted { value: estimate.value, std: estimate.std, ci95: estimate.ci95() };
@@ -299,7 +299,7 @@ fn effect_report(outcome: &Outcome, effect: &Setting) -> EffectReport {
 }
 
 /// Every candidate of every round once: of several variants at one joint the best.
-fn ranking(outcome: &Outcome) -> Vec<Ranked> {
+fn ranking(outcome: &LegsOutcome) -> Vec<Ranked> {
     let mut all = Vec::new();
     for (i, round) in outcome.rounds.iter().enumerate() {
         let mut seen: Vec<&Setting> = Vec::new();
@@ -335,8 +335,8 @@ fn ranking(outcome: &Outcome) -> Vec<Ranked> {
     all
 }
 
-fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
-    let join = |(before, after): (&Left, &Left)| ResidualReport {
+fn residuals(before: &[LegsLeft], after: &[LegsLeft]) -> Vec<ResidualReport> {
+    let join = |(before, after): (&LegsLeft, &LegsLeft)| ResidualReport {
         residual: before.residual.to_owned(),
         mean_square_before: before.mean_square,
         mean_square_after: after.mean_square,

@@ -1,13 +1,13 @@
 //! A calibration and its folder of results.
 
 use super::outcome::calibrate;
-use super::report::{Report, Sources, calibrated};
+use super::report::{LegsReport, Sources, calibrated};
 use super::{charts, page};
 use crate::calibrate::measured::rattle::{self, Rattle};
-use crate::calibrate::measured::recording::{Recording, stem};
+use crate::calibrate::measured::recording::{LegsRecording, stem};
 use crate::calibrate::plausibility;
 use crate::calibrate::values::model::SearchError;
-use crate::calibrate::values::model::{Case, Run};
+use crate::calibrate::values::model::{LegsCase, LegsRun};
 use crate::engine::{Halt, StepControl};
 use crate::measure::log::LogError;
 use crate::report::Picture;
@@ -83,8 +83,8 @@ pub fn control(rig: &Scenario) -> StepControl {
 
 /// A rig and runs that nothing speaks against, before anything is simulated.
 #[derive(Debug)]
-pub struct Prepared {
-    case: Case,
+pub struct LegsPrepared {
+    case: LegsCase,
     /// Files of the runs as the user called them.
     paths: Vec<String>,
 }
@@ -94,7 +94,10 @@ pub struct Prepared {
 ///
 /// # Errors
 /// Everything that is wrong with them.
-pub fn prepare(rig: Scenario, recordings: Vec<Recording>) -> Result<Prepared, CalibrateError> {
+pub fn prepare(
+    rig: Scenario,
+    recordings: Vec<LegsRecording>,
+) -> Result<LegsPrepared, CalibrateError> {
     let mut found: Vec<String> = plausibility::rig(&rig).iter().map(Problem::to_string).collect();
     for recording in &recordings {
         let wrong = plausibility::recording(&rig, recording, plausibility::CALIBRATE);
@@ -104,8 +107,8 @@ pub fn prepare(rig: Scenario, recordings: Vec<Recording>) -> Result<Prepared, Ca
     refuse(found)?;
     let sensors = rig.sensors.clone().unwrap_or_default();
     let (mut runs, mut paths) = (Vec::new(), Vec::new());
-    for Recording { path, log } in recordings {
-        let run = Run::new(log).map_err(|channel| {
+    for LegsRecording { path, log } in recordings {
+        let run = LegsRun::new(log).map_err(|channel| {
             CalibrateError::Input(vec![format!(
                 "{path}:1: no column `{channel}`; calibrate needs it"
             )])
@@ -114,12 +117,12 @@ pub fn prepare(rig: Scenario, recordings: Vec<Recording>) -> Result<Prepared, Ca
         paths.push(path);
     }
     let control = control(&rig);
-    Ok(Prepared { case: Case::new(rig, sensors, runs, control), paths })
+    Ok(LegsPrepared { case: LegsCase::new(rig, sensors, runs, control), paths })
 }
 
 /// A finished calibration and its report, of whichever method.
 #[derive(Debug)]
-pub struct Calibrated<R> {
+pub struct FinishedCalibration<R> {
     /// What it came to.
     pub report: R,
     /// The text of `report.json`.
@@ -130,26 +133,29 @@ pub struct Calibrated<R> {
 
 /// A calibration before it is written.
 #[derive(Debug)]
-pub(in crate::calibrate) struct Made {
+pub(in crate::calibrate) struct LegsMade {
     /// What it came to.
-    pub report: Report,
+    pub report: LegsReport,
     /// Texts by their files' names.
     texts: Vec<(String, String)>,
     pictures: Vec<Picture>,
 }
 
-impl Made {
+impl LegsMade {
     /// Writes everything into a folder.
     ///
     /// # Errors
     /// Files that cannot be written; the folder is left as it was.
-    pub fn written(self, folder: Folder) -> Result<Calibrated<Report>, CalibrateError> {
+    pub fn written(
+        self,
+        folder: Folder,
+    ) -> Result<FinishedCalibration<LegsReport>, CalibrateError> {
         let Self { report, texts, pictures } = self;
         let json = to_json(&report);
         let mut all = vec![(REPORT_FILE, &json)];
         all.extend(texts.iter().map(|(name, text)| (name.as_str(), text)));
         let folder = publish(folder, &all, &pictures)?;
-        Ok(Calibrated { report, json, folder })
+        Ok(FinishedCalibration { report, json, folder })
     }
 }
 
@@ -158,10 +164,10 @@ impl Made {
 /// # Errors
 /// Forces in a wrong unit, a rig that cannot be simulated.
 pub(in crate::calibrate) fn made(
-    prepared: Prepared,
+    prepared: LegsPrepared,
     without: &[&str],
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Made, CalibrateError> {
+) -> Result<LegsMade, CalibrateError> {
     let started = Clock::now();
     tell("simulating replicas of the declared model: does it rattle?");
     let (case, rattle) = case(prepared)?;
@@ -169,7 +175,7 @@ pub(in crate::calibrate) fn made(
     let outcome = calibrate(case, without, tell)?;
     tell("drawing and writing");
     let sources = Sources { case, outcome: &outcome, rattle: &rattle, without };
-    let mut report = Report::new(sources);
+    let mut report = LegsReport::new(sources);
     let charts = charts::draw(case, &outcome)?;
     let predictions: Vec<(String, String)> = outcome
         .predictions
@@ -190,7 +196,7 @@ pub(in crate::calibrate) fn made(
     let page = page::page(case, &outcome, &report, &charts);
     let mut texts = vec![(CALIBRATED_FILE.to_owned(), model), (PAGE_FILE.to_owned(), page)];
     texts.extend(predictions);
-    Ok(Made { report, texts, pictures: charts.pictures().cloned().collect() })
+    Ok(LegsMade { report, texts, pictures: charts.pictures().cloned().collect() })
 }
 
 /// Writes texts and pictures into a folder of results and puts it where it belongs.
@@ -215,8 +221,8 @@ pub fn publish<'a>(
 ///
 /// # Errors
 /// Forces in a wrong unit, a rig that cannot be simulated.
-pub fn case(prepared: Prepared) -> Result<(Case, Rattle), CalibrateError> {
-    let Prepared { mut case, paths } = prepared;
+pub fn case(prepared: LegsPrepared) -> Result<(LegsCase, Rattle), CalibrateError> {
+    let LegsPrepared { mut case, paths } = prepared;
     let machines = case.released(&[])?;
     let mut found = Vec::new();
     let mut worst: Option<Rattle> = None;

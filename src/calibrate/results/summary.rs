@@ -1,6 +1,6 @@
 //! The verdict of a calibration in plain words.
 
-use super::outcome::{MET, Outcome, Verdict};
+use super::outcome::{LegsOutcome, MET, Verdict};
 use crate::calibrate::rounds::left::is_noise;
 use crate::calibrate::rounds::way::name;
 use crate::calibrate::values::errors::{ChannelError, worst};
@@ -20,7 +20,7 @@ fn unforeseen(worst: &ChannelError) -> String {
 }
 
 /// The verdict in plain words.
-pub fn summary(outcome: &Outcome) -> String {
+pub fn summary(outcome: &LegsOutcome) -> String {
     let named: Vec<String> = outcome
         .effects
         .iter()

@@ -1,6 +1,6 @@
 //! What an effect without a name does: its force over the plane, or over what it depends on.
 
-use crate::effects::{DependsOn, Efforts, Map, Motion, Over, Setting};
+use crate::effects::{DependsOn, Efforts, Map, MapMotion, Over, Setting};
 use crate::mechanism::Command;
 use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg, path_svg};
 use nalgebra::Vector3;
@@ -51,7 +51,7 @@ pub fn pictures<'a>(
 }
 
 /// The force of each component of a map.
-fn forces(map: &Map, motion: Motion, commands: &[Command]) -> Vec<f64> {
+fn forces(map: &Map, motion: MapMotion, commands: &[Command]) -> Vec<f64> {
     let features = map.features(motion, commands);
     let of = |list: &Vec<f64>| features.iter().zip(list).map(|(f, c)| f * c).sum();
     map.coefficients.iter().map(of).collect()
@@ -70,7 +70,7 @@ fn plane(map: &Map) -> Result<String, ReportError> {
     let arrows: Vec<[f64; 4]> = places
         .map(|(u, v)| {
             let pose = Vector3::new(x + u, y + v, phi);
-            let force = forces(map, Motion { pose, ..Motion::default() }, &[]);
+            let force = forces(map, MapMotion { pose, ..MapMotion::default() }, &[]);
             [pose.x, pose.y, force[0], force[1]]
         })
         .collect();
@@ -127,28 +127,36 @@ fn heading(depends_on: DependsOn, i: usize) -> (String, &'static str, bool) {
 }
 
 /// What a force is over at a share of its reach, and the motion and commands there.
-fn moving(map: &Map, i: usize, share: f64) -> (f64, Motion, Vec<Command>) {
+fn moving(map: &Map, i: usize, share: f64) -> (f64, MapMotion, Vec<Command>) {
     let pose = Vector3::from(map.middle);
     let [middle, reach] = map.lengths;
     match map.depends_on {
         DependsOn::ActuatorLength => {
             let length = middle + share * reach;
-            (length, Motion { pose, actuator: [length, 0.0], ..Motion::default() }, Vec::new())
+            (
+                length,
+                MapMotion { pose, actuator: [length, 0.0], ..MapMotion::default() },
+                Vec::new(),
+            )
         }
         DependsOn::ActuatorVelocity => {
             let speed = share * TAU * reach;
-            (speed, Motion { pose, actuator: [middle, speed], ..Motion::default() }, Vec::new())
+            (
+                speed,
+                MapMotion { pose, actuator: [middle, speed], ..MapMotion::default() },
+                Vec::new(),
+            )
         }
         DependsOn::Acceleration => {
             let acceleration = share * TAU * TAU * reach;
             let mut commands = vec![Command::default(); map.coefficients.len()];
             commands[i].acceleration = acceleration;
-            (acceleration, Motion { pose, ..Motion::default() }, commands)
+            (acceleration, MapMotion { pose, ..MapMotion::default() }, commands)
         }
         DependsOn::Velocity | DependsOn::Position => {
             let mut rate = Vector3::zeros();
             rate[i] = share * TAU * map.reach[i];
-            (rate[i], Motion { pose, rate, ..Motion::default() }, Vec::new())
+            (rate[i], MapMotion { pose, rate, ..MapMotion::default() }, Vec::new())
         }
     }
 }
@@ -204,7 +212,7 @@ mod tests {
                 coefficients: Vec::new(),
             };
             let commands = vec![Command::default(); 3];
-            let features = map.features(Motion::default(), &commands).len();
+            let features = map.features(MapMotion::default(), &commands).len();
             map.coefficients = vec![vec![0.5; features]; map.components(3)];
             let drawn = pictures([&Setting::unnamed(map)]).expect("a picture");
             assert_eq!(drawn.len(), 1, "{depends_on:?}");

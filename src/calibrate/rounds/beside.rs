@@ -2,9 +2,9 @@
 
 use super::left::{is_noise, left};
 use super::screen::{Scored, screen, share};
-use super::way::{Round, Way, names};
-use crate::calibrate::values::model::{Case, SearchError};
-use crate::calibrate::values::settle::{GAIN_PER_VALUE, Question, Settled, compared};
+use super::way::{LegsRound, Way, names};
+use crate::calibrate::values::model::{LegsCase, SearchError};
+use crate::calibrate::values::settle::{FitData, GAIN_PER_VALUE, Settled, compared};
 use crate::effects::{CALMING, Kind, Setting, Target as On};
 
 /// Gain through the lens from which a candidate is worth simulating, with loaded joints and with joints
@@ -47,8 +47,8 @@ pub const CHANCE: [f64; 2] = [10.0, 1050.0];
 
 /// What one more effect makes of several models in turn.
 pub struct Fan<'a> {
-    case: &'a Case,
-    question: &'a Question<'a>,
+    case: &'a LegsCase,
+    question: &'a FitData<'a>,
     /// Simulated runs up to which rivals are simulated, and their values settled.
     until: f64,
     tell: &'a (dyn Fn(&str) + Sync),
@@ -63,8 +63,8 @@ pub struct Fan<'a> {
 impl<'a> Fan<'a> {
     /// Nothing tried yet; `tell` hears what is.
     pub fn new(
-        case: &'a Case,
-        question: &'a Question<'a>,
+        case: &'a LegsCase,
+        question: &'a FitData<'a>,
         until: f64,
         tell: &'a (dyn Fn(&str) + Sync),
     ) -> Self {
@@ -82,7 +82,7 @@ impl<'a> Fan<'a> {
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    pub fn beside(&mut self, way: &Way) -> Result<Round, SearchError> {
+    pub fn beside(&mut self, way: &Way) -> Result<LegsRound, SearchError> {
         let Self { case, question, .. } = *self;
         let effects = &way.model.fit.effects;
         let noise = is_noise(&left(case, question, &way.model));
@@ -126,14 +126,14 @@ impl<'a> Fan<'a> {
             let order = (b.simulated, b.gain).partial_cmp(&(a.simulated, a.gain));
             order.unwrap_or(std::cmp::Ordering::Equal)
         });
-        let round = Round::without_gain(ranking);
+        let round = LegsRound::without_gain(ranking);
         let worth = |(scored, _): &(Scored, Settled)| noise || scored.share > LEAST;
         for (scored, model) in settled.into_iter().filter(worth) {
             if self.enough.is_none() && is_noise(&left(case, question, &model)) {
                 self.enough = Some(scored.clone());
             }
             let certain = way.certain && scored.share > CERTAIN;
-            let own = Round { added: Some(scored.effect), ..round.clone() };
+            let own = LegsRound { added: Some(scored.effect), ..round.clone() };
             let rounds = way.rounds.iter().cloned().chain([own]).collect();
             self.found.push(Way { model, rounds, certain });
         }

@@ -1,13 +1,13 @@
 //! What is left of a model's residuals, and whether it is noise.
 
-use crate::calibrate::values::fit::Target;
-use crate::calibrate::values::model::Case;
-use crate::calibrate::values::settle::{Question, Settled};
+use crate::calibrate::values::fit::LegsFitTarget;
+use crate::calibrate::values::model::LegsCase;
+use crate::calibrate::values::settle::{FitData, Settled};
 use serde::Serialize;
 
 /// How much of a residual stands above noise, on data not used for fits.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Left {
+pub struct LegsLeft {
     /// Which residual: servo, closure, dynamics.
     pub residual: &'static str,
     /// Mean square in units of noise: 1 for noise.
@@ -26,9 +26,9 @@ const LIMITS: [([f64; 2], f64); 3] = [([1.5, 2.0], 7.0), ([1.25, 1.8], 6.5), ([1
 const NAMES: [&str; 3] = ["servo", "closure", "dynamics"];
 
 /// What is left of a model's residuals on the held-out segments.
-pub fn left(case: &Case, question: &Question, model: &Settled) -> Vec<Left> {
+pub fn left(case: &LegsCase, question: &FitData, model: &Settled) -> Vec<LegsLeft> {
     let baseline = &model.baseline;
-    let target = Target { case, baseline, on: question.hold, fixed: &[], blind: None };
+    let target = LegsFitTarget { case, baseline, on: question.hold, fixed: &[], blind: None };
     let Some(held) = target.look(&model.fit.effects) else { return Vec::new() };
     let places = baseline.places(case, question.hold);
     (0..3)
@@ -42,14 +42,19 @@ pub fn left(case: &Case, question: &Question, model: &Settled) -> Vec<Left> {
             }
             let limits = LIMITS[group].0;
             let limit = limits[usize::from(baseline.rattles)];
-            Left { residual: NAMES[group], mean_square: sum / f64::max(count, 1.0), largest, limit }
+            LegsLeft {
+                residual: NAMES[group],
+                mean_square: sum / f64::max(count, 1.0),
+                largest,
+                limit,
+            }
         })
         .collect()
 }
 
 /// Whether that is noise. What cannot be looked at is not.
-pub fn is_noise(left: &[Left]) -> bool {
-    let within = |(left, (_, largest)): (&Left, ([f64; 2], f64))| {
+pub fn is_noise(left: &[LegsLeft]) -> bool {
+    let within = |(left, (_, largest)): (&LegsLeft, ([f64; 2], f64))| {
         left.mean_square < left.limit && left.largest < largest
     };
     !left.is_empty() && left.iter().zip(LIMITS).all(within)

@@ -1,9 +1,9 @@
 //! What a model can do without.
 
 use super::way::{name, names};
-use crate::calibrate::values::model::{Case, SearchError};
+use crate::calibrate::values::model::{LegsCase, SearchError};
 use crate::calibrate::values::settle::{
-    GAIN_PER_VALUE, HOPEFUL, Question, Settled, compared, refined,
+    FitData, GAIN_PER_VALUE, HOPEFUL, Settled, compared, refined,
 };
 use crate::effects::{CONTAINS, Setting};
 
@@ -14,8 +14,8 @@ use crate::effects::{CONTAINS, Setting};
 /// # Errors
 /// A machine that cannot be simulated.
 pub fn needed(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     model: Settled,
     threshold: f64,
     tell: &(dyn Fn(&str) + Sync),

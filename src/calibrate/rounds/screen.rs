@@ -1,11 +1,11 @@
 //! Every candidate through the lens alone, which takes no simulation.
 
-use crate::calibrate::values::baseline::Baseline;
+use crate::calibrate::values::baseline::LegsBaseline;
 use crate::calibrate::values::candidates;
-use crate::calibrate::values::fit::{self, Target};
+use crate::calibrate::values::fit::{self, LegsFitTarget};
 use crate::calibrate::values::instrument::{changed, unpulled};
-use crate::calibrate::values::model::Case;
-use crate::calibrate::values::settle::{GAIN_PER_VALUE, Question, Settled};
+use crate::calibrate::values::model::LegsCase;
+use crate::calibrate::values::settle::{FitData, GAIN_PER_VALUE, Settled};
 use crate::effects::Setting;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -33,9 +33,9 @@ pub struct Scored {
 pub fn share(
     before: f64,
     after: f64,
-    case: &Case,
-    question: &Question,
-    baseline: &Baseline,
+    case: &LegsCase,
+    question: &FitData,
+    baseline: &LegsBaseline,
 ) -> f64 {
     let noise = baseline.places(case, question.hold).len() as f64;
     let excess = (before - noise).max(1.0);
@@ -44,9 +44,9 @@ pub fn share(
 
 /// All candidates through the lens alone: fitted on some data, scored on others, the best first, each
 /// with the model that it makes.
-pub fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored, Vec<Setting>)> {
+pub fn screen(case: &LegsCase, question: &FitData, model: &Settled) -> Vec<(Scored, Vec<Setting>)> {
     let baseline = &model.baseline;
-    let target = Target { case, baseline, on: question.on, fixed: &[], blind: None };
+    let target = LegsFitTarget { case, baseline, on: question.on, fixed: &[], blind: None };
     let Ok(machine) = case.runs[0].machine(&case.rig, &[]) else { return Vec::new() };
     let candidates = candidates::all(&machine, question.without);
     // What the values of the present effects could make good: the same for nearly every candidate.
@@ -65,7 +65,7 @@ pub fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored,
             let replaced = others.len() < model.fit.effects.len();
             let fewer = if replaced { Some(without_values(&target, &others)?) } else { None };
             let blind = fewer.as_ref().unwrap_or(&present);
-            let own = Target { fixed: &others, blind: blind.as_ref(), ..target };
+            let own = LegsFitTarget { fixed: &others, blind: blind.as_ref(), ..target };
             let plain = own.look(&[])?;
             let tuned = candidates::tune(&own, &plain, candidate)?;
             let fitted = plain.chi2 - tuned.chi2;
@@ -76,7 +76,7 @@ pub fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored,
                 let fit = if baseline.rattles { unpulled(&target, fit) } else { fit };
                 effects = fit.effects;
             }
-            let held = Target { on: question.hold, ..target };
+            let held = LegsFitTarget { on: question.hold, ..target };
             let mut left = held.look(&effects)?.chi2;
             // What rattle hides in the data may show in replicas; a simulation will tell.
             if baseline.rattles {
@@ -94,7 +94,7 @@ pub fn screen(case: &Case, question: &Question, model: &Settled) -> Vec<(Scored,
 
 /// Orthonormal directions of the residual that the values of `effects` could make good, none without
 /// effects; or nothing where the machine cannot be.
-fn without_values(target: &Target, effects: &[Setting]) -> Option<Option<DMatrix<f64>>> {
+fn without_values(target: &LegsFitTarget, effects: &[Setting]) -> Option<Option<DMatrix<f64>>> {
     if effects.is_empty() {
         return Some(None);
     }

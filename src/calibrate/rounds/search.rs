@@ -4,12 +4,12 @@
 use super::beside::{CHANCE, Fan};
 use super::left::{is_noise, left};
 use super::needed::{contains, needed};
-use super::way::{Round, Way, names};
-use crate::calibrate::values::fit::Target;
+use super::way::{LegsRound, Way, names};
+use crate::calibrate::values::fit::LegsFitTarget;
 use crate::calibrate::values::instrument::changed;
-use crate::calibrate::values::model::{Case, SearchError};
+use crate::calibrate::values::model::{LegsCase, SearchError};
 use crate::calibrate::values::settle::{
-    Question, SETTLED, Settled, refined, settle, settle_while, simplified,
+    FitData, SETTLED, Settled, refined, settle, settle_while, simplified,
 };
 use crate::effects::{SELDOM, Setting};
 
@@ -32,7 +32,7 @@ const SETTLES: [usize; 2] = [7, 4];
 /// Most effects that are added.
 pub const EFFECTS: usize = 3;
 
-/// Runs simulated ([`Case::simulated`]) after which no third effect is looked for, and of other ways and of
+/// Runs simulated ([`LegsCase::simulated`]) after which no third effect is looked for, and of other ways and of
 /// rivals only the most promising are, at their first guess: less than half of what two slow cores simulate in
 /// two minutes, for runs of three seconds. What follows a search takes the other half.
 const BUDGET: f64 = 160.0;
@@ -48,7 +48,7 @@ const SELDOM_PRICE: f64 = 20.0;
 
 /// What a search found.
 #[derive(Debug)]
-pub struct Found {
+pub struct LegsFound {
     /// The best model, with all rounds.
     pub best: Way,
     /// The model as declared.
@@ -62,10 +62,10 @@ pub struct Found {
 /// # Errors
 /// A rig that cannot be simulated.
 pub fn search(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Found, SearchError> {
+) -> Result<LegsFound, SearchError> {
     tell("simulating the model as declared");
     let declared = settle(case, question, &[], 1, None)?;
     let threshold = GAIN[usize::from(case.chaotic)];
@@ -117,17 +117,17 @@ pub fn search(
         best.model = needed(case, question, best.model, threshold, tell)?;
         best.rename_added();
     }
-    Ok(Found { best, declared, certain })
+    Ok(LegsFound { best, declared, certain })
 }
 
 /// What is found beside several ways, the best first, and the round of the first way.
 fn beside_all(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     ways: &[Way],
     until: f64,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<(Option<Round>, Vec<Way>), SearchError> {
+) -> Result<(Option<LegsRound>, Vec<Way>), SearchError> {
     let mut fan = Fan::new(case, question, until, tell);
     let mut searched = Vec::new();
     for way in ways {
@@ -165,12 +165,12 @@ impl Way {
 /// model does not show in what is left, only in its size. The round in which that was looked for, and
 /// the way with what makes the recordings so much likelier that no chance does.
 fn calmer(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     way: &Way,
     until: f64,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<(Round, Option<Way>), SearchError> {
+) -> Result<(LegsRound, Option<Way>), SearchError> {
     let mut fan = Fan::new(case, question, until, tell);
     let round = fan.beside(way)?;
     let enough = way.cost() - CALMER;
@@ -185,8 +185,8 @@ fn calmer(
 
 /// A way whose values have settled, in its simplest variants.
 fn finished(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     way: Way,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Way, SearchError> {
@@ -224,10 +224,10 @@ fn finished(
 /// Puts first which of the best models, whose misfits differ by no more than chance, is the best by a
 /// better measure, and tells it which are as good. Where joints rattle that is the lens of the very best:
 /// the data's rattle and the replicas' are the same for all of them there.
-fn told_apart(case: &Case, question: &Question, ways: &mut [Way]) {
+fn told_apart(case: &LegsCase, question: &FitData, ways: &mut [Way]) {
     let Some(best) = ways.first() else { return };
     let baseline = &best.model.baseline;
-    let target = Target { case, baseline, on: question.hold, fixed: &[], blind: None };
+    let target = LegsFitTarget { case, baseline, on: question.hold, fixed: &[], blind: None };
     let left = |way: &Way| {
         if !baseline.rattles {
             return Some(way.cost());
@@ -260,8 +260,8 @@ fn told_apart(case: &Case, question: &Question, ways: &mut [Way]) {
 /// still is noise, where joints rattle: what rattle leaves open between variants is more than values
 /// that are none take up.
 fn simplest(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     ways: &[Way],
     near: impl Iterator<Item = usize>,
     first: usize,

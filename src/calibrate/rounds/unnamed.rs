@@ -1,10 +1,10 @@
 //! What remains when no effect explains it: forces as a map of what they depend on.
 
-use crate::calibrate::values::fit::Target;
+use crate::calibrate::values::fit::LegsFitTarget;
 use crate::calibrate::values::model::SearchError;
-use crate::calibrate::values::model::{Case, Segment};
-use crate::calibrate::values::settle::{Question, Settled, settle};
-use crate::effects::{DependsOn, Map, Motion, Setting};
+use crate::calibrate::values::model::{LegsCase, LegsSegment};
+use crate::calibrate::values::settle::{FitData, Settled, settle};
+use crate::effects::{DependsOn, Map, MapMotion, Setting};
 use crate::measure::log::Channel;
 use crate::mechanism::Command;
 use nalgebra::{DMatrix, DVector};
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 /// A map that describes what remains.
 #[derive(Clone, Debug)]
-pub struct Described {
+pub struct DescribedMap {
     /// The map, as an effect.
     pub effect: Setting,
     /// Share of what was above noise on the held-out segments that it removes, 0…1.
@@ -33,11 +33,11 @@ const PASSES: usize = 2;
 /// # Errors
 /// A machine that cannot be simulated.
 pub fn describe(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     model: &Settled,
     worth: f64,
-) -> Result<Option<(Described, Settled)>, SearchError> {
+) -> Result<Option<(DescribedMap, Settled)>, SearchError> {
     let mut last = None;
     let mut simulated = model.clone();
     let mut others = Vec::new();
@@ -53,7 +53,7 @@ pub fn describe(
         let effects = [model.fit.effects.as_slice(), std::slice::from_ref(&effect)].concat();
         simulated = settle(case, question, &effects, 1, Some(&model.baseline))?;
         let share = share.clamp(0.0, 1.0);
-        last = Some((Described { effect, share, others: others.clone() }, simulated.clone()));
+        last = Some((DescribedMap { effect, share, others: others.clone() }, simulated.clone()));
     }
     Ok(last)
 }
@@ -61,16 +61,16 @@ pub fn describe(
 /// The best map of each class, or of the first of `classes`, with the share that it removes; the best
 /// class first. Bias and noise are those of `simulated`, the effects those of `model`.
 fn best_maps(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     model: &Settled,
     simulated: &Settled,
     classes: &[(DependsOn, f64)],
 ) -> Vec<(f64, Map)> {
     let baseline = &simulated.baseline;
     let effects = &model.fit.effects;
-    let on = Target { case, baseline, on: question.on, fixed: effects, blind: None };
-    let hold = Target { on: question.hold, ..on };
+    let on = LegsFitTarget { case, baseline, on: question.on, fixed: effects, blind: None };
+    let hold = LegsFitTarget { on: question.hold, ..on };
     let (Some(fitted), Some(held)) = (on.look(&[]), hold.look(&[])) else { return Vec::new() };
     let excess = (held.chi2 - held.white.len() as f64).max(1.0);
     let classes: Vec<DependsOn> = match classes.first() {
@@ -113,7 +113,7 @@ fn best_maps(
 }
 
 /// A map without coefficients over the range of the measured motion.
-fn empty(case: &Case, on: &[Segment], depends_on: DependsOn) -> Map {
+fn empty(case: &LegsCase, on: &[LegsSegment], depends_on: DependsOn) -> Map {
     let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 4];
     let mut widen = |k: usize, value: f64| {
         ranges[k] = [ranges[k][0].min(value), ranges[k][1].max(value)];
@@ -142,8 +142,8 @@ fn empty(case: &Case, on: &[Segment], depends_on: DependsOn) -> Map {
 
 /// Change of a target's residual by each coefficient of a map, component by component: it is linear in
 /// them.
-fn columns(target: &Target, white: &DVector<f64>, map: &Map) -> Option<DMatrix<f64>> {
-    let origin = Motion::default();
+fn columns(target: &LegsFitTarget, white: &DVector<f64>, map: &Map) -> Option<DMatrix<f64>> {
+    let origin = MapMotion::default();
     let features = map.features(origin, &[Command::default(); 3]).len();
     let components = map.components(3);
     let columns = (0..components * features).into_par_iter().map(|i| {

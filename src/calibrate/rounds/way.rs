@@ -6,7 +6,7 @@ use crate::effects::Setting;
 
 /// One round of the search.
 #[derive(Clone, Debug)]
-pub struct Round {
+pub struct LegsRound {
     /// Candidates, the best first.
     pub ranking: Vec<Scored>,
     /// What was added, if anything was worth it.
@@ -15,7 +15,7 @@ pub struct Round {
     pub as_good: Vec<Setting>,
 }
 
-impl Round {
+impl LegsRound {
     /// A round in which nothing was worth adding.
     pub fn without_gain(ranking: Vec<Scored>) -> Self {
         Self { ranking, added: None, as_good: Vec::new() }
@@ -28,7 +28,7 @@ pub struct Way {
     /// The model.
     pub model: Settled,
     /// The rounds that led to it.
-    pub rounds: Vec<Round>,
+    pub rounds: Vec<LegsRound>,
     /// Whether each of its effects removed nearly all that stood above noise before it.
     pub certain: bool,
 }

@@ -14,9 +14,9 @@ const REACH: f64 = 10.0;
 /// Directions in which values are changed, a standard deviation each: a matrix with a row for each value
 /// and a column for each axis.
 #[derive(Clone, Debug)]
-pub struct Axes(DMatrix<f64>);
+pub struct ValueAxes(DMatrix<f64>);
 
-impl Axes {
+impl ValueAxes {
     /// Each value by itself, by this share of its step.
     pub fn along(free: &[Free], share: f64) -> Self {
         let steps = free.iter().map(|free| free.step * share);
@@ -75,7 +75,7 @@ mod tests {
         };
         let free = [Free { step: 1.0, bounds: [-1e6, 1e6] }; 2];
         let now = [0.0, 0.0];
-        let mut axes = Axes::along(&free, 1e-2);
+        let mut axes = ValueAxes::along(&free, 1e-2);
         let mut longest = 0.0;
         for _ in 0..3 {
             let base = look(&now);
@@ -99,14 +99,14 @@ mod tests {
     fn derivatives_that_are_no_numbers_have_no_axes() {
         let free = [Free { step: 0.1, bounds: [-1.0, 1.0] }];
         let along = DMatrix::from_element(2, 1, f64::NAN);
-        assert!(Axes::along(&free, 1.0).turned(&free, &along).is_none());
+        assert!(ValueAxes::along(&free, 1.0).turned(&free, &along).is_none());
     }
 
     #[test]
     fn an_axis_that_nothing_depends_on_reaches_no_farther_than_its_steps() {
         let free = [Free { step: 0.1, bounds: [-1e6, 1e6] }; 2];
         let along = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0]);
-        let Axes(axes) = Axes::along(&free, 1.0).turned(&free, &along).unwrap();
+        let ValueAxes(axes) = ValueAxes::along(&free, 1.0).turned(&free, &along).unwrap();
         assert!(axes.iter().all(|d| d.is_finite() && d.abs() <= 0.1 * REACH), "{axes}");
     }
 }

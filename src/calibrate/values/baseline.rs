@@ -1,12 +1,12 @@
 //! What simulations of a model say of its own residuals.
 
-use super::model::{Case, Ensemble, Known, SearchError, Segment};
+use super::model::{Ensemble, Known, LegsCase, LegsSegment, SearchError};
 use crate::calibrate::measured::draws::{Coefficients, difference, mean, without};
 use crate::calibrate::measured::lens::Lens;
 use crate::calibrate::measured::rattle;
 use crate::calibrate::measured::replica;
 use crate::calibrate::measured::spectrum::Noise;
-use crate::calibrate::measured::start::{MISSED, Start};
+use crate::calibrate::measured::start::{MISSED, SwingStart};
 use crate::effects::Setting;
 use crate::measure::log::Log;
 use crate::scenario::Problem;
@@ -18,11 +18,11 @@ use std::sync::Arc;
 /// What simulations of a model say of its own residuals: their mean, which is the lens's fault, and
 /// their spread, which is noise.
 #[derive(Clone, Debug)]
-pub struct Baseline {
+pub struct LegsBaseline {
     /// One per segment.
-    parts: Vec<Part>,
+    parts: Vec<SegmentBaseline>,
     /// How each run's machine starts.
-    pub starts: Vec<Start>,
+    pub starts: Vec<SwingStart>,
     /// Whether the model's joints rattle.
     pub rattles: bool,
     /// Its noiseless logs, prepared to be looked at: `[run][replica]`.
@@ -37,13 +37,13 @@ pub struct Baseline {
 #[derive(Clone, Copy, Debug)]
 pub enum Like<'a> {
     /// Of a model with other effects: its swing is found from that one's.
-    Beside(&'a Baseline),
+    Beside(&'a LegsBaseline),
     /// Of the same model at values nearby: where joints stay loaded its swing is as large.
-    Same(&'a Baseline),
+    Same(&'a LegsBaseline),
 }
 
 impl<'a> Like<'a> {
-    fn baseline(self) -> &'a Baseline {
+    fn baseline(self) -> &'a LegsBaseline {
         match self {
             Self::Beside(baseline) | Self::Same(baseline) => baseline,
         }
@@ -51,8 +51,8 @@ impl<'a> Like<'a> {
 }
 
 #[derive(Clone, Debug)]
-struct Part {
-    segment: Segment,
+struct SegmentBaseline {
+    segment: LegsSegment,
     bias: Vec<Vec<f64>>,
     noise: Noise,
     /// The draws from which the noise was taken, in its units.
@@ -67,7 +67,7 @@ struct Part {
 /// Draws of sensor noise from which a covariance is taken.
 const DRAWS: usize = 16;
 
-impl Case {
+impl LegsCase {
     /// The baseline of a model with these effects, from simulations of it.
     ///
     /// Where joints stay loaded the platform swings in their play, and a lens's fault is to see that
@@ -79,9 +79,9 @@ impl Case {
     pub fn baseline(
         &self,
         effects: &[Setting],
-        segments: &[Segment],
+        segments: &[LegsSegment],
         like: Option<Like>,
-    ) -> Result<Baseline, SearchError> {
+    ) -> Result<LegsBaseline, SearchError> {
         let same = match like {
             Some(Like::Same(like)) if self.chaotic || !like.rattles => Some(like),
             _ => None,
@@ -104,7 +104,14 @@ impl Case {
             rattles,
         };
         let parts = segments.iter().map(|segment| simulated.part(segment, same, like)).collect();
-        Ok(Baseline { parts, starts, rattles, views: Arc::new(views), logs: Arc::new(logs), still })
+        Ok(LegsBaseline {
+            parts,
+            starts,
+            rattles,
+            views: Arc::new(views),
+            logs: Arc::new(logs),
+            still,
+        })
     }
 
     /// Noiseless logs of a model with these effects, which its baseline is `like`: `[run][replica]`, to
@@ -116,7 +123,7 @@ impl Case {
     pub fn predictions(
         &self,
         effects: &[Setting],
-        like: &Baseline,
+        like: &LegsBaseline,
     ) -> Result<Vec<Vec<Log>>, SearchError> {
         let still = like.rattles.then_some((&like.still, true));
         let known = Known { starts: Some(&like.starts), still };
@@ -129,9 +136,9 @@ impl Case {
     /// An effect that the machine cannot take.
     pub fn white(
         &self,
-        baseline: &Baseline,
+        baseline: &LegsBaseline,
         effects: &[Setting],
-        segments: &[Segment],
+        segments: &[LegsSegment],
     ) -> Result<DVector<f64>, Problem> {
         self.white_of(baseline, effects, segments, None)
     }
@@ -142,9 +149,9 @@ impl Case {
     /// An effect that the machine cannot take.
     pub fn white_of(
         &self,
-        baseline: &Baseline,
+        baseline: &LegsBaseline,
         effects: &[Setting],
-        segments: &[Segment],
+        segments: &[LegsSegment],
         replica: Option<usize>,
     ) -> Result<DVector<f64>, Problem> {
         let mut all = Vec::new();
@@ -170,8 +177,8 @@ fn view(log: &Log) -> Lens {
 
 /// Simulations of a model.
 struct Simulated<'a> {
-    case: &'a Case,
-    starts: &'a [Start],
+    case: &'a LegsCase,
+    starts: &'a [SwingStart],
     logs: &'a [Vec<Log>],
     views: &'a [Vec<Lens>],
     still: &'a [Log],
@@ -181,7 +188,12 @@ struct Simulated<'a> {
 impl Simulated<'_> {
     /// Bias and noise on one segment, with the swing of the `same` model at values nearby, or one as large as that of a
     /// model like it, where they are known.
-    fn part(&self, segment: &Segment, same: Option<&Baseline>, like: Option<&Baseline>) -> Part {
+    fn part(
+        &self,
+        segment: &LegsSegment,
+        same: Option<&LegsBaseline>,
+        like: Option<&LegsBaseline>,
+    ) -> SegmentBaseline {
         let views = &self.views[segment.run];
         let clean: Vec<Coefficients> =
             views.par_iter().map(|lens| self.seen(lens, segment)).collect();
@@ -191,22 +203,26 @@ impl Simulated<'_> {
             self.known_swing(same, segment).unwrap_or_else(|| self.swing(segment, &clean, &bias));
         let (noise, swing, lost) = self.noise(segment, &clean, &draws, swing, like);
         let draws = draws.iter().map(|draw| noise.whiten(draw)).collect();
-        Part { segment: segment.clone(), bias, noise, draws, swing, lost }
+        SegmentBaseline { segment: segment.clone(), bias, noise, draws, swing, lost }
     }
 
     /// Coefficients of residuals.
-    fn seen(&self, lens: &Lens, segment: &Segment) -> Coefficients {
+    fn seen(&self, lens: &Lens, segment: &LegsSegment) -> Coefficients {
         self.case.coefficients(lens, &self.starts[segment.run].machine, segment)
     }
 
     /// The same of a log with noise of its own.
-    fn noisy(&self, log: &Log, draw: usize, segment: &Segment) -> Coefficients {
+    fn noisy(&self, log: &Log, draw: usize, segment: &LegsSegment) -> Coefficients {
         let log = replica::with_noise(log, &self.case.simulator.sensors, draw as u64 + 1000);
         self.seen(&view(&log), segment)
     }
 
     /// The swing that another baseline has on a segment, if joints rattle in both or in none.
-    fn known_swing(&self, like: Option<&Baseline>, segment: &Segment) -> Option<Coefficients> {
+    fn known_swing(
+        &self,
+        like: Option<&LegsBaseline>,
+        segment: &LegsSegment,
+    ) -> Option<Coefficients> {
         let parts = &like.filter(|like| like.rattles == self.rattles)?.parts;
         Some(parts.iter().find(|part| part.segment == *segment)?.swing.clone())
     }
@@ -215,7 +231,7 @@ impl Simulated<'_> {
     /// run, and what is left of it in a mean.
     fn draws(
         &self,
-        segment: &Segment,
+        segment: &LegsSegment,
         clean: &[Coefficients],
         bias: &[Vec<f64>],
     ) -> Vec<Coefficients> {
@@ -229,7 +245,12 @@ impl Simulated<'_> {
     }
 
     /// What of the residual is the platform's swing, by the share that may be missed.
-    fn swing(&self, segment: &Segment, clean: &[Coefficients], bias: &[Vec<f64>]) -> Coefficients {
+    fn swing(
+        &self,
+        segment: &LegsSegment,
+        clean: &[Coefficients],
+        bias: &[Vec<f64>],
+    ) -> Coefficients {
         let mut swing = difference(bias, &self.seen(&view(&self.still[segment.run]), segment));
         for (channel, swing) in swing.iter_mut().enumerate() {
             let share =
@@ -239,14 +260,14 @@ impl Simulated<'_> {
         swing
     }
 
-    /// Noise that these draws are of, the swing in it, and what it has more of: see [`Part`].
+    /// Noise that these draws are of, the swing in it, and what it has more of: see [`SegmentBaseline`].
     fn noise(
         &self,
-        segment: &Segment,
+        segment: &LegsSegment,
         clean: &[Coefficients],
         draws: &[Coefficients],
         swing: Coefficients,
-        like: Option<&Baseline>,
+        like: Option<&LegsBaseline>,
     ) -> (Noise, Coefficients, f64) {
         if self.rattles && !self.case.chaotic {
             // Beside models whose noise is the sensors' alone.
@@ -274,35 +295,35 @@ impl Simulated<'_> {
     }
 }
 
-impl Baseline {
+impl LegsBaseline {
     /// How many replicas it rests on.
     pub fn replicas(&self) -> usize {
         self.views.first().map_or(0, Vec::len)
     }
 
     /// Logarithm of the determinant of the noise on segments.
-    pub fn log_determinant(&self, on: &[Segment]) -> f64 {
+    pub fn log_determinant(&self, on: &[LegsSegment]) -> f64 {
         let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
         parts.map(|part| part.noise.log_determinant()).sum()
     }
 
     /// What a model pays on segments for having lost the recorded swing, or for a rattle that the declared
     /// machine has not: its noise is larger.
-    pub fn lost(&self, on: &[Segment]) -> f64 {
+    pub fn lost(&self, on: &[LegsSegment]) -> f64 {
         let parts = self.parts.iter().filter(|part| on.contains(&part.segment));
         parts.map(|part| part.lost).sum()
     }
 
-    /// What noise alone may be like on segments: as [`Case::white`] would see it, draw by draw.
-    pub fn draws(&self, on: &[Segment]) -> Vec<DVector<f64>> {
+    /// What noise alone may be like on segments: as [`LegsCase::white`] would see it, draw by draw.
+    pub fn draws(&self, on: &[LegsSegment]) -> Vec<DVector<f64>> {
         let parts = || self.parts.iter().filter(|part| on.contains(&part.segment));
         let of = |draw: usize| parts().flat_map(move |part| part.draws[draw].iter().copied());
         (0..DRAWS).map(|draw| DVector::from_vec(of(draw).collect())).collect()
     }
 
     /// Channel (servo, closure, dynamics of each leg) and frequency in Hz of each number of
-    /// [`Case::white`] for these segments.
-    pub fn places(&self, case: &Case, segments: &[Segment]) -> Vec<(usize, f64)> {
+    /// [`LegsCase::white`] for these segments.
+    pub fn places(&self, case: &LegsCase, segments: &[LegsSegment]) -> Vec<(usize, f64)> {
         let parts = self.parts.iter().filter(|part| segments.contains(&part.segment));
         parts
             .flat_map(|part| {

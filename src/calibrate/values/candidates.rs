@@ -1,8 +1,10 @@
 //! What could be missing: every effect, at every joint, in every variant; and where to start looking
 //! for its values.
 
-use super::fit::{self, Fit, Target};
-use crate::effects::{ALL, CONTAINS, Joints, Kind, Range, Scan, Setting, Target as On, Targets};
+use super::fit::{self, LegsFit, LegsFitTarget};
+use crate::effects::{
+    ALL, CONTAINS, JointKinds, Kind, Scan, ScanRange, Setting, Target as On, Targets,
+};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -35,7 +37,7 @@ fn targets(kind: &Kind, mechanism: &Mechanism) -> Vec<On> {
     let each = || kind.joints_of(mechanism).into_iter().map(|name| On::Joints(vec![name]));
     match kind.targets {
         Targets::Machine | Targets::Commands | Targets::Body => vec![On::Machine],
-        Targets::Joint(Joints::Any) => Vec::new(),
+        Targets::Joint(JointKinds::Any) => Vec::new(),
         Targets::Joint(_) => each().collect(),
         Targets::JointOrAll(_) => each().chain([On::Machine]).collect(),
         Targets::Point | Targets::Sensor(_) | Targets::Tracker => Vec::new(),
@@ -44,7 +46,7 @@ fn targets(kind: &Kind, mechanism: &Mechanism) -> Vec<On> {
 
 /// The best values of a candidate on a target: first what is linear, then Gauss–Newton from the most
 /// promising starts. `model` is the target's residual without the candidate.
-pub fn tune(target: &Target, model: &Fit, candidate: &Setting) -> Option<Fit> {
+pub fn tune(target: &LegsFitTarget, model: &LegsFit, candidate: &Setting) -> Option<LegsFit> {
     let starts = starts(target, model, candidate);
     let fits = starts.into_iter().filter_map(|start| fit::fit(target, &[start], 8));
     fits.min_by(|a, b| a.chi2.total_cmp(&b.chi2))
@@ -53,7 +55,7 @@ pub fn tune(target: &Target, model: &Fit, candidate: &Setting) -> Option<Fit> {
 /// Starts that are kept for Gauss–Newton.
 const KEPT: usize = 3;
 
-fn starts(target: &Target, model: &Fit, candidate: &Setting) -> Vec<Setting> {
+fn starts(target: &LegsFitTarget, model: &LegsFit, candidate: &Setting) -> Vec<Setting> {
     let kind = candidate.kind;
     let change = |values: &[f64]| {
         target.look(&[candidate.with(values)]).map(|there| there.white - &model.white)
@@ -88,8 +90,8 @@ fn best(mut scored: Vec<(f64, Setting)>) -> Vec<Setting> {
 
 /// Starts of a repeating effect: the frequencies that explain most by least squares.
 fn scanned(
-    target: &Target,
-    model: &Fit,
+    target: &LegsFitTarget,
+    model: &LegsFit,
     candidate: &Setting,
     scan: Scan,
     change: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
@@ -101,9 +103,9 @@ fn scanned(
     };
     let amplitudes: Vec<usize> = (0..names.len()).filter(|&i| i != over && i != phase).collect();
     let tried = match scan.range {
-        Range::WaveNumbers(range) => waves(target, candidate, range),
-        Range::Frequencies => peaks(target, model),
-        Range::Orders([from, to, step]) => {
+        ScanRange::WaveNumbers(range) => waves(target, candidate, range),
+        ScanRange::Frequencies => peaks(target, model),
+        ScanRange::Orders([from, to, step]) => {
             (0..).map(|i| from + step * f64::from(i)).take_while(|order| *order <= to).collect()
         }
     };
@@ -146,7 +148,7 @@ fn step(kind: &Kind, name: &str) -> f64 {
 const TRIED: usize = 40;
 
 /// Frequencies in Hz at which the residual of the dynamics stands out most.
-fn peaks(target: &Target, model: &Fit) -> Vec<f64> {
+fn peaks(target: &LegsFitTarget, model: &LegsFit) -> Vec<f64> {
     /// So much (Hz) lies between two of them.
     const APART: f64 = 0.5;
     let mut power: BTreeMap<u64, f64> = BTreeMap::new();
@@ -164,7 +166,7 @@ fn peaks(target: &Target, model: &Fit) -> Vec<f64> {
 
 /// Periods in m whose waves over a leg's length stand out most in what is left of its closure or its
 /// force, when what varies slowly with the length is taken out.
-fn waves(target: &Target, candidate: &Setting, [from, to, step]: [f64; 3]) -> Vec<f64> {
+fn waves(target: &LegsFitTarget, candidate: &Setting, [from, to, step]: [f64; 3]) -> Vec<f64> {
     let first = if candidate.values().any(|(name, _)| name == "amplitude_m") { 3 } else { 6 };
     let Some(segment) = target.on.first() else { return Vec::new() };
     let Ok((signals, lengths)) = target.case.plain(target.fixed, segment) else {

@@ -1,6 +1,6 @@
 //! By how much a prediction misses a recording, channel by channel, and by how much any would.
 
-use super::model::Case;
+use super::model::LegsCase;
 use crate::calibrate::measured::replica;
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log};
@@ -89,7 +89,7 @@ pub fn rms(a: &Log, b: &Log, channel: Channel) -> Option<f64> {
 
 /// What sensor noise and rattle leave in a channel to a perfect model: a replica with noise against
 /// the mean of the others.
-pub fn floor(case: &Case, clean: &[Log], channel: Channel) -> Option<f64> {
+pub fn floor(case: &LegsCase, clean: &[Log], channel: Channel) -> Option<f64> {
     let squares: Option<Vec<f64>> = (0..DRAWS)
         .into_par_iter()
         .map(|draw| {
@@ -110,7 +110,7 @@ pub fn floor(case: &Case, clean: &[Log], channel: Channel) -> Option<f64> {
 /// Errors of all measured channels of a run: `before` and `after` are noiseless logs of the declared
 /// and of the calibrated model.
 pub fn of_run(
-    case: &Case,
+    case: &LegsCase,
     log: &Log,
     role: &'static str,
     before: &[Log],

@@ -1,14 +1,14 @@
 //! Values of effects fitted to residuals in units of noise.
 
-use super::baseline::Baseline;
-use super::least_squares::{self, Effort, Free, least_squares};
-use super::model::{Case, Segment};
+use super::baseline::LegsBaseline;
+use super::least_squares::{self, FitEffort, Free, least_squares};
+use super::model::{LegsCase, LegsSegment};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 
 /// Parameters of effects that a fit is free to choose, in a row: effect by effect, value by value.
 #[derive(Clone, Debug)]
-pub struct Fit {
+pub struct LegsFit {
     /// The effects with their values.
     pub effects: Vec<Setting>,
     /// Σ of squares of the residual in units of noise.
@@ -47,13 +47,13 @@ pub fn free(effects: &[Setting]) -> Vec<Free> {
 
 /// What is fitted to what.
 #[derive(Clone, Copy, Debug)]
-pub struct Target<'a> {
+pub struct LegsFitTarget<'a> {
     /// The rig and its runs.
-    pub case: &'a Case,
+    pub case: &'a LegsCase,
     /// Bias and noise.
-    pub baseline: &'a Baseline,
+    pub baseline: &'a LegsBaseline,
     /// Segments that count.
-    pub on: &'a [Segment],
+    pub on: &'a [LegsSegment],
     /// Effects that stay as they are.
     pub fixed: &'a [Setting],
     /// Orthonormal directions in which the residual does not count: what the values of the fixed
@@ -61,21 +61,21 @@ pub struct Target<'a> {
     pub blind: Option<&'a DMatrix<f64>>,
 }
 
-impl Target<'_> {
+impl LegsFitTarget<'_> {
     /// The residual with these effects, or none where such a machine cannot be.
-    pub fn look(&self, effects: &[Setting]) -> Option<Fit> {
+    pub fn look(&self, effects: &[Setting]) -> Option<LegsFit> {
         let together = [self.fixed, effects].concat();
         let mut white = self.case.white(self.baseline, &together, self.on).ok()?;
         if let Some(blind) = self.blind {
             white -= blind * (blind.transpose() * &white);
         }
         let chi2 = white.norm_squared();
-        chi2.is_finite().then(|| Fit { effects: effects.to_vec(), chi2, white, jacobian: None })
+        chi2.is_finite().then(|| LegsFit { effects: effects.to_vec(), chi2, white, jacobian: None })
     }
 }
 
 /// Derivative of the residual by each parameter.
-pub fn jacobian(target: &Target, fit: &Fit) -> Option<DMatrix<f64>> {
+pub fn jacobian(target: &LegsFitTarget, fit: &LegsFit) -> Option<DMatrix<f64>> {
     let look = |values: &[f64]| Some(target.look(&with_values(&fit.effects, values))?.white);
     least_squares::jacobian(&look, &free(&fit.effects), &values(&fit.effects), &fit.white)
 }
@@ -85,11 +85,11 @@ const ENOUGH: f64 = 1e-3;
 
 /// Least squares from the given values on, at most `iterations` steps; none where the model cannot be
 /// built at its start.
-pub fn fit(target: &Target, effects: &[Setting], iterations: usize) -> Option<Fit> {
+pub fn fit(target: &LegsFitTarget, effects: &[Setting], iterations: usize) -> Option<LegsFit> {
     let look = |values: &[f64]| Some(target.look(&with_values(effects, values))?.white);
-    let effort = Effort { steps: iterations, enough: ENOUGH, secant: false };
+    let effort = FitEffort { steps: iterations, enough: ENOUGH, secant: false };
     let best = least_squares(&look, &free(effects), values(effects), effort, None)?;
-    Some(Fit {
+    Some(LegsFit {
         effects: with_values(effects, &best.values),
         chi2: best.residual.norm_squared(),
         white: best.residual,

@@ -7,7 +7,7 @@
 //! their derivatives, `J̄`, knows nothing of the data's rattle: `J̄ᵀ r(θ) = 0` (instrumental variables, §1.4
 //! there) has the right values as its answer.
 
-use super::fit::{self, Fit, Target};
+use super::fit::{self, LegsFit, LegsFitTarget};
 use super::least_squares::{Free, jacobian};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
@@ -26,11 +26,13 @@ const GROWTH: f64 = 1.5;
 const RIDGE: f64 = 1e-6;
 
 /// The fit with values that rattle does not pull, and the derivatives from which their intervals follow.
-pub fn unpulled(target: &Target, fit: Fit) -> Fit {
+pub fn unpulled(target: &LegsFitTarget, fit: LegsFit) -> LegsFit {
     let free = fit::free(&fit.effects);
     let mut best = fit;
     for _ in 0..STEPS {
-        let Some(Expected { jacobian, shared }) = expected(target, &best, &free) else { break };
+        let Some(ExpectedDerivatives { jacobian, shared }) = expected(target, &best, &free) else {
+            break;
+        };
         let step = step(&jacobian, &(jacobian.transpose() * &best.white + shared));
         let values = fit::values(&best.effects);
         let bounded = values.iter().zip(step.iter()).zip(&free);
@@ -41,7 +43,7 @@ pub fn unpulled(target: &Target, fit: Fit) -> Fit {
         best.jacobian = Some(jacobian);
         let there = target.look(&fit::with_values(&best.effects, &moved));
         let Some(there) = there.filter(|there| there.chi2 < GROWTH * best.chi2) else { break };
-        best = Fit { jacobian: best.jacobian, ..there };
+        best = LegsFit { jacobian: best.jacobian, ..there };
         if sigmas < SETTLED {
             break;
         }
@@ -51,7 +53,7 @@ pub fn unpulled(target: &Target, fit: Fit) -> Fit {
 
 /// What the residual would be with effects `to` in place of `from`, by what replicas say of the change:
 /// the data's own rattle has no part in it. None where such a machine cannot be.
-pub fn changed(target: &Target, from: &[Setting], to: &[Setting]) -> Option<DVector<f64>> {
+pub fn changed(target: &LegsFitTarget, from: &[Setting], to: &[Setting]) -> Option<DVector<f64>> {
     let replicas = target.baseline.replicas();
     let of = |replica: usize| {
         let look = |effects: &[Setting]| {
@@ -64,7 +66,7 @@ pub fn changed(target: &Target, from: &[Setting], to: &[Setting]) -> Option<DVec
 }
 
 /// What replicas say of a model's derivatives.
-struct Expected {
+struct ExpectedDerivatives {
     /// Mean of the replicas' derivatives of the residual by each value.
     jacobian: DMatrix<f64>,
     /// The bias in `r` is the mean of the same replicas, so `J̄ᵀ r` has a share of the covariance that
@@ -73,7 +75,7 @@ struct Expected {
     shared: DVector<f64>,
 }
 
-fn expected(target: &Target, fit: &Fit, free: &[Free]) -> Option<Expected> {
+fn expected(target: &LegsFitTarget, fit: &LegsFit, free: &[Free]) -> Option<ExpectedDerivatives> {
     let values = fit::values(&fit.effects);
     let count = target.baseline.replicas();
     let of = |replica: usize| {
@@ -95,7 +97,7 @@ fn expected(target: &Target, fit: &Fit, free: &[Free]) -> Option<Expected> {
     }
     let together = all.iter().map(|(own, white)| own.transpose() * (white - &mean));
     let shared = together.sum::<DVector<f64>>() * (share / (count as f64 - 1.0));
-    Some(Expected { jacobian, shared })
+    Some(ExpectedDerivatives { jacobian, shared })
 }
 
 /// The step of Gauss and Newton for this gradient.

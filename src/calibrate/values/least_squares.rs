@@ -24,11 +24,11 @@ pub struct Best {
 }
 
 /// Residual in units of noise at some values, or none where there is no such model.
-pub type Look<'a> = &'a (dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync);
+pub type ResidualAt<'a> = &'a (dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync);
 
 /// Derivative of the residual by each value; none without values.
 pub fn jacobian(
-    look: Look,
+    look: ResidualAt,
     free: &[Free],
     values: &[f64],
     residual: &DVector<f64>,
@@ -42,7 +42,7 @@ pub fn jacobian(
 /// [part](REDUCED) of it where the whole one does [more than counts](too_far): what is a hair to one machine is
 /// everything to another.
 pub fn derivative(
-    look: Look,
+    look: ResidualAt,
     free: &[Free],
     values: &[f64],
     residual: &DVector<f64>,
@@ -76,7 +76,7 @@ pub const REDUCTIONS: usize = 3;
 
 /// When a fit ends, and how it comes by derivatives.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub struct FitEffort {
     /// Steps, at most.
     pub steps: usize,
     /// Drop of the sum of squares, beside as many parts of a thousand of it, that is none.
@@ -92,10 +92,10 @@ const PROMISED: f64 = 0.25;
 /// Least squares from the given values on, with these derivatives at first, if they are `known`; none where
 /// there is no model at its start.
 pub fn least_squares(
-    look: Look,
+    look: ResidualAt,
     free: &[Free],
     start: Vec<f64>,
-    effort: Effort,
+    effort: FitEffort,
     mut known: Option<DMatrix<f64>>,
 ) -> Option<Best> {
     let residual = look(&start)?;
@@ -208,7 +208,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     const WIDE: [f64; 2] = [-1e3, 1e3];
-    const NEW: Effort = Effort { steps: 100, enough: 1e-12, secant: false };
+    const NEW: FitEffort = FitEffort { steps: 100, enough: 1e-12, secant: false };
 
     /// A step that leads to where there is no machine, and one that changes more than all there is: both are shortened.
     #[test]
@@ -217,7 +217,7 @@ mod tests {
         let left = DVector::from_vec(vec![1.0]);
         let bounded = |v: &[f64]| (v[0] < 0.5).then(|| DVector::from_vec(vec![1.0 + 3.0 * v[0]]));
         let bent = |v: &[f64]| Some(DVector::from_vec(vec![1.0 + 3.0 * v[0] + 3e3 * v[0].powi(2)]));
-        let slope = |look: Look| derivative(look, &free, &[0.0], &left, 0).unwrap()[0];
+        let slope = |look: ResidualAt| derivative(look, &free, &[0.0], &left, 0).unwrap()[0];
         assert!((slope(&bounded) - 3.0).abs() < 1e-9);
         // Over 1 it would be 3003; over a hundredth of that the residual changes by a third of itself.
         assert!((slope(&bent) - 33.0).abs() < 1e-9, "{}", slope(&bent));
@@ -247,7 +247,7 @@ mod tests {
         let free = [Free { step: 1e-6, bounds: WIDE }; 5];
         let count = |secant| {
             looks.store(0, Ordering::Relaxed);
-            let effort = Effort { secant, ..NEW };
+            let effort = FitEffort { secant, ..NEW };
             let best = least_squares(&look, &free, vec![0.9; 5], effort, None).expect("a model");
             assert!(best.values.iter().all(|v| (v - 1.0).abs() < 1e-5), "{:?}", best.values);
             looks.load(Ordering::Relaxed)

@@ -5,7 +5,7 @@ use crate::calibrate::measured::lens::Lens;
 use crate::calibrate::measured::rattle;
 use crate::calibrate::measured::replica::Simulator;
 use crate::calibrate::measured::spectrum::{Signal, transform};
-use crate::calibrate::measured::start::{Start, as_seen};
+use crate::calibrate::measured::start::{SwingStart, as_seen};
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
 use crate::measure::log::{Channel, Log};
@@ -23,7 +23,7 @@ const USUAL_STEP: f64 = 1e-4;
 
 /// A recorded run, ready to be explained.
 #[derive(Debug)]
-pub struct Run {
+pub struct LegsRun {
     /// The log.
     pub log: Log,
     /// What models say of it.
@@ -33,7 +33,7 @@ pub struct Run {
     pose: Vector3<f64>,
 }
 
-impl Run {
+impl LegsRun {
     /// Prepares a log that has commands, lengths, forces and pose; or the missing channel.
     pub fn new(log: Log) -> Result<Self, Channel> {
         let commands = Arc::new(LoggedCommands::new(&log, 3)?);
@@ -104,7 +104,7 @@ pub enum SearchError {
 
 /// A stretch of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Segment {
+pub struct LegsSegment {
     /// Which run.
     pub run: usize,
     /// Which of its rows.
@@ -113,11 +113,11 @@ pub struct Segment {
 
 /// A rig, its recorded runs, and how to simulate them.
 #[derive(Debug)]
-pub struct Case {
+pub struct LegsCase {
     /// What its maker declares.
     pub rig: Scenario,
     /// What was recorded.
-    pub runs: Vec<Run>,
+    pub runs: Vec<LegsRun>,
     /// What its machines are simulated with.
     pub simulator: Simulator,
     /// Whether the declared machine's joints rattle: replicas then differ by more than sensors see.
@@ -127,7 +127,7 @@ pub struct Case {
 /// Simulations of a model.
 pub(in crate::calibrate) struct Ensemble {
     /// How each run's machine starts.
-    pub starts: Vec<Start>,
+    pub starts: Vec<SwingStart>,
     /// Noiseless logs: `[run][replica]`.
     pub logs: Vec<Vec<Log>>,
     /// Noiseless logs of each run's machine without a swing.
@@ -140,14 +140,14 @@ pub(in crate::calibrate) struct Ensemble {
 #[derive(Clone, Copy, Default)]
 pub(in crate::calibrate) struct Known<'a> {
     /// The starts of a model like it.
-    pub starts: Option<&'a [Start]>,
+    pub starts: Option<&'a [SwingStart]>,
     /// The logs of the same model without a swing at values nearby, and whether its joints rattle.
     pub still: Option<(&'a Arc<Vec<Log>>, bool)>,
 }
 
-impl Case {
+impl LegsCase {
     /// A rig and its recorded runs; whether its joints rattle is for the caller to find out.
-    pub fn new(rig: Scenario, sensors: Sensors, runs: Vec<Run>, control: StepControl) -> Self {
+    pub fn new(rig: Scenario, sensors: Sensors, runs: Vec<LegsRun>, control: StepControl) -> Self {
         Self { rig, runs, simulator: Simulator::new(sensors, control), chaotic: false }
     }
 
@@ -158,7 +158,7 @@ impl Case {
 
     /// Simulations so far, in runs of the mean length of the recorded ones with their lead, in steps of 0.1 ms.
     pub fn simulated(&self) -> f64 {
-        let time = |run: &Run| LEAD + (run.log.samples - 1) as f64 * run.log.interval;
+        let time = |run: &LegsRun| LEAD + (run.log.samples - 1) as f64 * run.log.interval;
         let recorded: f64 = self.runs.iter().map(time).sum();
         self.simulator.steps() as f64 * USUAL_STEP / recorded * self.runs.len() as f64
     }
@@ -168,7 +168,7 @@ impl Case {
         &self,
         lens: &Lens,
         mechanism: &Mechanism,
-        segment: &Segment,
+        segment: &LegsSegment,
     ) -> Vec<Vec<f64>> {
         let interval = self.runs[segment.run].log.interval * lens.stride() as f64;
         transform(&lens.residuals(mechanism, segment.rows.clone()), interval)
@@ -186,7 +186,7 @@ impl Case {
         known: Known,
     ) -> Result<Ensemble, SearchError> {
         let replicas = 2..count as u64;
-        let still = |starts: &[Start]| {
+        let still = |starts: &[SwingStart]| {
             let machines: Vec<Mechanism> = starts.iter().map(|start| start.still.clone()).collect();
             let logs = self.logs(&machines, 0..1)?;
             Ok::<_, Halt>(Arc::new(logs.into_iter().flatten().collect::<Vec<Log>>()))
@@ -196,8 +196,8 @@ impl Case {
             let mut logs = self.logs(&machines, 0..2)?;
             if self.differ(&logs) {
                 extend(&mut logs, self.logs(&machines, replicas)?);
-                let start = |machine| Start::let_go(&self.simulator, machine);
-                let starts: Vec<Start> =
+                let start = |machine| SwingStart::let_go(&self.simulator, machine);
+                let starts: Vec<SwingStart> =
                     machines.into_par_iter().map(start).collect::<Result<_, _>>()?;
                 let still = match known.still {
                     Some((logs, true)) => Arc::clone(logs),
@@ -269,9 +269,9 @@ impl Case {
 
     /// How each run's machine with these effects starts where joints stay loaded: as its log shows, which
     /// is soon found from those that are known.
-    fn starts(&self, effects: &[Setting], known: Known) -> Result<Vec<Start>, SearchError> {
+    fn starts(&self, effects: &[Setting], known: Known) -> Result<Vec<SwingStart>, SearchError> {
         let machines = self.released(effects)?.into_par_iter().zip(&self.runs).enumerate();
-        let start = |(i, (machine, run)): (usize, (Mechanism, &Run))| {
+        let start = |(i, (machine, run)): (usize, (Mechanism, &LegsRun))| {
             let like = known.starts.map(|starts| &starts[i]);
             let same = known.still.is_some();
             as_seen(&self.simulator, machine, &run.log, like, same)
@@ -286,7 +286,7 @@ impl Case {
     pub fn plain(
         &self,
         effects: &[Setting],
-        segment: &Segment,
+        segment: &LegsSegment,
     ) -> Result<(Vec<Signal>, [Vec<f64>; 3]), Problem> {
         let run = &self.runs[segment.run];
         let machine = run.machine(&self.rig, effects)?;

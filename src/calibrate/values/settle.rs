@@ -1,9 +1,9 @@
 //! Values of a model that agree with simulations of it.
 
-use super::baseline::{Baseline, Like};
-use super::fit::{self, Fit, Target};
+use super::baseline::{LegsBaseline, Like};
+use super::fit::{self, LegsFit, LegsFitTarget};
 use super::instrument::{changed, unpulled};
-use super::model::{Case, SearchError, Segment};
+use super::model::{LegsCase, LegsSegment, SearchError};
 use super::whole::{close, rough};
 use crate::effects::Setting;
 
@@ -25,9 +25,9 @@ pub const HOPEFUL: f64 = 8.0;
 #[derive(Clone, Debug)]
 pub struct Settled {
     /// Its effects at their best values on the segments that count.
-    pub fit: Fit,
+    pub fit: LegsFit,
     /// Bias and noise from simulations at (nearly) these values.
-    pub baseline: Baseline,
+    pub baseline: LegsBaseline,
     /// Σ of squares on the held-out segments.
     pub held: f64,
     /// −2 log likelihood there, but for a constant: Σ of squares plus, where joints rattle, the logarithm
@@ -39,17 +39,17 @@ pub struct Settled {
 
 /// Which data count for the fits and which are held out, and what must not be found.
 #[derive(Clone, Debug)]
-pub struct Question<'a> {
+pub struct FitData<'a> {
     /// Segments that values are fitted on.
-    pub on: &'a [Segment],
+    pub on: &'a [LegsSegment],
     /// Segments that candidates are judged on.
-    pub hold: &'a [Segment],
+    pub hold: &'a [LegsSegment],
     /// Kinds of effects that are no candidates.
     pub without: &'a [&'a str],
 }
 
-impl Question<'_> {
-    fn segments(&self) -> Vec<Segment> {
+impl FitData<'_> {
+    fn segments(&self) -> Vec<LegsSegment> {
         [self.on, self.hold].concat()
     }
 }
@@ -60,11 +60,11 @@ impl Question<'_> {
 /// # Errors
 /// A machine that cannot be simulated.
 pub fn settle(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     effects: &[Setting],
     times: usize,
-    like: Option<&Baseline>,
+    like: Option<&LegsBaseline>,
 ) -> Result<Settled, SearchError> {
     settle_while(case, question, effects, times, like, |_, change| change > SETTLED)
 }
@@ -75,10 +75,10 @@ pub fn settle(
 /// # Errors
 /// A machine that cannot be simulated.
 pub fn compared(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     effects: &[Setting],
-    like: Option<&Baseline>,
+    like: Option<&LegsBaseline>,
     promises: impl Fn(&Settled) -> bool,
 ) -> Result<Settled, SearchError> {
     settle_while(case, question, effects, 2, like, |model, change| {
@@ -91,11 +91,11 @@ pub fn compared(
 /// # Errors
 /// A machine that cannot be simulated.
 pub fn settle_while(
-    case: &Case,
-    question: &Question,
+    case: &LegsCase,
+    question: &FitData,
     effects: &[Setting],
     times: usize,
-    like: Option<&Baseline>,
+    like: Option<&LegsBaseline>,
     mut go_on: impl FnMut(&Settled, f64) -> bool,
 ) -> Result<Settled, SearchError> {
     let segments = question.segments();
@@ -105,7 +105,8 @@ pub fn settle_while(
         let same = settled.as_ref().map(|settled| Like::Same(&settled.baseline));
         let like = same.or(like.map(Like::Beside));
         let baseline = case.baseline(&effects, &segments, like)?;
-        let target = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
+        let target =
+            LegsFitTarget { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
         let iterations = if effects.is_empty() { 0 } else { 6 };
         let Some(mut fit) = fit::fit(&target, &effects, iterations) else { break };
         if baseline.rattles {
@@ -113,7 +114,7 @@ pub fn settle_while(
         } else {
             fit.jacobian = fit::jacobian(&target, &fit);
         }
-        let held = Target { on: question.hold, ..target };
+        let held = LegsFitTarget { on: question.hold, ..target };
         let held = held.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
         let change = change(&effects, &fit);
         effects.clone_from(&fit.effects);
@@ -136,7 +137,11 @@ pub fn settle_while(
 ///
 /// # Errors
 /// A machine that cannot be simulated.
-pub fn refined(case: &Case, question: &Question, model: Settled) -> Result<Settled, SearchError> {
+pub fn refined(
+    case: &LegsCase,
+    question: &FitData,
+    model: Settled,
+) -> Result<Settled, SearchError> {
     let hopeless = HOPEFUL * model.baseline.places(case, question.hold).len() as f64;
     if model.baseline.rattles || model.fit.effects.is_empty() || model.held > hopeless {
         return Ok(model);
@@ -151,20 +156,21 @@ pub fn refined(case: &Case, question: &Question, model: Settled) -> Result<Settl
     let Some(fit) = fit else { return Ok(model) };
     let baseline =
         case.baseline(&fit.effects, &question.segments(), Some(Like::Beside(&model.baseline)))?;
-    let target = Target { case, baseline: &baseline, on: question.hold, fixed: &[], blind: None };
+    let target =
+        LegsFitTarget { case, baseline: &baseline, on: question.hold, fixed: &[], blind: None };
     let held = target.look(&fit.effects).map_or(f64::INFINITY, |fit| fit.chi2);
     let misfit = held + noisiness(case, question, &baseline);
     Ok(Settled { fit, baseline, held, misfit })
 }
 
 /// What a model pays for being noisy.
-fn noisiness(case: &Case, question: &Question, baseline: &Baseline) -> f64 {
+fn noisiness(case: &LegsCase, question: &FitData, baseline: &LegsBaseline) -> f64 {
     let own = if case.chaotic { baseline.log_determinant(question.hold) } else { 0.0 };
     own + baseline.lost(question.hold)
 }
 
 /// Largest change of a value by a fit, in its standard deviations, each by itself.
-fn change(before: &[Setting], fit: &Fit) -> f64 {
+fn change(before: &[Setting], fit: &LegsFit) -> f64 {
     let (before, after) = (fit::values(before), fit::values(&fit.effects));
     let Some(jacobian) = &fit.jacobian else { return 0.0 };
     let columns = jacobian.column_iter().map(|column| column.norm());
@@ -174,7 +180,7 @@ fn change(before: &[Setting], fit: &Fit) -> f64 {
 
 /// The model with simpler variants of its effects where they do as well: fewer values that explain the
 /// held-out data up to what the values may bring.
-pub fn simplified(case: &Case, question: &Question, model: Settled) -> Settled {
+pub fn simplified(case: &LegsCase, question: &FitData, model: Settled) -> Settled {
     let mut best = model;
     for i in 0..best.fit.effects.len() {
         let effect = best.fit.effects[i].clone();
@@ -187,8 +193,14 @@ pub fn simplified(case: &Case, question: &Question, model: Settled) -> Settled {
             let mut effects = best.fit.effects.clone();
             effects[i] = simpler;
             let baseline = best.baseline.clone();
-            let on = Target { case, baseline: &baseline, on: question.on, fixed: &[], blind: None };
-            let held = Target { on: question.hold, ..on };
+            let on = LegsFitTarget {
+                case,
+                baseline: &baseline,
+                on: question.on,
+                fixed: &[],
+                blind: None,
+            };
+            let held = LegsFitTarget { on: question.hold, ..on };
             let rattles = baseline.rattles;
             let Some(fit) = fit::fit(&on, &effects, 8) else { continue };
             let fit = if rattles { unpulled(&on, fit) } else { fit };
@@ -202,7 +214,7 @@ pub fn simplified(case: &Case, question: &Question, model: Settled) -> Settled {
             if held - best.held < 2.0 * GAIN_PER_VALUE * fewer + 4.0 {
                 let jacobian = if rattles { fit.jacobian } else { fit::jacobian(&on, &fit) };
                 let misfit = best.misfit + held - best.held;
-                best = Settled { fit: Fit { jacobian, ..fit }, held, misfit, ..best };
+                best = Settled { fit: LegsFit { jacobian, ..fit }, held, misfit, ..best };
                 break;
             }
         }

@@ -5,13 +5,13 @@
 //! a recording: one leg may be nearly unloaded for an instant, and when its journal crosses over hangs on
 //! the third digit of what loads it. The start is fitted with the values ([`crate::calibrate::measured::start`]).
 
-use super::axes::Axes;
-use super::fit::{Fit, free, values, with_values};
-use super::least_squares::{Effort, Free, Look, jacobian, least_squares};
-use super::model::{Case, Segment};
+use super::axes::ValueAxes;
+use super::fit::{LegsFit, free, values, with_values};
+use super::least_squares::{FitEffort, Free, ResidualAt, jacobian, least_squares};
+use super::model::{LegsCase, LegsSegment};
 use crate::calibrate::measured::rattle::noise;
 use crate::calibrate::measured::spectrum::{Signal, transform};
-use crate::calibrate::measured::start::{KICKS, Kicks, SHOWN, Start, kicked, still};
+use crate::calibrate::measured::start::{KICKS, Kicks, SHOWN, SwingStart, kicked, still};
 use crate::effects::Setting;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::Mechanism;
@@ -27,7 +27,7 @@ const ALL: f64 = f64::INFINITY;
 const MOTION: f64 = 15.0;
 
 /// A stage of a fit.
-struct Stage {
+struct FitStage {
     /// Time in s from the start of a segment in which the swing counts; thereafter only the motion does.
     seen: f64,
     /// Highest frequency in Hz that counts.
@@ -44,16 +44,16 @@ struct Stage {
 }
 
 /// First whatever the swing: its phase has many wrong answers for values that are off.
-const ROUGH: [Stage; 1] =
-    [Stage { seen: ALL, band: MOTION, share: 2.0, steps: 4, enough: 30.0, kept: false }];
+const ROUGH: [FitStage; 1] =
+    [FitStage { seen: ALL, band: MOTION, share: 2.0, steps: 4, enough: 30.0, kept: false }];
 /// Then for so short a time that a frequency which is off has not lost a period, and longer and longer: the
 /// swing's phase pins values that are nearly right. The last one twice, for better axes.
-const CLOSE: [Stage; 5] = [
-    Stage { seen: 0.3, band: BAND, share: 0.1, steps: 4, enough: 1.0, kept: false },
-    Stage { seen: 1.0, band: BAND, share: 0.1, steps: 4, enough: 1.0, kept: false },
-    Stage { seen: ALL, band: BAND, share: 0.05, steps: 3, enough: 1.0, kept: false },
-    Stage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1, kept: true },
-    Stage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1, kept: false },
+const CLOSE: [FitStage; 5] = [
+    FitStage { seen: 0.3, band: BAND, share: 0.1, steps: 4, enough: 1.0, kept: false },
+    FitStage { seen: 1.0, band: BAND, share: 0.1, steps: 4, enough: 1.0, kept: false },
+    FitStage { seen: ALL, band: BAND, share: 0.05, steps: 3, enough: 1.0, kept: false },
+    FitStage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1, kept: true },
+    FitStage { seen: ALL, band: BAND, share: 0.0, steps: 6, enough: 0.1, kept: false },
 ];
 
 /// Share of a parameter's step, or of a kick's size, by which derivatives are taken at first: the swing's
@@ -85,10 +85,10 @@ type Spectra = Vec<Vec<f64>>;
 /// The values of a model near `effects` whose motion meets segments, whatever its swing; none where no
 /// values make the model nearly complete.
 pub fn rough(
-    case: &Case,
-    on: &[Segment],
+    case: &LegsCase,
+    on: &[LegsSegment],
     effects: &[Setting],
-    starts: &[Start],
+    starts: &[SwingStart],
 ) -> Option<Vec<Setting>> {
     let released = released(case, effects, starts)?;
     Some(from(case, on, effects, &released, &ROUGH, true)?.effects)
@@ -100,8 +100,13 @@ pub fn rough(
 ///
 /// With values that are right to a hundredth a release may swing unlike the recording, with right ones
 /// like it: kicks are taken only where the release does not do.
-pub fn close(case: &Case, on: &[Segment], effects: &[Setting], starts: &[Start]) -> Option<Fit> {
-    let from = |starts: &[Start], patient| from(case, on, effects, starts, &CLOSE, patient);
+pub fn close(
+    case: &LegsCase,
+    on: &[LegsSegment],
+    effects: &[Setting],
+    starts: &[SwingStart],
+) -> Option<LegsFit> {
+    let from = |starts: &[SwingStart], patient| from(case, on, effects, starts, &CLOSE, patient);
     let kicks = starts.iter().any(|start| start.kicks.is_some());
     let mut best = from(&released(case, effects, starts)?, !kicks);
     if mean_square(best.as_ref()) > SHOWN && kicks {
@@ -114,27 +119,31 @@ pub fn close(case: &Case, on: &[Segment], effects: &[Setting], starts: &[Start])
 }
 
 /// The same starts with machines that are let go.
-fn released(case: &Case, effects: &[Setting], starts: &[Start]) -> Option<Vec<Start>> {
+fn released(
+    case: &LegsCase,
+    effects: &[Setting],
+    starts: &[SwingStart],
+) -> Option<Vec<SwingStart>> {
     let machines = case.released(effects).ok()?;
     let pairs = starts.iter().zip(machines);
     Some(pairs.map(|(start, machine)| start.without_kicks(machine)).collect())
 }
 
-fn mean_square(fit: Option<&Fit>) -> f64 {
+fn mean_square(fit: Option<&LegsFit>) -> f64 {
     fit.map_or(f64::INFINITY, |fit| fit.chi2 / fit.white.len() as f64)
 }
 
 /// The same from starts of one kind, in these stages; a `patient` fit that does not come near takes more
 /// steps as long as they help.
 fn from(
-    case: &Case,
-    on: &[Segment],
+    case: &LegsCase,
+    on: &[LegsSegment],
     effects: &[Setting],
-    starts: &[Start],
-    stages: &[Stage],
+    starts: &[SwingStart],
+    stages: &[FitStage],
     patient: bool,
-) -> Option<Fit> {
-    let (sought, mut progress) = Sought::new(case, on, effects, starts)?;
+) -> Option<LegsFit> {
+    let (sought, mut progress) = SegmentUnknowns::new(case, on, effects, starts)?;
     for (i, stage) in stages.iter().enumerate() {
         let last = i + 1 == stages.len();
         progress.take(&sought, stage, patient, last)?;
@@ -144,11 +153,11 @@ fn from(
 }
 
 /// What is fitted to segments: values of effects, then kicks where starts have them.
-struct Sought<'a> {
-    case: &'a Case,
-    on: &'a [Segment],
+struct SegmentUnknowns<'a> {
+    case: &'a LegsCase,
+    on: &'a [LegsSegment],
     effects: &'a [Setting],
-    starts: &'a [Start],
+    starts: &'a [SwingStart],
     /// Number of the effects' values.
     count: usize,
     free: Vec<Free>,
@@ -156,14 +165,14 @@ struct Sought<'a> {
     swings: Vec<Swing>,
 }
 
-impl<'a> Sought<'a> {
+impl<'a> SegmentUnknowns<'a> {
     /// That, and a fit that has not begun.
     fn new(
-        case: &'a Case,
-        on: &'a [Segment],
+        case: &'a LegsCase,
+        on: &'a [LegsSegment],
         effects: &'a [Setting],
-        starts: &'a [Start],
-    ) -> Option<(Self, Progress)> {
+        starts: &'a [SwingStart],
+    ) -> Option<(Self, FitProgress)> {
         let count = values(effects).len();
         let mut free: Vec<Free> = free(effects);
         let mut now = values(effects);
@@ -171,30 +180,30 @@ impl<'a> Sought<'a> {
             now.extend(kicks.iter());
             free.extend([Free { step: 1.0, bounds: [f64::NEG_INFINITY, f64::INFINITY] }; KICKS]);
         }
-        let axes = Axes::along(&free, STEP / SIGMAS);
+        let axes = ValueAxes::along(&free, STEP / SIGMAS);
         let swings = on.iter().map(|segment| Swing::of(case, segment, &starts[segment.run]));
         let swings: Vec<Swing> = swings.collect::<Option<_>>()?;
         let sought = Self { case, on, effects, starts, count, free, swings };
-        Some((sought, Progress { now, axes, fit: None, last: None }))
+        Some((sought, FitProgress { now, axes, fit: None, last: None }))
     }
 
     /// What counts of each segment in a stage.
-    fn parts(&self, stage: &Stage) -> Option<Vec<Vec<Part>>> {
+    fn parts(&self, stage: &FitStage) -> Option<Vec<Vec<CountedRows>>> {
         let case = self.case;
-        let of = |(segment, swing): (&Segment, &Swing)| {
+        let of = |(segment, swing): (&LegsSegment, &Swing)| {
             let interval = case.runs[segment.run].log.interval;
             let rows = segment.rows.clone();
             let end = ((stage.seen / interval) as usize).saturating_add(rows.start).min(rows.end);
             let whole = end == rows.end;
-            let first = Part::new(case, swing, rows.start..end, stage.band, stage.share)?;
-            let motion = || Part::new(case, swing, rows.clone(), MOTION, ROUGH[0].share);
+            let first = CountedRows::new(case, swing, rows.start..end, stage.band, stage.share)?;
+            let motion = || CountedRows::new(case, swing, rows.clone(), MOTION, ROUGH[0].share);
             Some(if whole { vec![first] } else { vec![first, motion()?] })
         };
         self.on.iter().zip(&self.swings).map(of).collect()
     }
 
     /// What simulations with these values miss of what counts.
-    fn missed(&self, parts: &[Vec<Part>], values: &[f64]) -> Option<DVector<f64>> {
+    fn missed(&self, parts: &[Vec<CountedRows>], values: &[f64]) -> Option<DVector<f64>> {
         let case = self.case;
         let (own, mut rest) = values.split_at(self.count);
         let effects = with_values(self.effects, own);
@@ -216,7 +225,7 @@ impl<'a> Sought<'a> {
     }
 
     /// The fit that numbers make, kicks among them.
-    fn fit(&self, now: &[f64], residual: DVector<f64>, jacobian: &DMatrix<f64>) -> Fit {
+    fn fit(&self, now: &[f64], residual: DVector<f64>, jacobian: &DMatrix<f64>) -> LegsFit {
         let count = self.count;
         let chi2 = residual.norm_squared();
         // What kicks could do as well tells nothing of values.
@@ -226,23 +235,29 @@ impl<'a> Sought<'a> {
             own -= &others * (others.transpose() * &own);
         }
         let effects = with_values(self.effects, &now[..count]);
-        Fit { effects, chi2, white: residual, jacobian: Some(own) }
+        LegsFit { effects, chi2, white: residual, jacobian: Some(own) }
     }
 }
 
 /// How far a fit has come.
-struct Progress {
+struct FitProgress {
     now: Vec<f64>,
-    axes: Axes,
+    axes: ValueAxes,
     /// What is missed, and its derivatives.
     fit: Option<(DVector<f64>, DMatrix<f64>)>,
     /// Derivatives along the axes in units of what may be missed, and those units.
     last: Option<(DMatrix<f64>, DVector<f64>)>,
 }
 
-impl Progress {
+impl FitProgress {
     /// Takes the steps of a stage, the `last` one or not; none where they do not come near enough for more.
-    fn take(&mut self, sought: &Sought, stage: &Stage, patient: bool, last: bool) -> Option<()> {
+    fn take(
+        &mut self,
+        sought: &SegmentUnknowns,
+        stage: &FitStage,
+        patient: bool,
+        last: bool,
+    ) -> Option<()> {
         let parts = sought.parts(stage)?;
         let free = &sought.free;
         let look = |values: &[f64]| sought.missed(&parts, values);
@@ -264,7 +279,7 @@ impl Progress {
         let mut before = SLOW * COMPLETE;
         loop {
             let along = |steps: &[f64]| look(&self.axes.values(free, &self.now, steps));
-            let effort = Effort { steps: stage.steps, enough: stage.enough, secant: true };
+            let effort = FitEffort { steps: stage.steps, enough: stage.enough, secant: true };
             let best = least_squares(&along, &sigmas, vec![0.0; count], effort, known.take())?;
             let left = best.residual.norm_squared() / best.residual.len() as f64;
             if left > f64::max(COMPLETE, FALLING * before) || (left > COMPLETE && !patient) {
@@ -293,7 +308,7 @@ impl Progress {
 /// Slopes along axes no larger than what is missed grows farther away. Where joints rattle that friction has
 /// calmed, a motion is a rough function of values: at a point it may rise steeply, and be as low again some
 /// standard deviations on.
-fn smoothed(along: Look, mut slopes: DMatrix<f64>, missed: &DVector<f64>) -> DMatrix<f64> {
+fn smoothed(along: ResidualAt, mut slopes: DMatrix<f64>, missed: &DVector<f64>) -> DMatrix<f64> {
     let least = missed.norm_squared();
     let flat = |axis: usize| {
         let steps = FARTHER.iter().flat_map(|reach| [-reach, *reach]);
@@ -313,7 +328,7 @@ fn smoothed(along: Look, mut slopes: DMatrix<f64>, missed: &DVector<f64>) -> DMa
 }
 
 /// A machine on a segment, without sensor noise; none where it cannot be simulated.
-fn simulate(case: &Case, segment: &Segment, machine: &Mechanism) -> Option<Log> {
+fn simulate(case: &LegsCase, segment: &LegsSegment, machine: &Mechanism) -> Option<Log> {
     let log = case.runs[segment.run].log.part(0..segment.rows.end);
     case.simulator.record(machine, &log, 0).ok()
 }
@@ -325,7 +340,7 @@ struct Swing {
 }
 
 impl Swing {
-    fn of(case: &Case, segment: &Segment, start: &Start) -> Option<Self> {
+    fn of(case: &LegsCase, segment: &LegsSegment, start: &SwingStart) -> Option<Self> {
         let both = [&start.machine, &start.still];
         let (with, without) =
             rayon::join(|| simulate(case, segment, both[0]), || simulate(case, segment, both[1]));
@@ -333,7 +348,7 @@ impl Swing {
     }
 
     /// Its square on rows in units of noise, smooth over frequency.
-    fn squares(&self, case: &Case, rows: &Range<usize>) -> Option<Spectra> {
+    fn squares(&self, case: &LegsCase, rows: &Range<usize>) -> Option<Spectra> {
         let smooth = |channel: Vec<f64>| {
             let mean = |k: usize| {
                 let near = k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(channel.len());
@@ -348,13 +363,19 @@ impl Swing {
 }
 
 /// What counts of a segment: rows, and by how much each frequency of them may be missed.
-struct Part {
+struct CountedRows {
     rows: Range<usize>,
     noise: Spectra,
 }
 
-impl Part {
-    fn new(case: &Case, swing: &Swing, rows: Range<usize>, band: f64, share: f64) -> Option<Self> {
+impl CountedRows {
+    fn new(
+        case: &LegsCase,
+        swing: &Swing,
+        rows: Range<usize>,
+        band: f64,
+        share: f64,
+    ) -> Option<Self> {
         let mut noise = swing.squares(case, &rows)?;
         for channel in &mut noise {
             channel.truncate((channel.len() as f64 * band / BAND).ceil() as usize);
@@ -364,7 +385,7 @@ impl Part {
     }
 
     /// Recording less simulation in units of what may be missed.
-    fn missed(&self, case: &Case, log: &Log, simulated: &Log) -> Option<Vec<f64>> {
+    fn missed(&self, case: &LegsCase, log: &Log, simulated: &Log) -> Option<Vec<f64>> {
         let missed = difference(case, &self.rows, log, simulated)?;
         let pairs = missed.iter().zip(&self.noise);
         Some(pairs.flat_map(|(r, noise)| r.iter().zip(noise).map(|(r, noise)| r / noise)).collect())
@@ -372,13 +393,13 @@ impl Part {
 }
 
 /// By how much each number that counts may be missed.
-fn units(parts: &[Vec<Part>]) -> DVector<f64> {
+fn units(parts: &[Vec<CountedRows>]) -> DVector<f64> {
     let channels = parts.iter().flatten().flat_map(|part| part.noise.iter().flatten());
     DVector::from_iterator(channels.clone().count(), channels.copied())
 }
 
 /// Difference of two logs on rows in units of noise.
-fn difference(case: &Case, rows: &Range<usize>, a: &Log, b: &Log) -> Option<Spectra> {
+fn difference(case: &LegsCase, rows: &Range<usize>, a: &Log, b: &Log) -> Option<Spectra> {
     let signal = |channel: Channel| {
         let unit = noise(&case.simulator.sensors, channel)?;
         let [a, b] = [a, b].map(|log| log.get(channel).map(|v| &v[rows.clone()]));

@@ -4,7 +4,7 @@ use crate::cli::shared::catalogue::Catalogue;
 use crate::cli::shared::failure::Failure;
 use crate::cli::shared::output;
 use crate::cli::shared::table::paragraph;
-use crate::effects::{ALL, Joints, Kind, Parameter, Senses, Targets, named};
+use crate::effects::{ALL, JointKinds, Kind, Parameter, Senses, Targets, named};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde_json::{Value, json};
@@ -82,14 +82,16 @@ fn example(kind: &Kind) -> String {
     text += match kind.targets {
         Targets::Machine | Targets::Commands | Targets::Tracker => "",
         Targets::Joint(joints) => match joints {
-            Joints::Prismatic | Joints::DrivenPrismatic | Joints::Driven => "    joint = \"P1\"\n",
-            Joints::Anchor | Joints::Any => "    joint = \"A1\"\n",
-            Joints::Revolute | Joints::Bearing => "    joint = \"C1\"\n",
-            Joints::DrivenRevolute => "    joint = \"O\"\n",
-            Joints::Sampled => "    joint = \"P1\"               # of a drive stage\n",
+            JointKinds::Prismatic | JointKinds::DrivenPrismatic | JointKinds::Driven => {
+                "    joint = \"P1\"\n"
+            }
+            JointKinds::Anchor | JointKinds::Any => "    joint = \"A1\"\n",
+            JointKinds::Revolute | JointKinds::Bearing => "    joint = \"C1\"\n",
+            JointKinds::DrivenRevolute => "    joint = \"O\"\n",
+            JointKinds::Sampled => "    joint = \"P1\"               # of a drive stage\n",
         },
         Targets::JointOrAll(joints) => match joints {
-            Joints::Prismatic | Joints::DrivenPrismatic | Joints::Driven => {
+            JointKinds::Prismatic | JointKinds::DrivenPrismatic | JointKinds::Driven => {
                 "    joint = \"P1\"              # without this line: all of them\n"
             }
             _ => "    joint = \"C1\"              # without this line: all of them\n",
@@ -147,46 +149,46 @@ fn rule(targets: Targets) -> &'static str {
     }
 }
 
-fn rule_of_joint(joints: Joints) -> &'static str {
+fn rule_of_joint(joints: JointKinds) -> &'static str {
     match joints {
-        Joints::Prismatic => {
+        JointKinds::Prismatic => {
             "a prismatic joint, such as \"P1\", or a list of some with a common cause"
         }
-        Joints::DrivenPrismatic => {
+        JointKinds::DrivenPrismatic => {
             "a prismatic joint with a drive, such as \"P1\", or a list of some with a common cause"
         }
-        Joints::Driven => {
+        JointKinds::Driven => {
             "a joint with a drive, such as \"P1\", or a list of some with a common cause"
         }
-        Joints::Sampled => {
+        JointKinds::Sampled => {
             "a joint whose drive has a sampled controller, such as \"P1\" of a drive stage, or a list of \
                  some with a common cause"
         }
-        Joints::Revolute | Joints::Bearing => {
+        JointKinds::Revolute | JointKinds::Bearing => {
             "a revolute joint, such as \"A1\" or \"C1\", or a list of some with a common cause"
         }
-        Joints::DrivenRevolute => {
+        JointKinds::DrivenRevolute => {
             "a revolute joint with a drive, such as \"O\" of a four-bar, or a list of some with a common \
                  cause"
         }
-        Joints::Anchor => {
+        JointKinds::Anchor => {
             "a revolute joint whose bearing is on the base, such as \"A1\", or a list of some with a \
                  common cause"
         }
-        Joints::Any => {
+        JointKinds::Any => {
             "a joint, prismatic or revolute, such as \"P1\" or \"A1\", or a list of some with a common \
                  cause"
         }
     }
 }
 
-fn rule_of_joint_or_all(joints: Joints) -> &'static str {
+fn rule_of_joint_or_all(joints: JointKinds) -> &'static str {
     match joints {
-        Joints::Prismatic | Joints::DrivenPrismatic => {
+        JointKinds::Prismatic | JointKinds::DrivenPrismatic => {
             "a prismatic joint with a drive, such as \"P1\", or a list of some; all of them when none is \
                  named"
         }
-        Joints::Driven => {
+        JointKinds::Driven => {
             "a joint with a drive, such as \"P1\", or a list of some; all of them when none is named"
         }
         _ => {
@@ -211,12 +213,12 @@ fn rule_of_sensor(senses: Senses) -> &'static str {
 pub fn described(kind: &Kind) -> Value {
     let joints = match kind.targets.joints() {
         None => "none",
-        Some(Joints::Prismatic | Joints::DrivenPrismatic) => "prismatic",
-        Some(Joints::Driven | Joints::Sampled) => "driven",
-        Some(Joints::Revolute | Joints::Bearing) => "revolute",
-        Some(Joints::DrivenRevolute) => "driven-revolute",
-        Some(Joints::Anchor) => "anchor",
-        Some(Joints::Any) => "any",
+        Some(JointKinds::Prismatic | JointKinds::DrivenPrismatic) => "prismatic",
+        Some(JointKinds::Driven | JointKinds::Sampled) => "driven",
+        Some(JointKinds::Revolute | JointKinds::Bearing) => "revolute",
+        Some(JointKinds::DrivenRevolute) => "driven-revolute",
+        Some(JointKinds::Anchor) => "anchor",
+        Some(JointKinds::Any) => "any",
     };
     let target = match kind.targets {
         Targets::Machine | Targets::Commands => "machine",

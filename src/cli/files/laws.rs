@@ -5,7 +5,7 @@ use crate::cli::shared::failure::Failure;
 use crate::cli::shared::options::{FolderOptions, Sets};
 use crate::cli::shared::output;
 use crate::cli::shared::table::paragraph;
-use crate::contact::laws::{ALL, Kind, Losses, Parameter, named};
+use crate::contact::laws::{ALL, LawKind, LawParameter, Losses, named};
 use crate::study::laws::{LAWS_FILE, LawFigures, figures, law_of, write_laws};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -52,12 +52,12 @@ const INTRODUCTION: &str = "A contact law is chosen by contact.law, for one join
      these, law = \"native\" leaves contacts to the physics engine, and law = \"ideal\" has no clearance.";
 
 /// What is printed.
-const CATALOGUE: Catalogue<Kind> =
+const CATALOGUE: Catalogue<LawKind> =
     Catalogue { all: &ALL, introduction: INTRODUCTION, explained, example, described };
 
 pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let one = arguments.name.as_deref().and_then(named);
-    let chosen: Vec<&'static Kind> = one.map_or_else(|| ALL.to_vec(), |kind| vec![kind]);
+    let chosen: Vec<&'static LawKind> = one.map_or_else(|| ALL.to_vec(), |kind| vec![kind]);
     if arguments.folder.out.is_some() {
         return draw(arguments, &chosen);
     }
@@ -71,7 +71,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Writes the pictures.
-fn draw(arguments: &Arguments, chosen: &[&'static Kind]) -> Result<(), Failure> {
+fn draw(arguments: &Arguments, chosen: &[&'static LawKind]) -> Result<(), Failure> {
     let all: Vec<LawFigures> = chosen
         .iter()
         .map(|kind| Ok(figures(kind, &*law_of(kind, &arguments.sets.all())?)))
@@ -87,7 +87,7 @@ fn draw(arguments: &Arguments, chosen: &[&'static Kind]) -> Result<(), Failure> 
 }
 
 /// A law for people.
-fn explained(kind: &Kind) -> String {
+fn explained(kind: &LawKind) -> String {
     let mut text = format!("{}\n", kind.name);
     text += &paragraph("  ", "  ", kind.summary);
     for (label, content) in
@@ -96,7 +96,7 @@ fn explained(kind: &Kind) -> String {
         text += &paragraph(&format!("    {label:<10}"), &" ".repeat(14), content);
     }
     text.push('\n');
-    let columns = |p: &Parameter| {
+    let columns = |p: &LawParameter| {
         let unit = if p.unit.is_empty() { "-" } else { p.unit };
         [p.name, unit, p.range.in_words(), &format!("default {}", p.default)].map(str::to_owned)
     };
@@ -105,7 +105,7 @@ fn explained(kind: &Kind) -> String {
 }
 
 /// A `[contact]` that can be pasted into a scenario.
-fn example(kind: &Kind) -> String {
+fn example(kind: &LawKind) -> String {
     let mut text = format!("Example:\n\n    [contact]\n    law = \"{}\"\n", kind.name);
     let keys: &[&str] = match kind.losses {
         Losses::Elastic => &[],
@@ -126,7 +126,7 @@ fn example(kind: &Kind) -> String {
 }
 
 /// A law for programs.
-pub fn described(kind: &Kind) -> Value {
+pub fn described(kind: &LawKind) -> Value {
     let parameters = kind.parameters.iter().map(|p| {
         json!({
             "name": p.name, "unit": p.unit, "range": p.range.in_words(), "default": p.default,

@@ -1,6 +1,6 @@
 //! `freeplay plan`: what to record next.
 
-use crate::calibrate::plan::{Done, PLAN_FILE, Request, into_folder, prepare};
+use crate::calibrate::plan::{FinishedPlan, PLAN_FILE, PlanRequest, into_folder, prepare};
 use crate::cli::shared::failure::{Failure, say_how_written, warn_of_doubts};
 use crate::cli::shared::options::{FolderOptions, PrintOptions, Sets};
 use crate::cli::shared::progress::Spinner;
@@ -92,7 +92,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let rig = Scenario::load(Some(&arguments.rig), &arguments.sets.all())?;
     warn_of_doubts(&rig);
     say_how_written(arguments.data.iter().map(PathBuf::as_path));
-    let request = Request {
+    let request = PlanRequest {
         data: arguments.data.clone(),
         between: arguments.between.clone(),
         detect: arguments.detect.clone(),
@@ -114,7 +114,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The result for people.
-fn text(done: &Done) -> String {
+fn text(done: &FinishedPlan) -> String {
     let planned = &done.planned;
     let rows = planned.questions.iter().map(|question| {
         let before = question.before.as_ref();

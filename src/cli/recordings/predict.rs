@@ -4,7 +4,7 @@ use crate::calibrate::errors::ChannelError;
 use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder, reads_by_instruments};
 use crate::calibrate::result::CalibrateError;
 use crate::calibrate::sensed::predict as sensed;
-use crate::calibrate::sensed::windows::predict::{self as windows, Asked};
+use crate::calibrate::sensed::windows::predict::{self as windows, AskedWindows};
 use crate::calibrate::{quantity, recording};
 use crate::cli::shared::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_doubts};
 use crate::cli::shared::options::{FolderOptions, PrintOptions, Sets};
@@ -67,7 +67,8 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     warn_of_doubts(&model);
     say_how_written([arguments.data.as_path()]);
     if model.mechanism.has_sensors() {
-        let asked = Asked { window: arguments.window, fit: arguments.fit, from: arguments.from };
+        let asked =
+            AskedWindows { window: arguments.window, fit: arguments.fit, from: arguments.from };
         if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {
             return by_windows(arguments, &model, &prepared);
         }
@@ -127,7 +128,7 @@ fn shown(arguments: &Arguments, predicted: &Predicted, remarks: &[String]) -> Re
 fn by_windows(
     arguments: &Arguments,
     model: &Scenario,
-    prepared: &windows::Prepared,
+    prepared: &windows::PreparedWindows,
 ) -> Result<(), Failure> {
     let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
     let predicted = Spinner::during(arguments.print.quiet, |tell| {

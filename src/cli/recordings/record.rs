@@ -2,7 +2,9 @@
 
 use crate::calibrate::plausibility::CALIBRATE;
 use crate::calibrate::quantity;
-use crate::calibrate::record::{Done, RECORD_FILE, RIG_FILE, Rows, into_folder, prepare};
+use crate::calibrate::record::{
+    FinishedRecordings, RECORD_FILE, RIG_FILE, RowCount, into_folder, prepare,
+};
 use crate::calibrate::sensed::thresholds::{LOWEST_RATE, SHORTEST};
 use crate::cli::shared::failure::{Failure, refuse_errors};
 use crate::cli::shared::options::{FolderOptions, PrintOptions, Sets};
@@ -61,7 +63,7 @@ Examples:
   freeplay record rig.toml --set seed=2 --json --quiet | jq .shows_floors";
 
 pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
-    let rows = Rows { rate: arguments.rate, duration: arguments.duration };
+    let rows = RowCount { rate: arguments.rate, duration: arguments.duration };
     for (flag, value) in [("rate", rows.rate), ("duration", rows.duration)] {
         if !(value.is_finite() && value > 0.0) {
             let message = format!("--{flag}: is {value}; expected a number above 0");
@@ -97,7 +99,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Recordings that no calibration would take are not made.
-fn refuse_short(rows: Rows, scenario: &Scenario) -> Result<(), Failure> {
+fn refuse_short(rows: RowCount, scenario: &Scenario) -> Result<(), Failure> {
     let mut wrong = Vec::new();
     if rows.duration < SHORTEST {
         wrong.push(format!(
@@ -120,7 +122,7 @@ fn refuse_short(rows: Rows, scenario: &Scenario) -> Result<(), Failure> {
 }
 
 /// The result for people.
-fn text(done: &Done) -> String {
+fn text(done: &FinishedRecordings) -> String {
     let recorded = &done.recorded;
     let rows = recorded.errors.iter().map(|e| {
         let [before, after, floor] =

@@ -1,7 +1,7 @@
 //! `freeplay calibrate --self-test`: hidden effects, and which of them are found.
 
-use crate::calibrate::sensed::problem::Problem;
-use crate::calibrate::sensed::self_test::{NOISE, Trial, Tried, machines, rates, run, trials};
+use crate::calibrate::sensed::problem::RigProblem;
+use crate::calibrate::sensed::self_test::{NOISE, Trial, TriedTrial, machines, rates, run, trials};
 use crate::cli::shared::failure::Failure;
 use crate::cli::shared::output;
 use crate::cli::shared::parts::{PartOptions, list, named};
@@ -68,7 +68,7 @@ pub(in crate::cli) fn main(test: &SelfTest) -> Result<(), Failure> {
 }
 
 /// The trials of the table and of those that are taken as well, each once.
-fn tables(test: &SelfTest, table: Option<&Path>) -> Result<Vec<Tried>, Failure> {
+fn tables(test: &SelfTest, table: Option<&Path>) -> Result<Vec<TriedTrial>, Failure> {
     let mut all = table.map(read).transpose()?.unwrap_or_default();
     for other in test.from {
         if !other.exists() {
@@ -96,7 +96,7 @@ fn wanted(test: &SelfTest, shard: Shard) -> Result<Vec<Trial>, Failure> {
 }
 
 /// Those of the wanted trials that no table has.
-fn missing<'a>(wanted: &'a [Trial], known: &[Tried]) -> Vec<&'a Trial> {
+fn missing<'a>(wanted: &'a [Trial], known: &[TriedTrial]) -> Vec<&'a Trial> {
     let there = |trial: &Trial| known.iter().any(|tried| tried.trial.seed == trial.seed);
     wanted.iter().filter(|trial| !there(trial)).collect()
 }
@@ -121,7 +121,7 @@ fn print_missing(
 const NAMED: usize = 5;
 
 /// Prints how many trials there are, which are missing, and what those will take where finished ones say it.
-fn print_forecast(test: &SelfTest, known: &[Tried]) -> Result<(), Failure> {
+fn print_forecast(test: &SelfTest, known: &[TriedTrial]) -> Result<(), Failure> {
     let wanted = wanted(test, test.parts.shard)?;
     let missing = missing(&wanted, known);
     let threads = test.parts.threads().unwrap_or_else(cores);
@@ -196,8 +196,8 @@ fn refuse_foreign(test: &SelfTest, table: Option<&Path>, version: &str) -> Resul
 fn all_tried(
     test: &SelfTest,
     table: Option<&Path>,
-    mut all: Vec<Tried>,
-) -> Result<Vec<Tried>, Failure> {
+    mut all: Vec<TriedTrial>,
+) -> Result<Vec<TriedTrial>, Failure> {
     let version = version()?;
     refuse_foreign(test, table, &version)?;
     let wanted = wanted(test, test.parts.shard)?;
@@ -211,7 +211,7 @@ fn all_tried(
         }
     }
     let done = |seed: u64| all.iter().find(|tried| tried.trial.seed == seed).cloned();
-    let known: Vec<Option<Tried>> = wanted.iter().map(|trial| done(trial.seed)).collect();
+    let known: Vec<Option<TriedTrial>> = wanted.iter().map(|trial| done(trial.seed)).collect();
     let missing: Vec<usize> = (0..wanted.len()).filter(|&i| known[i].is_none()).collect();
     let spinner = Spinner::new(test.quiet);
     let finished = AtomicUsize::new(wanted.len() - missing.len());
@@ -262,7 +262,7 @@ fn all_tried(
 }
 
 /// Writes the rig and the recordings of a trial, to be calibrated like any others.
-fn keep(folder: &Path, problem: &Problem) -> Result<(), Failure> {
+fn keep(folder: &Path, problem: &RigProblem) -> Result<(), Failure> {
     let write = |name: &str, text: &str| {
         let path = folder.join(name);
         fs::write(&path, text).map_err(|error| refused(&path, &error))
@@ -285,7 +285,7 @@ fn version() -> Result<String, Failure> {
 }
 
 /// One trial in a line.
-fn line(tried: &Tried) -> String {
+fn line(tried: &TriedTrial) -> String {
     let trial = &tried.trial;
     let machine = format!("{} {} × {:.2}", trial.seed, trial.machine, trial.size);
     let Some(answer) = &tried.answer else {
@@ -305,7 +305,7 @@ fn line(tried: &Tried) -> String {
 }
 
 /// The trials of a table; none if there is no such file yet.
-fn read(table: &Path) -> Result<Vec<Tried>, Failure> {
+fn read(table: &Path) -> Result<Vec<TriedTrial>, Failure> {
     let text = match fs::read_to_string(table) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         text => text.map_err(|error| refused(table, &error))?,
@@ -321,7 +321,7 @@ fn read(table: &Path) -> Result<Vec<Tried>, Failure> {
 }
 
 /// Writes the table aside and gives it its name: at no time is there half a table.
-fn write(table: &Path, all: &[Tried]) -> Result<(), Failure> {
+fn write(table: &Path, all: &[TriedTrial]) -> Result<(), Failure> {
     let rows: Result<Vec<String>, _> = all.iter().map(serde_json::to_string).collect();
     let rows = rows.map_err(|error| Failure::Other(error.to_string()))?;
     output::whole(table, &(rows.join("\n") + "\n")).map_err(|error| refused(table, &error))

@@ -1,8 +1,8 @@
 //! `freeplay study`: models against measured hardware.
 
 use crate::calibrate::hardware::{
-    Missing, STUDY_FILE, StudyError, Table, emps, emps_page, folder, pendulum, pendulum_page,
-    skipped,
+    Missing, ResultsTable, STUDY_FILE, StudyError, emps, emps_page, folder, pendulum,
+    pendulum_page, skipped,
 };
 use crate::cli::shared::failure::Failure;
 use crate::cli::shared::options::{FolderOptions, PrintOptions};
@@ -114,7 +114,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The result for people.
-fn text(lead: &str, tables: &[Table], folder: &Path) -> String {
+fn text(lead: &str, tables: &[ResultsTable], folder: &Path) -> String {
     let tables = tables.iter().map(|table| words_and_numbers(&table.header, &table.rows));
     let tables: Vec<String> = tables.collect();
     format!(

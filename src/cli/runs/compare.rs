@@ -10,7 +10,7 @@ use crate::report::number;
 use crate::scenario::{Law, Scenario};
 use crate::simulate::{Finding, assemble, findings};
 use crate::study::compare::{
-    COMPARE_FILE, CompareError, Compared, Options, QUANTITIES, SAMPLE_INTERVAL, Use, compare,
+    COMPARE_FILE, CompareError, Compared, NativeUse, Options, QUANTITIES, SAMPLE_INTERVAL, compare,
     simulated_time,
 };
 use std::fmt::Write as _;
@@ -145,7 +145,7 @@ fn text(compared: &Compared) -> String {
         );
     }
     text.push('\n');
-    for verdict in c.verdicts.iter().filter(|v| v.usable == Use::No) {
+    for verdict in c.verdicts.iter().filter(|v| v.usable == NativeUse::No) {
         let label = QUANTITIES.iter().find(|q| q.key == verdict.quantity).map(|q| q.label);
         let why = format!("no: {}: {}", label.unwrap_or(verdict.quantity), verdict.reason);
         text += &paragraph("  ", "    ", &why);

@@ -4,11 +4,13 @@ use super::compare_options::{Arguments, warn_of_step};
 use crate::cli::shared::failure::{Failure, refuse_errors, warn_of_seed};
 use crate::cli::shared::progress::Progress;
 use crate::cli::shared::table::{paragraph, table};
-use crate::contact::laws::{ALL, Kind, named};
+use crate::contact::laws::{ALL, LawKind, named};
 use crate::measure::spelling::nearest;
 use crate::report::number;
 use crate::simulate::{assemble, findings};
-use crate::study::compare::by_law::{Done, LAWS_COMPARED_FILE, compare_laws, simulated_time};
+use crate::study::compare::by_law::{
+    FinishedByLaw, LAWS_COMPARED_FILE, compare_laws, simulated_time,
+};
 use crate::study::compare::{Mean, QUANTITIES, in_words};
 
 /// The comparison of laws with each other.
@@ -33,11 +35,11 @@ pub(in crate::cli) fn main(list: &str, arguments: &Arguments) -> Result<(), Fail
 ///
 /// # Errors
 /// A name that is none, and what would be one; a single law.
-pub fn kinds(list: &str) -> Result<Vec<&'static Kind>, String> {
+pub fn kinds(list: &str) -> Result<Vec<&'static LawKind>, String> {
     if list.trim() == "all" {
         return Ok(ALL.to_vec());
     }
-    let mut kinds: Vec<&'static Kind> = Vec::new();
+    let mut kinds: Vec<&'static LawKind> = Vec::new();
     for name in list.split(',').map(str::trim) {
         let Some(kind) = named(name) else {
             let names = ALL.map(|kind| kind.name);
@@ -61,7 +63,7 @@ pub fn kinds(list: &str) -> Result<Vec<&'static Kind>, String> {
 }
 
 /// The comparison of laws for people.
-fn text(done: &Done) -> String {
+fn text(done: &FinishedByLaw) -> String {
     let c = &done.compared;
     let counted = format!(
         "{}: {} laws, {} starts of {} s, compared in {} s; hits at {} m/s return {} of their speed under the \

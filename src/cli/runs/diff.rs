@@ -7,7 +7,7 @@ use crate::cli::shared::progress::Progress;
 use crate::cli::shared::table::{paragraph, table};
 use crate::simulate::{assemble, findings};
 use crate::study::diff::{
-    DIFF_FILE, DiffError, Done, Side, diff_models, diff_results, simulated_time,
+    DIFF_FILE, DiffError, FinishedDiff, Side, diff_models, diff_results, simulated_time,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -121,7 +121,7 @@ impl From<DiffError> for Failure {
 }
 
 /// The result for people.
-fn text(done: &Done) -> String {
+fn text(done: &FinishedDiff) -> String {
     let diff = &done.diff;
     let [a, b] = &diff.names;
     let heads = ["figure", a, b, "difference", "floor", "differs"];

@@ -11,7 +11,7 @@ use crate::scenario::Motion;
 use crate::simulate::unacting;
 use crate::simulate::{Summary, assemble, findings};
 use crate::study::chaos::chaotic;
-use crate::study::{self, Outcome, RunError, SUMMARY_FILE, Terms};
+use crate::study::{self, RunError, RunOutcome, SUMMARY_FILE, Terms};
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -94,7 +94,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The result for people; `has_phase` says whether the motion is one that can begin elsewhere.
-fn text(outcome: &Outcome, has_phase: bool) -> String {
+fn text(outcome: &RunOutcome, has_phase: bool) -> String {
     let s = &outcome.recorded.summary;
     let mut text = format!(
         "{}: {} s simulated in {} s, {} steps\n\n",

@@ -9,7 +9,7 @@ use crate::cli::shared::signals;
 use crate::cli::shared::table::paragraph;
 use crate::report::number;
 use crate::study::sweep::{
-    Outcome, Plan, Shard, Standing, SweepError, forecast, on_threads, sweep,
+    Plan, Shard, Standing, SweepError, SweepOutcome, forecast, on_threads, sweep,
 };
 use clap::Args;
 use serde::Serialize;
@@ -177,7 +177,7 @@ fn print_forecast(plan: &Plan, out: &Path, arguments: &Arguments) -> Result<(), 
 
 /// Prints what came out, as the user wants it.
 pub(in crate::cli) fn print(
-    outcome: &Outcome,
+    outcome: &SweepOutcome,
     title: &str,
     options: &PrintOptions,
 ) -> Result<(), Failure> {

@@ -8,7 +8,9 @@ use crate::cli::shared::table::table;
 use crate::report::{length, number};
 use crate::scenario::Scenario;
 use crate::simulate::{assemble, findings};
-use crate::study::wear::{Predicted, Request, WEAR_PREDICTED_FILE, WearError, period_of, wear};
+use crate::study::wear::{
+    PredictedWear, WEAR_PREDICTED_FILE, WearError, WearRequest, period_of, wear,
+};
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -105,7 +107,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     }
     refuse_errors(findings(&scenario, &mut assemble(&scenario)?))?;
     let folder = arguments.folder.prepare("wear", &scenario.name, WEAR_PREDICTED_FILE)?;
-    let request = Request { cycles, period, tolerance };
+    let request = WearRequest { cycles, period, tolerance };
     let mut progress = Progress::counted(cycles, "cycles", arguments.print.quiet);
     let predicted =
         progress.watched(arguments.cost.yes, |watch| wear(&scenario, request, folder, watch))?;
@@ -127,7 +129,7 @@ fn warn_of_part_cycles(period: f64, scenario: &Scenario) {
 }
 
 /// The result for people.
-fn text(predicted: &Predicted) -> String {
+fn text(predicted: &PredictedWear) -> String {
     let s = &predicted.summary;
     let mut text = format!(
         "{}: {} cycles of {} s in {} jumps, computed in {} s\n\n",

@@ -121,7 +121,7 @@ impl RingShape {
         journal: &Frame,
     ) -> (Contact, Option<[Vector3<f64>; 2]>) {
         let place = self.place(clearance, turned, bearing, journal);
-        let Place { between, penetration, gradient, .. } = place;
+        let RingPlace { between, penetration, gradient, .. } = place;
         let swept = Vector2::new(-between.y, between.x) * bearing.spin;
         let rate = gradient.dot(&(journal.velocity - bearing.velocity - swept));
         // Along a guide a slider goes as it likes.
@@ -165,12 +165,12 @@ impl RingShape {
         turned: UnitComplex<f64>,
         bearing: &Frame,
         journal: &Frame,
-    ) -> Place {
+    ) -> RingPlace {
         let between = journal.centre - bearing.centre;
         if let RingShape::Guide(normal) = self {
             let gradient = turned * normal;
             let penetration = between.dot(&gradient) - clearance.radial();
-            return Place { between, penetration, gradient, radius: 0.0 };
+            return RingPlace { between, penetration, gradient, radius: 0.0 };
         }
         let distance = between.norm();
         let n = if distance > 0.0 { between / distance } else { Vector2::x() };
@@ -179,7 +179,7 @@ impl RingShape {
         let penetration = distance - (clearance.radial() + wider);
         let inclination = if distance > 0.0 { slope / distance } else { 0.0 };
         let gradient = n - Vector2::new(-n.y, n.x) * inclination;
-        Place { between, penetration, gradient, radius: clearance.journal_radius }
+        RingPlace { between, penetration, gradient, radius: clearance.journal_radius }
     }
 }
 
@@ -202,7 +202,7 @@ impl Clearance {
 }
 
 /// Where a journal is in a ring that is not a circle, or a corner between guides, and the gradient of the penetration.
-struct Place {
+struct RingPlace {
     /// From the centre of the ring to that of the journal, in m.
     between: Vector2<f64>,
     /// In m.
@@ -212,7 +212,7 @@ struct Place {
     radius: f64,
 }
 
-impl Place {
+impl RingPlace {
     /// From the centre of ring and journal to where they touch, in m.
     fn arms(&self, normal: Vector2<f64>) -> [Vector2<f64>; 2] {
         let to_journal = normal * self.radius;

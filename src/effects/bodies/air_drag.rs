@@ -26,13 +26,13 @@ pub(in crate::effects) const KIND: Kind = Kind {
 };
 
 #[derive(Debug)]
-struct Drag {
+struct AirDrag {
     centre: Mark,
     force: f64,
     torque: f64,
 }
 
-impl Load for Drag {
+impl Load for AirDrag {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let twist = at.point(self.centre).twist;
         let (v, omega) = (twist.xy(), twist.z);
@@ -48,6 +48,6 @@ impl Load for Drag {
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let [force, torque] = ["force_Ns2_m2", "torque_Nms2"].map(|name| setting.number(name));
     let (_, Axes { centre, .. }) = setting.body(mechanism)?;
-    mechanism.loads.push(Arc::new(Drag { centre, force, torque }));
+    mechanism.loads.push(Arc::new(AirDrag { centre, force, torque }));
     Ok(())
 }

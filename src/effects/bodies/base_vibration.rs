@@ -1,6 +1,6 @@
 //! A base that shakes.
 
-use crate::effects::kind::{Range, Scan, defaults, linear};
+use crate::effects::kind::{Scan, ScanRange, defaults, linear};
 use crate::effects::{Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
@@ -48,7 +48,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     variants: &[&["ax_m_s2", "ay_m_s2", "frequency_Hz", "phase_rad"]],
     neutral: defaults,
     starts: linear,
-    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Frequencies }),
+    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: ScanRange::Frequencies }),
     apply,
 };
 

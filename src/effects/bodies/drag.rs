@@ -25,13 +25,13 @@ pub(in crate::effects) const KIND: Kind = Kind {
 };
 
 #[derive(Debug)]
-struct Drag {
+struct ViscousDrag {
     centre: Mark,
     force: f64,
     torque: f64,
 }
 
-impl Load for Drag {
+impl Load for ViscousDrag {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let twist = at.point(self.centre).twist;
         at.push_point(self.centre, -self.force * twist.xy(), -self.torque * twist.z, wrenches);
@@ -47,7 +47,7 @@ impl Load for Drag {
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let [force, torque] = ["force_Ns_m", "torque_Nms"].map(|name| setting.number(name));
     let (_, Axes { centre, .. }) = setting.body(mechanism)?;
-    mechanism.loads.push(Arc::new(Drag { centre, force, torque }));
+    mechanism.loads.push(Arc::new(ViscousDrag { centre, force, torque }));
     Ok(())
 }
 

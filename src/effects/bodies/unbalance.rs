@@ -1,6 +1,6 @@
 //! A rotor out of balance on a body.
 
-use crate::effects::kind::{Range, Scan, defaults, linear};
+use crate::effects::kind::{Scan, ScanRange, defaults, linear};
 use crate::effects::{Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Axes, Load, Mark, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
@@ -43,19 +43,19 @@ pub(in crate::effects) const KIND: Kind = Kind {
     variants: &[&["mass_radius_kg_m", "frequency_Hz", "phase_rad"]],
     neutral: defaults,
     starts: linear,
-    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: Range::Frequencies }),
+    scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: ScanRange::Frequencies }),
     apply,
 };
 
 #[derive(Debug)]
-struct Rotor {
+struct UnbalancedRotor {
     centre: Mark,
     mass_radius: f64,
     omega: f64,
     phase: f64,
 }
 
-impl Load for Rotor {
+impl Load for UnbalancedRotor {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let (sin, cos) = (self.omega * at.t + self.phase).sin_cos();
         let force = Vector2::new(cos, sin) * (self.mass_radius * self.omega * self.omega);
@@ -65,7 +65,7 @@ impl Load for Rotor {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let (_, Axes { centre, .. }) = setting.body(mechanism)?;
-    mechanism.loads.push(Arc::new(Rotor {
+    mechanism.loads.push(Arc::new(UnbalancedRotor {
         centre,
         mass_radius: setting.number("mass_radius_kg_m"),
         omega: TAU * setting.number("frequency_Hz"),

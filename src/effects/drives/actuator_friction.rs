@@ -1,7 +1,7 @@
 //! Friction between rod and cylinder.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     source: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083-1138; tanh as a \
              smooth sign",
     trace: "the force of one actuator: with the direction and the speed of its own motion",
-    targets: Targets::Joint(Joints::Prismatic),
+    targets: Targets::Joint(JointKinds::Prismatic),
     parameters: &[
         coulomb("coulomb_N", "Coulomb friction F_c in both directions", Some(0.0)),
         viscous("viscous_Ns_m", "viscous friction F_v in both directions", Some(0.0)),
@@ -63,7 +63,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
 
 /// The friction of one prismatic joint.
 #[derive(Debug)]
-struct Friction {
+struct RodFriction {
     joint: usize,
     /// F_c in N and F_v in N·s/m, inward and outward.
     inward: [f64; 2],
@@ -72,7 +72,7 @@ struct Friction {
     velocity: f64,
 }
 
-impl Load for Friction {
+impl Load for RodFriction {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let [_, rate] = at.length(self.joint);
         let [coulomb, viscous] = if rate < 0.0 { self.inward } else { self.outward };
@@ -104,7 +104,7 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
         ]
     };
     for joint in setting.prismatics(mechanism)? {
-        mechanism.loads.push(Arc::new(Friction {
+        mechanism.loads.push(Arc::new(RodFriction {
             joint,
             inward: pair("coulomb_neg_N", "viscous_neg_Ns_m"),
             outward: pair("coulomb_pos_N", "viscous_pos_Ns_m"),

@@ -2,7 +2,7 @@
 
 use super::drive_compliance::release;
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Drive, JointIndex, Mechanism, Transmission};
 
 pub(in crate::effects) const KIND: Kind = Kind {
@@ -15,7 +15,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
                the flanks have a stiffness and a damping of their own",
     source: "dead-zone model of backlash, drive without mass: Nordin and Gutman, Automatica 38 (2002) 1633-1649",
     trace: "measured pose against measured lengths: two levels, a play apart, by the sign of the actuator's force",
-    targets: Targets::JointOrAll(Joints::Driven),
+    targets: Targets::JointOrAll(JointKinds::Driven),
     parameters: &[
         Parameter::size("play_m", "m", "how far the rod can move from flank to flank", 0.01, 1e-6),
         Parameter {

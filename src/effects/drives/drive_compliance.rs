@@ -1,7 +1,7 @@
 //! A drive that is not rigidly connected to its joint.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Actuator, Drive, JointIndex, Mechanism, Transmission};
 
 /// Compliance in m/N or rad/(N·m) below which a prescribed drive stays rigid: its motion would ask for steps below
@@ -22,7 +22,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
                e = q_cmd - q; a prescribed drive holds its end as commanded",
     source: "springs in series; massless drive to first order in frequency",
     trace: "measured pose against measured lengths: with the force of the same actuator",
-    targets: Targets::JointOrAll(Joints::Driven),
+    targets: Targets::JointOrAll(JointKinds::Driven),
     parameters: &[
         Parameter::size(
             "compliance_m_N",

@@ -1,7 +1,7 @@
 //! A drive whose force comes later than its controller asks for it.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Drive, Mechanism};
 
 pub(in crate::effects) const KIND: Kind = Kind {
@@ -10,7 +10,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "(lag + lag_s) dF/dt + F = G u, u what the controller holds",
     source: "a current loop of first order",
     trace: "what the controller asks for, against the motion: with the jerk",
-    targets: Targets::Joint(Joints::Sampled),
+    targets: Targets::Joint(JointKinds::Sampled),
     parameters: &[Parameter {
         name: "lag_s",
         unit: "s",

@@ -1,7 +1,7 @@
 //! Friction between rod and cylinder that builds up with speed.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "force on the rod -F sign(v) (1 - exp(-|v|/v_f)), v the rod's speed: viscous F/v_f near rest",
     source: "a smooth curve from nothing to F; measured on the drive of the EMPS recordings (freeplay study emps)",
     trace: "the force of one actuator: less than its dry friction says where its motion is slow",
-    targets: Targets::Joint(Joints::Prismatic),
+    targets: Targets::Joint(JointKinds::Prismatic),
     parameters: &[
         Parameter::size("force_N", "N", "force F at speed", 1e4, 0.05),
         Parameter {
@@ -33,13 +33,13 @@ pub(in crate::effects) const KIND: Kind = Kind {
 };
 
 #[derive(Debug)]
-struct Friction {
+struct FilmFriction {
     joint: usize,
     force: f64,
     speed: f64,
 }
 
-impl Load for Friction {
+impl Load for FilmFriction {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let [_, rate] = at.length(self.joint);
         let built_up = -(-rate.abs() / self.speed).exp_m1();
@@ -53,7 +53,7 @@ impl Load for Friction {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     for joint in setting.prismatics(mechanism)? {
-        mechanism.loads.push(Arc::new(Friction {
+        mechanism.loads.push(Arc::new(FilmFriction {
             joint,
             force: setting.number("force_N"),
             speed: setting.number("speed_m_s"),

@@ -1,7 +1,7 @@
 //! The rotor of a motor behind a gear.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{JointIndex, Mechanism, Rotor};
 
 pub(in crate::effects) const KIND: Kind = Kind {
@@ -11,7 +11,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
                n the gear's ratio, w_r and w_j the rates of the bodies of ring and journal",
     source: "Spong, J. Dyn. Sys. Meas. Control 109 (1987) 310-319, with the term in 1/n that it leaves out",
     trace: "the torque of that drive: with the joint's own acceleration, in whatever pose",
-    targets: Targets::Joint(Joints::DrivenRevolute),
+    targets: Targets::Joint(JointKinds::DrivenRevolute),
     parameters: &[
         Parameter::size(
             "inertia_kg_m2",

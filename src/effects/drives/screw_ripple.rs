@@ -1,7 +1,7 @@
 //! A screw that is not quite even: an error, or a force, that repeats with each turn.
 
-use crate::effects::kind::{Range, Scan, defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::kind::{Scan, ScanRange, defaults, linear};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{JointIndex, Load, Mechanism, ReadingError, Situation};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -14,7 +14,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
                amplitude_N sin(2 pi read/pitch + phase) on the rod",
     source: "definition",
     trace: "measured pose against measured lengths (or the actuator's force): with the length, periodic",
-    targets: Targets::JointOrAll(Joints::DrivenPrismatic),
+    targets: Targets::JointOrAll(JointKinds::DrivenPrismatic),
     parameters: &[
         Parameter::size("amplitude_m", "m", "amplitude of the error of the length", 5e-3, 2e-6),
         Parameter::size("amplitude_N", "N", "amplitude of the force", 1e3, 0.05),
@@ -42,20 +42,20 @@ pub(in crate::effects) const KIND: Kind = Kind {
     scan: Some(Scan {
         over: "pitch_m",
         phase: "phase_rad",
-        range: Range::WaveNumbers([50.0, 1000.0, 4.0]),
+        range: ScanRange::WaveNumbers([50.0, 1000.0, 4.0]),
     }),
     apply,
 };
 
 #[derive(Clone, Copy, Debug)]
-struct Ripple {
+struct ScrewRipple {
     joint: usize,
     amplitude: f64,
     pitch: f64,
     phase: f64,
 }
 
-impl Ripple {
+impl ScrewRipple {
     /// Value and first and second derivative by the read length.
     fn wave(&self, read: f64) -> [f64; 3] {
         let number = TAU / self.pitch;
@@ -64,13 +64,13 @@ impl Ripple {
     }
 }
 
-impl ReadingError for Ripple {
+impl ReadingError for ScrewRipple {
     fn at(&self, read: f64) -> [f64; 3] {
         self.wave(read)
     }
 }
 
-impl Load for Ripple {
+impl Load for ScrewRipple {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let [length, rate] = at.length(self.joint);
         let read = at.reading(self.joint, [length, rate]);
@@ -83,7 +83,7 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
         ["amplitude_m", "amplitude_N", "pitch_m", "phase_rad"].map(|name| setting.number(name));
     for drive in setting.drives(mechanism)? {
         let JointIndex::Prismatic(joint) = mechanism.actuators[drive].joint else { continue };
-        let ripple = |amplitude| Ripple { joint, amplitude, pitch, phase };
+        let ripple = |amplitude| ScrewRipple { joint, amplitude, pitch, phase };
         if length != 0.0 {
             mechanism.actuators[drive].reading_errors.push(Arc::new(ripple(length)));
         }

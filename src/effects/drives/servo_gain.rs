@@ -1,7 +1,7 @@
 //! Servos whose gains are not the declared ones.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Drive, Mechanism};
 
 const fn relative(name: &'static str, about: &'static str) -> Parameter {
@@ -14,7 +14,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "k_p = declared k_p (1 + stiffness_relative), k_d = declared k_d (1 + damping_relative)",
     source: "definition",
     trace: "measured forces against the servo's own law: with the error of the length, and with its rate",
-    targets: Targets::JointOrAll(Joints::Driven),
+    targets: Targets::JointOrAll(JointKinds::Driven),
     parameters: &[
         relative("stiffness_relative", "relative error of the stiffness k_p"),
         relative("damping_relative", "relative error of the damping k_d"),

@@ -1,7 +1,7 @@
 //! Friction between rod and cylinder that is larger near rest.
 
 use crate::effects::kind::defaults;
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     source: "Stribeck; Bo and Pavelescu, Wear 82 (1982) 277-289; Armstrong-Helouvry, Dupont, Canudas de \
              Wit, Automatica 30 (1994) 1083-1138",
     trace: "the force of one actuator: with the direction of its own motion, most where it turns round",
-    targets: Targets::Joint(Joints::Prismatic),
+    targets: Targets::Joint(JointKinds::Prismatic),
     parameters: &[
         Parameter::size("coulomb_N", "N", "friction F_c in motion", 1e4, 0.05),
         Parameter {
@@ -68,7 +68,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
 
 /// The friction of one prismatic joint.
 #[derive(Debug)]
-struct Friction {
+struct StribeckFriction {
     joint: usize,
     coulomb: f64,
     static_friction: f64,
@@ -77,7 +77,7 @@ struct Friction {
     velocity: f64,
 }
 
-impl Load for Friction {
+impl Load for StribeckFriction {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let [_, rate] = at.length(self.joint);
         let near_rest = (-(rate / self.stribeck).powi(2)).exp();
@@ -105,7 +105,7 @@ impl Load for Friction {
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let coulomb = setting.number("coulomb_N");
     for joint in setting.prismatics(mechanism)? {
-        mechanism.loads.push(Arc::new(Friction {
+        mechanism.loads.push(Arc::new(StribeckFriction {
             joint,
             coulomb,
             static_friction: setting.value("static_N").unwrap_or(coulomb),

@@ -1,7 +1,7 @@
 //! A torque that repeats with each turn of a driven joint: cogging of a motor, a gear's teeth.
 
-use crate::effects::kind::{Range, Scan, defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::kind::{Scan, ScanRange, defaults, linear};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{JointIndex, Load, Mechanism, Memory, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "torque amplitude sin(per_turn q + phase) on the journal's body, q the joint's angle",
     source: "a Fourier term of cogging torque: Hanselman, Brushless Permanent Magnet Motor Design (2003)",
     trace: "the torque of that drive: with the angle, periodic, the same at all speeds",
-    targets: Targets::Joint(Joints::DrivenRevolute),
+    targets: Targets::Joint(JointKinds::DrivenRevolute),
     parameters: &[
         Parameter::size("amplitude", "N m", "amplitude of the torque", 1e3, 1e-3),
         Parameter {
@@ -40,7 +40,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     scan: Some(Scan {
         over: "per_turn",
         phase: "phase_rad",
-        range: Range::Orders([1.0, 64.0, 1.0]),
+        range: ScanRange::Orders([1.0, 64.0, 1.0]),
     }),
     apply,
 };
@@ -48,14 +48,14 @@ pub(in crate::effects) const KIND: Kind = Kind {
 /// The ripple of one joint; its memory is the angle of the last step's end, for whole turns count where a
 /// turn is no whole number of waves.
 #[derive(Debug)]
-struct Ripple {
+struct TorqueRipple {
     joint: JointIndex,
     amplitude: f64,
     per_turn: f64,
     phase: f64,
 }
 
-impl Load for Ripple {
+impl Load for TorqueRipple {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         self.add_after(at, self.begin(at), wrenches);
     }
@@ -79,7 +79,7 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let [amplitude, per_turn, phase] =
         ["amplitude", "per_turn", "phase_rad"].map(|name| setting.number(name));
     for joint in setting.joints(mechanism)? {
-        mechanism.loads.push(Arc::new(Ripple { joint, amplitude, per_turn, phase }));
+        mechanism.loads.push(Arc::new(TorqueRipple { joint, amplitude, per_turn, phase }));
     }
     Ok(())
 }

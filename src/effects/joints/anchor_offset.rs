@@ -1,7 +1,7 @@
 //! A base joint that is not where it was declared.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::Mechanism;
 use nalgebra::Vector2;
 
@@ -15,7 +15,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "A = A declared + (dx, dy)",
     source: "geometry",
     trace: "measured pose against measured lengths: -u.(dx, dy), u the leg's direction",
-    targets: Targets::Joint(Joints::Anchor),
+    targets: Targets::Joint(JointKinds::Anchor),
     parameters: &[
         component("dx_m", "where it really is along x, less declared"),
         component("dy_m", "where it really is along y, less declared"),

@@ -1,7 +1,7 @@
 //! Dry friction in a pivot that holds: before it slides it gives way like bristles.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Memory, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
              its fading: Olsson et al., European J. of Control 4 (1998) 176-195",
     trace: "free swings: the amplitude falls by the same angle each time, and the arm comes to rest; the \
             smallest swings are a little fast",
-    targets: Targets::JointOrAll(Joints::Revolute),
+    targets: Targets::JointOrAll(JointKinds::Revolute),
     parameters: &[
         Parameter::size("coulomb_Nm", "N m", "dry friction torque T_c", 1e3, 1e-4),
         Parameter {

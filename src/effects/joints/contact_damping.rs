@@ -2,7 +2,7 @@
 
 use super::contact_law::change;
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::Mechanism;
 
 pub(in crate::effects) const KIND: Kind = Kind {
@@ -11,7 +11,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "damping of the contact law = declared damping (1 + relative)",
     source: "definition",
     trace: "rattle: how fast it dies, how hard the hits are; nothing where a joint's load keeps it shut",
-    targets: Targets::JointOrAll(Joints::Bearing),
+    targets: Targets::JointOrAll(JointKinds::Bearing),
     parameters: &[Parameter {
         name: "relative",
         unit: "",

@@ -2,7 +2,7 @@
 
 use crate::contact::ForceLaw;
 use crate::contact::laws::{Loss, dissipation};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Bearing, Mechanism};
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     source: "P. Flores et al., Multibody Syst. Dyn. 25 (2011) 357-375; K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 \
              (1975) 440-445; `freeplay laws`",
     trace: "how a machine goes on after hits of different speeds; nothing where a joint's load keeps it shut",
-    targets: Targets::JointOrAll(Joints::Bearing),
+    targets: Targets::JointOrAll(JointKinds::Bearing),
     parameters: &[
         number(RESTITUTION, "", "e, the share of the speed that a hit returns", [0.01, 1.0], 1e-3),
         number(

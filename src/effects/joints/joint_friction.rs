@@ -1,7 +1,7 @@
 //! Friction in any joint.
 
 use crate::effects::kind::defaults;
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{JointIndex, Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "effort -(F_c tanh(v/v_s) + F_v v) on the slider or the journal's body, v the joint's rate",
     source: "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083-1138; tanh as a smooth sign",
     trace: "the effort of drives: with direction and speed of that joint; free swings die",
-    targets: Targets::Joint(Joints::Any),
+    targets: Targets::Joint(JointKinds::Any),
     parameters: &[
         Parameter::size("coulomb", "N or N m", "Coulomb friction F_c", 1e4, 1e-3),
         Parameter::size("viscous", "N s/m or N m s/rad", "viscous friction F_v", 1e5, 1e-4),
@@ -60,14 +60,14 @@ pub(in crate::effects) const KIND: Kind = Kind {
 
 /// The friction of one joint.
 #[derive(Debug)]
-struct Friction {
+struct JointFriction {
     joint: JointIndex,
     coulomb: f64,
     viscous: f64,
     velocity: f64,
 }
 
-impl Load for Friction {
+impl Load for JointFriction {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let [_, rate] = at.coordinate(self.joint, 0.0);
         let effort = -self.coulomb * (rate / self.velocity).tanh() - self.viscous * rate;
@@ -94,7 +94,7 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
         let [linear, angular] = NEAR_REST;
         let slow = if matches!(joint, JointIndex::Prismatic(_)) { linear } else { angular };
         let velocity = setting.value("velocity").unwrap_or(slow);
-        mechanism.loads.push(Arc::new(Friction { joint, coulomb, viscous, velocity }));
+        mechanism.loads.push(Arc::new(JointFriction { joint, coulomb, viscous, velocity }));
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! A joint with another clearance than declared.
 
 use crate::effects::kind::linear;
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Bearing, Mechanism};
 
 pub(in crate::effects) const KIND: Kind = Kind {
@@ -10,7 +10,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "journal radius = bearing radius - clearance_m; the bearing keeps its radius",
     source: "geometry",
     trace: "measured pose against measured lengths: the change of clearance, in the direction of the joint's force",
-    targets: Targets::Joint(Joints::Bearing),
+    targets: Targets::Joint(JointKinds::Bearing),
     parameters: &[Parameter {
         name: "clearance_m",
         unit: "m",

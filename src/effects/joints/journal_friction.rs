@@ -2,7 +2,7 @@
 
 use crate::contact::CoulombFriction;
 use crate::effects::kind::linear;
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Bearing, Mechanism};
 
 /// Sliding speed in m/s at which friction is near its full value where the machine has none of its
@@ -15,7 +15,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "mu F_N tanh(v_t/v_s) at the contact point, against the sliding v_t, on both bodies",
     source: "Coulomb; tanh as a smooth sign",
     trace: "with load: torques that follow the directions in which the joints turn; without: quieter rattle",
-    targets: Targets::JointOrAll(Joints::Bearing),
+    targets: Targets::JointOrAll(JointKinds::Bearing),
     parameters: &[Parameter::size(
         "mu",
         "",

@@ -2,7 +2,7 @@
 
 use crate::contact::{Extent, Film};
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Mechanism, OilFilm};
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
                C = pi mu R L^3/c^3 for viscosity mu, radius R, width L, clearance c",
     source: "short bearing, full film: Ocvirk, NACA TN 2808 (1952); Booker, J. Basic Eng. 87 (1965) 537-546",
     trace: "rattle: slower and softer hits; forces of the joints with the speed of their journals",
-    targets: Targets::JointOrAll(Joints::Bearing),
+    targets: Targets::JointOrAll(JointKinds::Bearing),
     parameters: &[
         Parameter::size(
             "damping_Ns_m",

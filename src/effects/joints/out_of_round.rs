@@ -2,7 +2,7 @@
 
 use crate::contact::{OutOfRound, RingShape};
 use crate::effects::kind::defaults;
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Bearing, Mechanism};
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
                the normal force acts along the gradient of the penetration",
     source: "roundness as a Fourier series, ISO 12181-1",
     trace: "measured pose against measured lengths: with the direction of the joint's force, lobes times a turn",
-    targets: Targets::Joint(Joints::Bearing),
+    targets: Targets::Joint(JointKinds::Bearing),
     parameters: &[
         Parameter::size(
             "amplitude_m",

@@ -1,7 +1,7 @@
 //! Friction torque in a pivot.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "torque -(T_c tanh(w/w_s) + k w) between the two bodies, w the rate at which the joint turns",
     source: "Coulomb, with tanh as a smooth sign; viscous friction",
     trace: "free swings: the amplitude falls by the same angle each time (T_c) or by the same share (k)",
-    targets: Targets::JointOrAll(Joints::Revolute),
+    targets: Targets::JointOrAll(JointKinds::Revolute),
     parameters: &[
         Parameter::size("coulomb_Nm", "N m", "dry friction torque T_c", 1e3, 1e-4),
         Parameter::size("viscous_Nms", "N m s", "viscous friction k", 1e3, 1e-5),
@@ -36,14 +36,14 @@ pub(in crate::effects) const KIND: Kind = Kind {
 
 /// The friction of one revolute joint.
 #[derive(Debug)]
-struct Friction {
+struct PivotFriction {
     joint: usize,
     coulomb: f64,
     viscous: f64,
     velocity: f64,
 }
 
-impl Load for Friction {
+impl Load for PivotFriction {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let rate = at.turning(self.joint);
         let torque = self.coulomb * (rate / self.velocity).tanh() + self.viscous * rate;
@@ -60,7 +60,7 @@ impl Load for Friction {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     for joint in setting.revolutes(mechanism)? {
-        mechanism.loads.push(Arc::new(Friction {
+        mechanism.loads.push(Arc::new(PivotFriction {
             joint,
             coulomb: setting.number("coulomb_Nm"),
             viscous: setting.number("viscous_Nms"),

@@ -1,7 +1,7 @@
 //! An encoder with a wrong scale.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Mechanism, ReadingError};
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "true length = read length + relative (read length - 0.32 m); encoder and servo see the read length",
     source: "definition",
     trace: "measured pose against measured lengths: with the length itself",
-    targets: Targets::Joint(Joints::DrivenPrismatic),
+    targets: Targets::Joint(JointKinds::DrivenPrismatic),
     parameters: &[Parameter {
         name: "relative",
         unit: "",
@@ -31,11 +31,11 @@ pub(in crate::effects) const KIND: Kind = Kind {
 };
 
 #[derive(Debug)]
-struct Scale {
+struct ActuatorScale {
     relative: f64,
 }
 
-impl ReadingError for Scale {
+impl ReadingError for ActuatorScale {
     fn at(&self, read: f64) -> [f64; 3] {
         [self.relative * (read - RIGHT_AT), self.relative, 0.0]
     }
@@ -44,7 +44,7 @@ impl ReadingError for Scale {
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     for index in setting.drives(mechanism)? {
         let relative = setting.number("relative");
-        mechanism.actuators[index].reading_errors.push(Arc::new(Scale { relative }));
+        mechanism.actuators[index].reading_errors.push(Arc::new(ActuatorScale { relative }));
     }
     Ok(())
 }

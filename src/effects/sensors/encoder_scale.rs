@@ -30,11 +30,11 @@ pub(in crate::effects) const KIND: Kind = Kind {
 };
 
 #[derive(Debug)]
-struct Scale {
+struct EncoderScale {
     relative: f64,
 }
 
-impl ReadingError for Scale {
+impl ReadingError for EncoderScale {
     /// `q − read = −read · relative/(1 + relative)`.
     fn at(&self, read: f64) -> [f64; 3] {
         let slope = -self.relative / (1.0 + self.relative);
@@ -44,7 +44,7 @@ impl ReadingError for Scale {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let relative = setting.number("relative");
-    let error: Arc<dyn ReadingError> = Arc::new(Scale { relative });
+    let error: Arc<dyn ReadingError> = Arc::new(EncoderScale { relative });
     give(setting, mechanism, &error, |sensor| sensor.scale *= 1.0 + relative)
 }
 

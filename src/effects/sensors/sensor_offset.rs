@@ -1,7 +1,7 @@
 //! An encoder with a wrong zero.
 
 use crate::effects::kind::{defaults, linear};
-use crate::effects::{Joints, Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{JointKinds, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Mechanism, ReadingError};
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     equation: "true length = read length + offset; encoder and servo see the read length",
     source: "definition",
     trace: "measured pose against measured lengths: the same at all lengths and times",
-    targets: Targets::Joint(Joints::DrivenPrismatic),
+    targets: Targets::Joint(JointKinds::DrivenPrismatic),
     parameters: &[Parameter {
         name: "offset_m",
         unit: "m",

@@ -138,12 +138,12 @@ impl Efforts {
 
 /// A table at work in a machine.
 #[derive(Debug)]
-struct Applied {
+struct AppliedEfforts {
     table: Arc<Efforts>,
     joints: Vec<JointIndex>,
 }
 
-impl Load for Applied {
+impl Load for AppliedEfforts {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let motion: Vec<[f64; 2]> = self
             .joints
@@ -175,7 +175,7 @@ pub(in crate::effects) fn apply(setting: &Setting, mechanism: &mut Mechanism) ->
         )
     };
     let joints = table.joints.iter().map(find).collect::<Result<Vec<JointIndex>, Wrong>>()?;
-    mechanism.loads.push(Arc::new(Applied { table: Arc::clone(table), joints }));
+    mechanism.loads.push(Arc::new(AppliedEfforts { table: Arc::clone(table), joints }));
     Ok(())
 }
 

@@ -73,7 +73,7 @@ impl History {
 
 /// A history at work in a machine.
 #[derive(Debug)]
-struct Applied {
+struct AppliedHistory {
     history: Arc<History>,
     joints: Vec<JointIndex>,
 }
@@ -81,7 +81,7 @@ struct Applied {
 /// Steps in s no shorter than this lead up to the first instant: a force that begins within one is no jump.
 const LEAD_UP: f64 = 1e-4;
 
-impl Load for Applied {
+impl Load for AppliedHistory {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         for (k, joint) in self.joints.iter().enumerate() {
             let effort = self.history.at(k, at.t);
@@ -114,7 +114,7 @@ pub(in crate::effects) fn apply(
         joint.map(|(_, joint)| joint).ok_or_else(|| setting.stranger(name, "joint", &known))
     };
     let joints = history.joints.iter().map(find).collect::<Result<Vec<JointIndex>, Wrong>>()?;
-    mechanism.loads.push(Arc::new(Applied { history: Arc::clone(history), joints }));
+    mechanism.loads.push(Arc::new(AppliedHistory { history: Arc::clone(history), joints }));
     Ok(())
 }
 

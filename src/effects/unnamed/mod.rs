@@ -104,7 +104,7 @@ const REST: f64 = 5e-3;
 
 /// The motion that a map's features are made of.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Motion {
+pub struct MapMotion {
     /// Pose of the output (m, m, rad).
     pub pose: Vector3<f64>,
     /// Its velocity (m/s, m/s, rad/s).
@@ -130,7 +130,7 @@ impl Map {
     }
 
     /// Features of a motion; `commands` are those of all actuators.
-    pub fn features(&self, motion: Motion, commands: &[Command]) -> Vec<f64> {
+    pub fn features(&self, motion: MapMotion, commands: &[Command]) -> Vec<f64> {
         let relative = Vector3::from_fn(|i, _| (motion.pose[i] - self.middle[i]) / self.reach[i]);
         let odd = |v: f64| [v, v * v.abs(), (v / REST).tanh()];
         let [length, speed] = motion.actuator;
@@ -178,11 +178,11 @@ impl Map {
 }
 
 #[derive(Debug)]
-struct Applied {
+struct AppliedMap {
     map: Arc<Map>,
 }
 
-impl Load for Applied {
+impl Load for AppliedMap {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let state = at.mechanism.output_state(at.states);
         let pose = state.position.push(state.rotation.angle());
@@ -191,7 +191,7 @@ impl Load for Applied {
             at.mechanism.commands.at(at.t, &mut commands);
         }
         let force = |coefficients: &Vec<f64>, actuator: [f64; 2]| -> f64 {
-            let motion = Motion { pose, rate: state.twist, actuator };
+            let motion = MapMotion { pose, rate: state.twist, actuator };
             let features = self.map.features(motion, &commands);
             features.iter().zip(coefficients).map(|(f, c)| f * c).sum()
         };
@@ -214,7 +214,7 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let Some(map) = &setting.map else { return super::unnamed::efforts::apply(setting, mechanism) };
     let components = map.components(mechanism.prismatics.len());
     let commands = vec![Command::default(); mechanism.actuators.len()];
-    let features = map.features(Motion::default(), &commands).len();
+    let features = map.features(MapMotion::default(), &commands).len();
     if map.coefficients.len() != components || map.coefficients.iter().any(|l| l.len() != features)
     {
         let lengths: Vec<usize> = map.coefficients.iter().map(Vec::len).collect();
@@ -226,6 +226,6 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
             ),
         });
     }
-    mechanism.loads.push(Arc::new(Applied { map: Arc::clone(map) }));
+    mechanism.loads.push(Arc::new(AppliedMap { map: Arc::clone(map) }));
     Ok(())
 }

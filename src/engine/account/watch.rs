@@ -35,7 +35,7 @@ pub struct Peaks {
 
 /// Keeps account of what happens between rows.
 #[derive(Clone, Debug)]
-pub(in crate::engine) struct Watch {
+pub(in crate::engine) struct RunWatch {
     pub tallies: Vec<Tally>,
     pub peaks: Peaks,
     /// Angle of each body in rad, whole turns counted, when it was looked at last, and its rotation then.
@@ -51,7 +51,7 @@ pub(in crate::engine) struct Watch {
     rubbing: Option<Rubbing>,
 }
 
-impl Watch {
+impl RunWatch {
     pub fn new(mechanism: &Mechanism, rubbing: Option<Rubbing>) -> Self {
         let joints = mechanism.revolutes.len();
         Self {

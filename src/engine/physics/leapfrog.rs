@@ -20,13 +20,13 @@ use crate::engine::from_rapier;
 #[derive(Clone, Debug)]
 pub(super) struct Leapfrog {
     handles: Vec<RigidBodyHandle>,
-    history: Vec<History>,
+    history: Vec<StepHistory>,
     states: Vec<BodyState>,
     steps: usize,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct History {
+struct StepHistory {
     /// v_{n−½}
     twist: Vector3<f64>,
     /// a_{n−1}, a_{n−2}
@@ -37,7 +37,7 @@ impl Leapfrog {
     pub fn new(handles: Vec<RigidBodyHandle>, bodies: &RigidBodySet) -> Self {
         let states: Vec<_> = handles.iter().map(|&h| read(bodies, h)).collect();
         let start =
-            |s: &BodyState| History { twist: s.twist, accelerations: [Vector3::zeros(); 2] };
+            |s: &BodyState| StepHistory { twist: s.twist, accelerations: [Vector3::zeros(); 2] };
         Self { history: states.iter().map(start).collect(), handles, states, steps: 0 }
     }
 
@@ -61,7 +61,7 @@ impl Leapfrog {
             *state = read(bodies, handle);
             let a1 = (state.twist - history.twist) / since;
             let a2 = if self.steps == 1 { a1 } else { history.accelerations[0] };
-            *history = History { twist: state.twist, accelerations: [a1, a2] };
+            *history = StepHistory { twist: state.twist, accelerations: [a1, a2] };
             state.twist += (a1 + (a1 - a2) * 0.75) * (0.5 * dt);
         }
     }

@@ -11,14 +11,14 @@ use rapier2d_f64::pipeline::PhysicsWorld;
 /// Where a prismatic joint goes in one step, along and across the axis that its base has at the
 /// step's beginning, in m.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::engine) struct Target {
+pub(in crate::engine) struct MotorTarget {
     /// Length of the joint along that axis; what a motor is told.
     pub length: f64,
     /// Across: where the base's attachment point would have to be for the slider's to go straight.
     pub side: f64,
 }
 
-impl Target {
+impl MotorTarget {
     /// Where rapier must be sent for `joint` to have the length `length` (m) at the end of a step
     /// in which it turns by `turn` rad from the length `before`.
     ///
@@ -173,7 +173,7 @@ impl World {
         dt: f64,
         wrenches: &[Vector3<f64>],
         turns: Option<&[f64]>,
-        targets: impl Fn(usize) -> Option<Target>,
+        targets: impl Fn(usize) -> Option<MotorTarget>,
         advances: impl Fn(usize) -> f64,
     ) {
         for (i, (&handle, wrench)) in self.handles.iter().zip(wrenches).enumerate() {

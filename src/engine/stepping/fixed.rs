@@ -12,7 +12,7 @@
 use super::energy::{Books, Exchange, Power};
 use super::looks::Looks;
 use super::stepper::{Stepper, even_step};
-use crate::engine::physics::world::{Target, World, joint_advance};
+use crate::engine::physics::world::{MotorTarget, World, joint_advance};
 use crate::mechanism::{BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
@@ -21,7 +21,7 @@ use nalgebra::Vector3;
 const LOOKS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
 /// Steps of equal length under the forces of the present state.
-pub(in crate::engine) struct Fixed {
+pub(in crate::engine) struct FixedSteps {
     step: f64,
     pub(in crate::engine) world: World,
     dynamics: Dynamics,
@@ -48,7 +48,7 @@ pub(in crate::engine) struct Fixed {
     books: Option<Books>,
 }
 
-impl Fixed {
+impl FixedSteps {
     /// Steps of at most `step` s; with `books` it keeps what a balance of energy needs.
     pub fn new(mechanism: &Mechanism, step: f64, books: Option<Books>) -> Self {
         let zeros = vec![Vector3::zeros(); mechanism.bodies.len()];
@@ -104,7 +104,7 @@ impl Fixed {
     }
 }
 
-impl Stepper for Fixed {
+impl Stepper for FixedSteps {
     fn synchronise(&mut self, mechanism: &Mechanism, t: f64) {
         let h = self.previous_step;
         if h > 0.0 {
@@ -186,7 +186,7 @@ impl Stepper for Fixed {
             let joint = &mechanism.prismatics[i];
             let turn = joint.base.body.map_or(0.0, |body| turns[body]);
             let length = commands[dynamics.prescribed(i)?].position;
-            Some(Target::new(joint, length, now.lengths[i], turn))
+            Some(MotorTarget::new(joint, length, now.lengths[i], turn))
         };
         let advances = |i: usize| {
             joint_advance(commands[i].position - now.coordinates[i], mechanism.ring_turn(i, turns))

@@ -16,12 +16,12 @@
 //! the spring alone has limits like any law.
 
 use super::stepper::{Stepper, even_step};
-use crate::engine::physics::world::{Target, World, joint_advance};
+use crate::engine::physics::world::{MotorTarget, World, joint_advance};
 use crate::mechanism::{BodyState, Command, Drive, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
 /// Steps of equal length with rapier's contact solver.
-pub(in crate::engine) struct Native {
+pub(in crate::engine) struct NativeSteps {
     step: f64,
     last: f64,
     world: World,
@@ -31,7 +31,7 @@ pub(in crate::engine) struct Native {
     targets: Vec<Command>,
 }
 
-impl Native {
+impl NativeSteps {
     /// Steps of at most `step` s.
     pub fn new(mechanism: &Mechanism, step: f64) -> Self {
         let world = World::new(mechanism, true);
@@ -49,7 +49,7 @@ impl Native {
     }
 }
 
-impl Stepper for Native {
+impl Stepper for NativeSteps {
     fn synchronise(&mut self, mechanism: &Mechanism, t: f64) {
         self.dynamics.forces(mechanism, t, &self.states, &mut self.now);
         if self.last > 0.0 {
@@ -98,7 +98,7 @@ impl Stepper for Native {
         let before: Vec<Vector3<f64>> = self.states.iter().map(|s| s.twist).collect();
         let targets = |i: usize| {
             let length = self.targets[self.dynamics.prescribed(i)?].position;
-            Some(Target { length, side: mechanism.prismatics[i].points()[0].y })
+            Some(MotorTarget { length, side: mechanism.prismatics[i].points()[0].y })
         };
         let advances =
             |i: usize| joint_advance(self.targets[i].position - self.now.coordinates[i], 0.0);

@@ -13,7 +13,7 @@ mod remembered;
 mod solved;
 
 use self::contacts::{Touched, reached, touch, touches};
-use self::groups::Group;
+use self::groups::JointGroup;
 use self::pairs::{Pair, PlainServo};
 use super::equations::constraints::{Constraints, Rigid, groups};
 use super::equations::telescope::{Slideway, Telescope};
@@ -33,7 +33,7 @@ pub struct Dynamics {
     /// Prismatic joints that alone hold two moving bodies, and these: solved in closed form.
     telescopes: Vec<Pair>,
     /// The other rigid joints, group by group.
-    groups: Vec<Group>,
+    groups: Vec<JointGroup>,
     /// Bodies that none of these holds.
     unpaired: Vec<usize>,
     /// All drives that push, where each is a plain servo on one of the pairs.
@@ -66,12 +66,12 @@ pub struct Dynamics {
 }
 
 /// Prismatic joints that alone hold two moving bodies, and the other groups of bodies that rigid joints hold together.
-fn pairs_and_groups(mechanism: &Mechanism) -> (Vec<Pair>, Vec<Group>) {
+fn pairs_and_groups(mechanism: &Mechanism) -> (Vec<Pair>, Vec<JointGroup>) {
     let (mut pairs, mut others) = (Vec::new(), Vec::new());
     for group in groups(mechanism) {
         match Pair::of(mechanism, &group) {
             Some(pair) => pairs.push(pair),
-            None => others.push(Group::new(group)),
+            None => others.push(JointGroup::new(group)),
         }
     }
     (pairs, others)

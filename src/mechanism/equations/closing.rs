@@ -18,7 +18,7 @@ pub struct ClosingLength {
 }
 
 /// A side of a loop's polygon: one body, or the two on both sides of a driven joint.
-struct Side {
+struct PolygonSide {
     body: Option<Option<usize>>,
     joints: [JointIndex; 2],
     length: f64,
@@ -44,7 +44,7 @@ impl Mechanism {
     }
 
     /// The sides of the polygon of a loop's joints; none where one of them is prismatic.
-    fn sides(&self, joints: &[JointIndex]) -> Option<Vec<Side>> {
+    fn sides(&self, joints: &[JointIndex]) -> Option<Vec<PolygonSide>> {
         let mut commands = vec![Command::default(); self.actuators.len()];
         self.true_commands(0.0, &mut commands);
         let n = joints.len();
@@ -69,9 +69,13 @@ impl Mechanism {
                 let journal = self.revolutes[index].journal.body == other;
                 let turned = UnitComplex::new(if journal { angle } else { -angle }) * (d - c);
                 let length = (turned - (a - b)).norm();
-                sides.push(Side { body: None, joints: [from, after], length });
+                sides.push(PolygonSide { body: None, joints: [from, after], length });
             } else {
-                sides.push(Side { body: Some(body), joints: [from, to], length: (a - b).norm() });
+                sides.push(PolygonSide {
+                    body: Some(body),
+                    joints: [from, to],
+                    length: (a - b).norm(),
+                });
             }
         }
         Some(sides)

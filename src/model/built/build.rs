@@ -12,7 +12,7 @@ use crate::mechanism::{
     Attachment, Bearing, JointSpring, Mechanism, OilFilm, PointSpring, Prismatic, Reads, Revolute,
     Sensor, Stop,
 };
-use crate::scenario::{self, Described, Joint, Law, Quantity, Scenario, Spring, Target};
+use crate::scenario::{self, Described, Joint, Law, MotionTarget, Quantity, Scenario, Spring};
 use nalgebra::{UnitComplex, Vector2};
 use std::ops::Range;
 use std::sync::Arc;
@@ -32,7 +32,8 @@ pub(in crate::model) fn build(scenario: &Scenario, described: &Described) -> Bui
     let parts = Parts::of(described);
     let mut mechanism = Mechanism::free(parts.bodies.clone());
     mechanism.gravity = scenario.environment.gravity.into();
-    let Joints { laws, mut declared } = add_joints(scenario, described, &parts, &mut mechanism);
+    let BuiltJoints { laws, mut declared } =
+        add_joints(scenario, described, &parts, &mut mechanism);
     declared.extend(add_corners(scenario, described, &mut mechanism));
     let mut layout = Layout { joints: declared, ..Layout::default() };
     add_drives(scenario, described, &mut mechanism, &mut layout);
@@ -54,7 +55,7 @@ pub(in crate::model) fn build(scenario: &Scenario, described: &Described) -> Bui
 }
 
 /// What is to be known of joints that were built.
-struct Joints {
+struct BuiltJoints {
     /// As of [`Built`].
     laws: Vec<Option<HertzStep>>,
     /// Revolute joints with a declared clearance.
@@ -66,8 +67,8 @@ fn add_joints(
     described: &Described,
     parts: &Parts,
     mechanism: &mut Mechanism,
-) -> Joints {
-    let mut joints = Joints { laws: Vec::new(), declared: Vec::new() };
+) -> BuiltJoints {
+    let mut joints = BuiltJoints { laws: Vec::new(), declared: Vec::new() };
     for joint in &described.joints {
         let [first, second] = joint.points().map(|(_, point)| parts.point(point));
         match joint {
@@ -244,7 +245,7 @@ fn outputs(
         asked = described.bodies.iter().map(each).collect();
     }
     let main = match &scenario.target {
-        Some(Target::Body(name) | Target::Point(name)) => Some(name.as_str()),
+        Some(MotionTarget::Body(name) | MotionTarget::Point(name)) => Some(name.as_str()),
         None => described.outputs.first().map(scenario::Output::of),
     };
     if main.is_none() {

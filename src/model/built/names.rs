@@ -5,7 +5,7 @@ use super::shape;
 use crate::mechanism::{
     Attachment, Axes, JointIndex, Mark, Mechanism, NamedPoint, Names, Reads, Use,
 };
-use crate::scenario::{self, Described, GROUND, Joint, Scenario, Target};
+use crate::scenario::{self, Described, GROUND, Joint, MotionTarget, Scenario};
 use nalgebra::Vector2;
 use std::collections::BTreeMap;
 
@@ -60,7 +60,7 @@ pub(in crate::model) fn names(
         }
     }
     let main = match &scenario.target {
-        Some(Target::Body(name) | Target::Point(name)) => Some(name.as_str()),
+        Some(MotionTarget::Body(name) | MotionTarget::Point(name)) => Some(name.as_str()),
         None => described.outputs.first().map(scenario::Output::of),
     };
     let main = main.and_then(|name| name.split('.').next()).map(str::to_owned);

@@ -17,17 +17,18 @@ pub fn page(
     pictures: &[Picture],
     provenance: &[(String, String)],
 ) -> String {
-    let parts = [Part::Facts(facts), Part::Pictures(pictures), Part::Provenance(provenance)];
+    let parts =
+        [PagePart::Facts(facts), PagePart::Pictures(pictures), PagePart::Provenance(provenance)];
     document(title, lead, &parts)
 }
 
 /// A part of a page.
 #[derive(Debug)]
-pub enum Part<'a> {
+pub enum PagePart<'a> {
     /// The table of main results.
     Facts(&'a [Fact]),
     /// Any other table.
-    Table(Table),
+    Table(PageTable),
     /// Pictures, each with its heading and caption, numbered through the page.
     Pictures(&'a [Picture]),
     /// Paragraphs.
@@ -53,7 +54,7 @@ pub enum Part<'a> {
 /// A table with a heading and a remark. Without rows it is left out of its page, and so are columns in which no row has a
 /// value.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct PageTable {
     /// Where links find it.
     pub id: &'static str,
     /// Heading.
@@ -69,7 +70,7 @@ pub struct Table {
 /// Builds a page of any parts: headline, lead sentence, table of contents, the parts in their order.
 ///
 /// All texts are escaped; the pictures' SVG goes in as it is.
-pub fn document(title: &str, lead: &str, parts: &[Part]) -> String {
+pub fn document(title: &str, lead: &str, parts: &[PagePart]) -> String {
     let title = escaped(title);
     let lead = escaped(lead);
     let contents = contents(parts);
@@ -93,48 +94,50 @@ pub fn document(title: &str, lead: &str, parts: &[Part]) -> String {
 }
 
 /// Parts, each with the number that its first picture has.
-fn numbered<'a>(parts: &'a [Part<'a>]) -> impl Iterator<Item = (usize, &'a Part<'a>)> {
+fn numbered<'a>(parts: &'a [PagePart<'a>]) -> impl Iterator<Item = (usize, &'a PagePart<'a>)> {
     parts.iter().scan(1, |next, part| {
         let first = *next;
-        if let Part::Pictures(pictures) = part {
+        if let PagePart::Pictures(pictures) = part {
             *next += pictures.len();
         }
         Some((first, part))
     })
 }
 
-fn section(first: usize, part: &Part) -> String {
+fn section(first: usize, part: &PagePart) -> String {
     match part {
-        Part::Facts(facts) => facts_section(facts),
-        Part::Table(table) if table.rows.is_empty() => String::new(),
-        Part::Table(table) => table_section(table),
-        Part::Pictures(pictures) => (first..).zip(*pictures).map(|(n, p)| figure(n, p)).collect(),
-        Part::Text { id, title, paragraphs } => text_section(id, title, paragraphs),
-        Part::Link { file, text } => {
+        PagePart::Facts(facts) => facts_section(facts),
+        PagePart::Table(table) if table.rows.is_empty() => String::new(),
+        PagePart::Table(table) => table_section(table),
+        PagePart::Pictures(pictures) => {
+            (first..).zip(*pictures).map(|(n, p)| figure(n, p)).collect()
+        }
+        PagePart::Text { id, title, paragraphs } => text_section(id, title, paragraphs),
+        PagePart::Link { file, text } => {
             format!("<p><a href=\"{}\">{}</a></p>\n", escaped(file), escaped(text))
         }
-        Part::Provenance(provenance) => provenance_section(provenance),
+        PagePart::Provenance(provenance) => provenance_section(provenance),
     }
 }
 
-fn contents(parts: &[Part]) -> String {
+fn contents(parts: &[PagePart]) -> String {
     let mut entries = String::new();
     let mut entry = |id: &str, text: &str| {
         entries += &format!("<li><a href=\"#{id}\">{text}</a></li>\n");
     };
     for (first, part) in numbered(parts) {
         match part {
-            Part::Facts([]) | Part::Provenance([]) | Part::Link { .. } => {}
-            Part::Table(table) if table.rows.is_empty() => {}
-            Part::Facts(_) => entry("facts", "Results"),
-            Part::Table(table) => entry(table.id, &escaped(&table.title)),
-            Part::Pictures(pictures) => {
+            PagePart::Facts([]) | PagePart::Provenance([]) | PagePart::Link { .. } => {}
+            PagePart::Table(table) if table.rows.is_empty() => {}
+            PagePart::Facts(_) => entry("facts", "Results"),
+            PagePart::Table(table) => entry(table.id, &escaped(&table.title)),
+            PagePart::Pictures(pictures) => {
                 for (n, picture) in (first..).zip(*pictures) {
                     entry(&format!("figure-{n}"), &escaped(&picture.title));
                 }
             }
-            Part::Text { id, title, .. } => entry(id, &escaped(title)),
-            Part::Provenance(_) => entry("provenance", "Provenance"),
+            PagePart::Text { id, title, .. } => entry(id, &escaped(title)),
+            PagePart::Provenance(_) => entry("provenance", "Provenance"),
         }
     }
     format!("<nav aria-label=\"Contents\">\n<ul>\n{entries}</ul>\n</nav>\n")
@@ -159,7 +162,7 @@ fn facts_section(facts: &[Fact]) -> String {
     )
 }
 
-fn table_section(table: &Table) -> String {
+fn table_section(table: &PageTable) -> String {
     let has_values = |column: &usize| {
         let cells = table.rows.iter().filter_map(|row| row.get(*column));
         cells.into_iter().any(|cell| !matches!(cell.as_str(), "" | "–"))
@@ -289,7 +292,7 @@ mod tests {
 
     #[test]
     fn what_a_table_does_not_know_is_left_out_of_it() {
-        let table = |rows: &[[&str; 3]]| Table {
+        let table = |rows: &[[&str; 3]]| PageTable {
             id: "t",
             title: "Errors".to_owned(),
             header: ["channel", "before", "after"].map(str::to_owned).into(),
@@ -297,10 +300,10 @@ mod tests {
             note: "A note.".to_owned(),
         };
         let known = table(&[["x", "–", "1 mm"], ["y", "", "–"]]);
-        let html = document("T", "", &[Part::Table(known)]);
+        let html = document("T", "", &[PagePart::Table(known)]);
         assert!(html.contains("<th>channel</th><th>after</th>"), "{html}");
         assert!(html.contains("<td data-head=\"after\">1 mm</td>") && !html.contains("before<"));
-        let none = document("T", "", &[Part::Table(table(&[]))]);
+        let none = document("T", "", &[PagePart::Table(table(&[]))]);
         assert!(!none.contains("Errors") && !none.contains("A note."), "{none}");
     }
 

@@ -18,7 +18,7 @@ pub(in crate::scenario) struct Document {
 #[derive(Debug, Clone)]
 pub(in crate::scenario) struct Origins {
     source: String,
-    places: BTreeMap<String, Place>,
+    places: BTreeMap<String, KeyPlace>,
     /// Bytes of paths that may still be remembered.
     room: usize,
 }
@@ -28,7 +28,7 @@ pub(in crate::scenario) struct Origins {
 const ROOM: usize = 16 << 20;
 
 #[derive(Debug, Clone)]
-enum Place {
+enum KeyPlace {
     Line(u32),
     Set(String),
 }
@@ -173,9 +173,9 @@ impl Origins {
         let mut around = path;
         loop {
             match self.places.get(around) {
-                Some(Place::Line(line)) => return self.in_file(Some(*line)),
+                Some(KeyPlace::Line(line)) => return self.in_file(Some(*line)),
                 // A section that an override only passed through says nothing of its other keys.
-                Some(Place::Set(set)) if around == path || around == set => {
+                Some(KeyPlace::Set(set)) if around == path || around == set => {
                     return Location::Set { path: set.clone() };
                 }
                 _ => {}
@@ -191,7 +191,7 @@ impl Origins {
     pub(in crate::scenario) fn set_in(&self, section: &str) -> Option<&str> {
         let inside =
             |path: &str| path.strip_prefix(section).is_some_and(|rest| rest.starts_with('.'));
-        let given = self.places.iter().filter(|(_, place)| matches!(place, Place::Set(_)));
+        let given = self.places.iter().filter(|(_, place)| matches!(place, KeyPlace::Set(_)));
         given.map(|(path, _)| path.as_str()).find(|path| inside(path))
     }
 
@@ -204,7 +204,7 @@ impl Origins {
     fn drop_file_keys(&mut self, section: &str, table: &mut Table, dropped: impl Fn(&str) -> bool) {
         table.retain(|key, _| {
             let path = format!("{section}.{key}");
-            let keep = !dropped(key) || matches!(self.places.get(&path), Some(Place::Set(_)));
+            let keep = !dropped(key) || matches!(self.places.get(&path), Some(KeyPlace::Set(_)));
             if !keep {
                 self.forget(&path);
             }
@@ -233,7 +233,7 @@ impl Origins {
         let Some(room) = self.room.checked_sub(prefix.len() + 1 + key.len()) else { return };
         self.room = room;
         let path = join(prefix, key);
-        self.places.insert(path.clone(), Place::Line(line));
+        self.places.insert(path.clone(), KeyPlace::Line(line));
         match value.get_ref() {
             DeValue::Table(table) => self.record_table(&path, table, lines),
             DeValue::Array(elements) => {
@@ -248,13 +248,13 @@ impl Origins {
 
     /// `path` was reached by the override of `set`; a place it already has stays.
     fn record_set(&mut self, path: &str, set: &str) {
-        self.places.entry(path.to_owned()).or_insert_with(|| Place::Set(set.to_owned()));
+        self.places.entry(path.to_owned()).or_insert_with(|| KeyPlace::Set(set.to_owned()));
     }
 
     /// `path` and all below it now come from an override.
     fn replace(&mut self, path: &str) {
         self.forget(path);
-        self.places.insert(path.to_owned(), Place::Set(path.to_owned()));
+        self.places.insert(path.to_owned(), KeyPlace::Set(path.to_owned()));
     }
 
     fn forget(&mut self, path: &str) {

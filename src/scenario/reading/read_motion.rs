@@ -4,7 +4,7 @@ use super::lists::{OneOrMany, each, few, kind};
 use super::reader::Reader;
 use crate::scenario::{
     JointLine, JointMotion, JointMultisine, JointPath, JointQuintic, JointTable, Mechanism, Motion,
-    Target,
+    MotionTarget,
 };
 use toml::{Table, Value};
 
@@ -48,7 +48,7 @@ fn path(reader: &mut Reader<'_>, mut table: Table, default: Motion) -> Motion {
 pub(super) fn described_motion(
     reader: &mut Reader<'_>,
     section: Option<OneOrMany>,
-) -> (Motion, Option<Target>) {
+) -> (Motion, Option<MotionTarget>) {
     let mut table = match section {
         None => return (Motion::Rest, None),
         Some(OneOrMany::Many(tables)) => {
@@ -63,7 +63,9 @@ pub(super) fn described_motion(
         Some(OneOrMany::One(table)) => table,
     };
     let mut target = None;
-    for (key, of) in [("body", Target::Body as fn(String) -> Target), ("point", Target::Point)] {
+    for (key, of) in
+        [("body", MotionTarget::Body as fn(String) -> MotionTarget), ("point", MotionTarget::Point)]
+    {
         match table.remove(key) {
             Some(Value::String(name)) if target.is_none() => target = Some(of(name)),
             Some(Value::String(_)) => {
@@ -83,7 +85,7 @@ pub(super) fn described_motion(
         let help = "write joint = \"…\", body = \"…\" or point = \"body.point\"; or a table of joint coordinates";
         reader.complain("motion", "does not say what it moves".to_owned(), help.to_owned());
     }
-    if let Some(Target::Point(_)) = target
+    if let Some(MotionTarget::Point(_)) = target
         && table.contains_key("phi")
     {
         let help = "a point has no angle: take it out, or move a body";

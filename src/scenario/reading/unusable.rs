@@ -8,7 +8,7 @@ use toml::{Table, Value};
 const TOLD: usize = 50;
 
 /// The part of a path that leads into a table or a list.
-enum Step<'a> {
+enum PathStep<'a> {
     Key(&'a str),
     Place(usize),
 }
@@ -26,9 +26,9 @@ impl Document {
     }
 }
 
-fn unusable_in_table<'a>(table: &'a Table, way: &mut Vec<Step<'a>>, found: &mut Unusable) {
+fn unusable_in_table<'a>(table: &'a Table, way: &mut Vec<PathStep<'a>>, found: &mut Unusable) {
     for (key, value) in table {
-        way.push(Step::Key(key));
+        way.push(PathStep::Key(key));
         if key.contains(is_hidden) {
             complain_of_text(key, way, found);
         }
@@ -37,7 +37,7 @@ fn unusable_in_table<'a>(table: &'a Table, way: &mut Vec<Step<'a>>, found: &mut 
     }
 }
 
-fn unusable_in<'a>(value: &'a Value, way: &mut Vec<Step<'a>>, found: &mut Unusable) {
+fn unusable_in<'a>(value: &'a Value, way: &mut Vec<PathStep<'a>>, found: &mut Unusable) {
     match value {
         Value::Float(number) if !number.is_finite() && found.len() < TOLD => {
             found.push((path_of(way), format!("is {number}"), "expected a finite number"));
@@ -46,7 +46,7 @@ fn unusable_in<'a>(value: &'a Value, way: &mut Vec<Step<'a>>, found: &mut Unusab
         Value::Table(table) => unusable_in_table(table, way, found),
         Value::Array(elements) => {
             for (i, value) in elements.iter().enumerate() {
-                way.push(Step::Place(i));
+                way.push(PathStep::Place(i));
                 unusable_in(value, way, found);
                 way.pop();
             }
@@ -55,7 +55,7 @@ fn unusable_in<'a>(value: &'a Value, way: &mut Vec<Step<'a>>, found: &mut Unusab
     }
 }
 
-fn complain_of_text(text: &str, way: &[Step<'_>], found: &mut Unusable) {
+fn complain_of_text(text: &str, way: &[PathStep<'_>], found: &mut Unusable) {
     if let Some(c) = text.chars().find(|c| is_hidden(*c))
         && found.len() < TOLD
     {
@@ -66,9 +66,9 @@ fn complain_of_text(text: &str, way: &[Step<'_>], found: &mut Unusable) {
 }
 
 /// Only what is complained about has its path written.
-fn path_of(way: &[Step<'_>]) -> String {
+fn path_of(way: &[PathStep<'_>]) -> String {
     way.iter().fold(String::new(), |path, step| match step {
-        Step::Key(key) => join(&path, key),
-        Step::Place(place) => join(&path, &place.to_string()),
+        PathStep::Key(key) => join(&path, key),
+        PathStep::Place(place) => join(&path, &place.to_string()),
     })
 }

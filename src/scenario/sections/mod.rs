@@ -18,7 +18,7 @@ mod templates;
 pub use crate::contact::StiffnessForm;
 pub use crate::engine::StepControl;
 pub use columns::Columns;
-pub use contact::{Contact, FilmKind, FrictionLaw, Law, is_law_key};
+pub use contact::{ContactKeys, FilmKind, FrictionLaw, Law, is_law_key};
 pub use described::drives::{Force, JointDrive, On, SampledDrive, Servo};
 pub use described::joints::{Fixed, Joint, Prismatic, Revolute};
 pub use described::{
@@ -31,7 +31,7 @@ pub use legs::Legs;
 pub use mechanism::Mechanism;
 pub use motion::{
     Circle, JointLine, JointMotion, JointMultisine, JointPath, JointQuintic, JointTable, Line,
-    Motion, Multisine, Quintic, Table, Target, Term, Term1,
+    Motion, MotionTarget, Multisine, Quintic, Table, Term, Term1,
 };
 pub use native::Native;
 pub use sensors::Sensors;

@@ -3,13 +3,14 @@
 
 use super::connected::body_of;
 use crate::scenario::{
-    Described, GROUND, Joint, JointDrive, JointPath, Motion, Problem, Quantity, Scenario, Target,
+    Described, GROUND, Joint, JointDrive, JointPath, Motion, MotionTarget, Problem, Quantity,
+    Scenario,
 };
 use std::collections::BTreeSet;
 
 /// Everything wrong with a described machine.
 pub(in crate::scenario) fn problems(scenario: &Scenario, described: &Described) -> Vec<Problem> {
-    let mut checks = Checks { scenario, described, problems: Vec::new() };
+    let mut checks = DescribedChecks { scenario, described, problems: Vec::new() };
     checks.bodies();
     checks.joints();
     checks.drives();
@@ -23,13 +24,13 @@ pub(in crate::scenario) fn problems(scenario: &Scenario, described: &Described) 
     checks.problems
 }
 
-pub(in crate::scenario) struct Checks<'a> {
+pub(in crate::scenario) struct DescribedChecks<'a> {
     pub(in crate::scenario) scenario: &'a Scenario,
     pub(in crate::scenario) described: &'a Described,
     pub(in crate::scenario) problems: Vec<Problem>,
 }
 
-impl Checks<'_> {
+impl DescribedChecks<'_> {
     fn bodies(&mut self) {
         if self.described.bodies.is_empty() {
             self.complain("body", "are none".to_owned(), "describe bodies by [[body]]");
@@ -278,8 +279,8 @@ impl Checks<'_> {
 
     fn motion(&mut self) {
         match &self.scenario.target {
-            Some(Target::Body(body)) => self.body("motion.body", body),
-            Some(Target::Point(point)) => self.point("motion.point", point),
+            Some(MotionTarget::Body(body)) => self.body("motion.body", body),
+            Some(MotionTarget::Point(point)) => self.point("motion.point", point),
             None => {}
         }
         let Motion::Joints(motions) = &self.scenario.motion else { return };

@@ -1,9 +1,9 @@
 //! Prismatic joints with clearance: what they need, and what belongs to them alone.
 
-use super::described::Checks;
+use super::described::DescribedChecks;
 use crate::scenario::{JointDrive, Law, Prismatic};
 
-impl Checks<'_> {
+impl DescribedChecks<'_> {
     /// The clearance of a prismatic joint at `path`, and the keys that go with it.
     pub(in crate::scenario) fn guides(&mut self, path: &str, joint: &Prismatic) {
         let at = |key: &str| format!("{path}.{key}");

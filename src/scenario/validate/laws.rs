@@ -1,6 +1,6 @@
 //! Keys of contact laws: those that mean nothing to the law that is chosen, and values that no law takes.
 
-use crate::contact::laws::{self, Kind, Range};
+use crate::contact::laws::{self, LawKind, LawRange};
 use crate::scenario::{Joint, Law, Problem, Revolute, Scenario};
 use std::collections::BTreeSet;
 
@@ -48,12 +48,12 @@ fn friction(scenario: &Scenario) -> Vec<Problem> {
     let contact = &scenario.contact;
     let fast = contact.friction_velocity;
     let numbers = [
-        ("static_ratio", contact.static_ratio, Range::FromOne, f64::INFINITY),
-        ("stribeck_velocity", contact.stribeck_velocity, Range::Positive, f64::INFINITY),
-        ("rest_velocity", contact.rest_velocity, Range::NotNegative, fast),
-        ("presliding", contact.presliding, Range::Positive, f64::INFINITY),
+        ("static_ratio", contact.static_ratio, LawRange::FromOne, f64::INFINITY),
+        ("stribeck_velocity", contact.stribeck_velocity, LawRange::Positive, f64::INFINITY),
+        ("rest_velocity", contact.rest_velocity, LawRange::NotNegative, fast),
+        ("presliding", contact.presliding, LawRange::Positive, f64::INFINITY),
     ];
-    let wrong = |(key, value, range, below): (&str, Option<f64>, Range, f64)| {
+    let wrong = |(key, value, range, below): (&str, Option<f64>, LawRange, f64)| {
         let (path, value) = (format!("contact.{key}"), value?);
         if !contact.friction_law.takes(key) {
             let help = "take it out, or set contact.friction_law: static_ratio and stribeck_velocity go with \
@@ -130,11 +130,11 @@ fn described(scenario: &Scenario) -> &[Joint] {
 }
 
 /// Keys with their values.
-type Written = [(&'static str, Option<f64>); 5];
+type WrittenKeys = [(&'static str, Option<f64>); 5];
 
 /// The joints of a described machine that may have a law, with their places in the list, the law of their own, and the
 /// keys that belong to it and are checked here: what is said of the others stands with the joint's other numbers.
-fn joints(scenario: &Scenario) -> impl Iterator<Item = (usize, Option<Law>, Written)> {
+fn joints(scenario: &Scenario) -> impl Iterator<Item = (usize, Option<Law>, WrittenKeys)> {
     let keys = |restitution, damping, stiffness, c_max, d_max| {
         [
             ("restitution", restitution),
@@ -163,9 +163,9 @@ fn keys() -> BTreeSet<&'static str> {
 
 fn out_of_range(scenario: &Scenario, path: &str, key: &str, value: f64) -> Option<Problem> {
     let range = match key {
-        "restitution" => Range::Share,
-        "damping" => Range::NotNegative,
-        "length" => Range::Positive,
+        "restitution" => LawRange::Share,
+        "damping" => LawRange::NotNegative,
+        "length" => LawRange::Positive,
         _ => return None,
     };
     (!range.holds(value)).then(|| {
@@ -178,7 +178,7 @@ fn out_of_range(scenario: &Scenario, path: &str, key: &str, value: f64) -> Optio
 fn stranger(scenario: &Scenario, path: &str, key: &str, law: Law) -> Problem {
     let message = format!("means nothing to the law \"{}\"", law.name());
     let parameter =
-        |kind: &Kind, name: &str| kind.parameters.iter().find(|p| p.name == name).copied();
+        |kind: &LawKind, name: &str| kind.parameters.iter().find(|p| p.name == name).copied();
     let other = match key {
         "restitution" => "damping",
         "damping" => "restitution",

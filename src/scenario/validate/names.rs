@@ -1,11 +1,11 @@
 //! Names and numbers of a described machine: whether they are there, and what was meant.
 
-use super::described::Checks;
+use super::described::DescribedChecks;
 use crate::measure::spelling::nearest;
 use crate::scenario::{GROUND, Joint};
 use std::collections::BTreeSet;
 
-impl Checks<'_> {
+impl DescribedChecks<'_> {
     pub(in crate::scenario) fn name<'a>(
         &mut self,
         path: &str,

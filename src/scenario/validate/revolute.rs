@@ -1,10 +1,10 @@
 //! Numbers of revolute joints that no joint can have, or that belong to a contact law where there is none.
 
-use super::described::Checks;
+use super::described::DescribedChecks;
 use crate::contact::FEWEST_SAMPLES;
 use crate::scenario::{Joint, Law, Revolute};
 
-impl Checks<'_> {
+impl DescribedChecks<'_> {
     /// Numbers of a revolute joint.
     pub(super) fn revolute_numbers(&mut self, path: &str, joint: &Revolute) {
         self.bearing_sizes(path, joint);

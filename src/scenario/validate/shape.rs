@@ -1,10 +1,10 @@
 //! Masses and shapes that no body can have.
 
-use super::described::Checks;
+use super::described::DescribedChecks;
 use super::names::suggest;
 use crate::scenario::{Body, Shape};
 
-impl Checks<'_> {
+impl DescribedChecks<'_> {
     /// A body's mass and inertia, or its shape.
     pub(in crate::scenario) fn mass(&mut self, path: &str, body: &Body) {
         self.given_mass(path, body);

@@ -21,10 +21,10 @@ mod work;
 
 pub(super) use rows::row;
 
-pub use forecast::{Forecast, forecast};
+pub use forecast::{SweepForecast, forecast};
 pub use merge::merge;
 pub use plan::Plan;
-pub use result::Outcome;
+pub use result::SweepOutcome;
 pub use rows::record::{Identity, RECORD_FILE, Record};
 pub use shard::Shard;
 pub use standing::Standing;

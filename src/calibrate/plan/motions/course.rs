@@ -1,13 +1,13 @@
 //! The course of one drive: one that was made of numbers, or the present one.
 
 use super::present::Present;
-use super::series::{Extremes, Series};
+use super::series::{Extremes, FourierSeries};
 
 /// Where a drive is told to be over time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Course {
     /// Made of numbers.
-    New(Series),
+    New(FourierSeries),
     /// As it is told at present.
     Present(Present),
 }

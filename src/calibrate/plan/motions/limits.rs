@@ -18,7 +18,7 @@ const FARTHEST: f64 = 1e6;
 
 /// Numbers that a user gave, drive by drive; none where nothing was given.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Given {
+pub struct GivenLimits {
     /// Lowest and highest coordinate, m or rad.
     pub stroke: Option<[f64; 2]>,
     /// m/s or rad/s.
@@ -31,7 +31,7 @@ pub struct Given {
 
 /// Limits of one drive.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Limit {
+pub struct DriveLimits {
     /// Name of its joint.
     pub joint: String,
     /// Unit of its coordinate.
@@ -67,9 +67,9 @@ struct Used {
 pub fn limits(
     rig: &Scenario,
     mechanism: &Mechanism,
-    given: &[Given],
+    given: &[GivenLimits],
     recordings: &[Recording],
-) -> Result<Vec<Limit>, Vec<String>> {
+) -> Result<Vec<DriveLimits>, Vec<String>> {
     let mut wrong = Vec::new();
     let mut found = Vec::new();
     for (drive, given) in given.iter().enumerate() {
@@ -102,7 +102,8 @@ pub fn limits(
         };
         let (unit, _) = units(actuator.joint);
         let force = given.force.or(used.and_then(|used| used.force));
-        let limit = Limit { joint, unit, stroke, speed, acceleration, force, stroke_from, from };
+        let limit =
+            DriveLimits { joint, unit, stroke, speed, acceleration, force, stroke_from, from };
         wrong.extend(limit.leaves_nothing());
         found.push(limit);
     }
@@ -116,7 +117,7 @@ fn missing(joint: &str, what: &str, flag: &str, value: &str) -> String {
     )
 }
 
-impl Limit {
+impl DriveLimits {
     /// What is wrong with limits within which nothing moves.
     fn leaves_nothing(&self) -> Option<String> {
         let Self { joint, unit, stroke: [low, high], speed, acceleration, force, .. } = self;

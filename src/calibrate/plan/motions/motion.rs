@@ -1,9 +1,9 @@
 //! Motions of all drives of a machine, made of numbers so that whatever the numbers are, no limit is left.
 
 use super::course::Course;
-use super::limits::Limit;
+use super::limits::DriveLimits;
 use super::present::Present;
-use super::series::Series;
+use super::series::FourierSeries;
 use crate::calibrate::sensed::recording::Recording;
 use crate::mechanism::{JointIndex, Mechanism, Reads};
 
@@ -27,7 +27,7 @@ const DRIFT: f64 = 0.5;
 
 /// A motion of all drives.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct DrivesMotion {
     /// Drive by drive.
     pub drives: Vec<Course>,
 }
@@ -38,7 +38,7 @@ pub struct Maker {
     /// Time in s of a motion.
     pub period: f64,
     /// Limits of each drive.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<DriveLimits>,
     /// Coordinates (m, rad) around which motions are made smaller where they meet something else than these limits.
     pub home: Vec<f64>,
     /// The present motion, if it is a candidate.
@@ -52,23 +52,23 @@ impl Maker {
     }
 
     /// The present motion, as large as the limits allow; none where it is no candidate.
-    pub fn present(&self) -> Option<Motion> {
+    pub fn present(&self) -> Option<DrivesMotion> {
         let present = self.present.as_ref()?.iter().cloned();
-        Some(Motion { drives: present.map(Course::Present).collect() })
+        Some(DrivesMotion { drives: present.map(Course::Present).collect() })
     }
 
     /// The motion that numbers (of the order of one) stand for, `share` (0 to 1) of its size about home: within strokes,
     /// speeds and accelerations whatever they are.
-    pub fn motion(&self, numbers: &[f64], share: f64) -> Motion {
+    pub fn motion(&self, numbers: &[f64], share: f64) -> DrivesMotion {
         let drives = numbers.chunks(NUMBERS).zip(&self.limits).zip(&self.home);
         let all = drives.map(|((numbers, limit), home)| self.series(numbers, limit, *home, share));
-        Motion { drives: all.map(Course::New).collect() }
+        DrivesMotion { drives: all.map(Course::New).collect() }
     }
 
     /// A motion of `share` of another one's size, about home.
-    pub fn gentler(&self, motion: &Motion, share: f64) -> Motion {
+    pub fn gentler(&self, motion: &DrivesMotion, share: f64) -> DrivesMotion {
         let drives = motion.drives.iter().zip(&self.limits).zip(&self.home);
-        let one = |((course, limit), home): ((&Course, &Limit), &f64)| {
+        let one = |((course, limit), home): ((&Course, &DriveLimits), &f64)| {
             let small = course.scaled(share, 0.0);
             let reach = small.extremes().reach;
             let [low, high] = limit.stroke;
@@ -76,15 +76,15 @@ impl Maker {
             let start = home + share * (course.start() - home);
             small.scaled(1.0, start.max(room[0]).min(room[1]))
         };
-        Motion { drives: drives.map(one).collect() }
+        DrivesMotion { drives: drives.map(one).collect() }
     }
 
-    fn series(&self, numbers: &[f64], limit: &Limit, home: f64, share: f64) -> Series {
+    fn series(&self, numbers: &[f64], limit: &DriveLimits, home: f64, share: f64) -> FourierSeries {
         let (middle, size) = (logistic(numbers[0]), logistic(numbers[1] + 1.0));
         let waves: Vec<[f64; 2]> = numbers[3..].chunks(2).map(|pair| [pair[0], pair[1]]).collect();
         // Rates are of the order of one; a drift of as many.
         let drift = DRIFT * self.period * numbers[2];
-        let shape = Series::new(self.period, drift, waves);
+        let shape = FourierSeries::new(self.period, drift, waves);
         let extremes = shape.extremes();
         let [low, high] = limit.stroke;
         let width = extremes.reach[1] - extremes.reach[0];
@@ -120,7 +120,7 @@ fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + (-x).exp())
 }
 
-impl Motion {
+impl DrivesMotion {
     /// Whether it is the present one as it is.
     pub fn is_present(&self) -> bool {
         let whole = |course: &Course| matches!(course, Course::Present(of) if of.share == 1.0);
@@ -168,7 +168,7 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     fn maker() -> Maker {
-        let limit = |stroke: [f64; 2], speed, acceleration| Limit {
+        let limit = |stroke: [f64; 2], speed, acceleration| DriveLimits {
             joint: "O".into(),
             unit: "rad",
             stroke,
@@ -195,7 +195,7 @@ mod tests {
     fn the_present_motion_is_taken_as_large_as_the_limits_allow() {
         let told: Vec<f64> = (0..=3000).map(|row| 0.9 * (1e-3 * f64::from(row)).sin()).collect();
         let present = |share: f64| Present {
-            rows: std::sync::Arc::new(Rows::new(&told, 1e-3)),
+            rows: std::sync::Arc::new(ToldRows::new(&told, 1e-3)),
             start: 0.05,
             share,
         };
@@ -260,6 +260,6 @@ mod tests {
         }
     }
 
-    use super::super::present::Rows;
+    use super::super::present::ToldRows;
     use super::super::series::Extremes;
 }

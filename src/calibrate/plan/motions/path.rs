@@ -1,8 +1,8 @@
 //! Whether a machine can follow a motion: it closes all along, stays on its branch and away from singular poses, and its
 //! drives are strong enough.
 
-use super::limits::Limit;
-use super::motion::{Maker, Motion};
+use super::limits::DriveLimits;
+use super::motion::{DrivesMotion, Maker};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::start::machine;
 use crate::mechanism::{BodyState, Imposed, Mechanism, Tracker};
@@ -16,7 +16,7 @@ const SHARES: [f64; 7] = [1.0, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1];
 
 /// A machine that motions are tried on.
 #[derive(Debug)]
-pub struct Way<'a> {
+pub struct TriedMachine<'a> {
     /// What its maker declares.
     pub rig: &'a Scenario,
     /// The machine as declared.
@@ -44,7 +44,7 @@ pub enum Blocked {
 
 impl Blocked {
     /// In words.
-    pub fn words(&self, limits: &[Limit]) -> String {
+    pub fn words(&self, limits: &[DriveLimits]) -> String {
         match self {
             Self::Reach(t) => format!("at t = {t:.3} s the machine does not close"),
             Self::Singular(t, gain) if gain.is_finite() => {
@@ -66,15 +66,15 @@ pub fn held(mechanism: &Mechanism, states: &[BodyState]) -> Option<(f64, f64)> {
     mechanism.hold(states).map(|hold| (hold.sign, 1.0 / hold.share))
 }
 
-impl Way<'_> {
+impl TriedMachine<'_> {
     /// What a machine is recorded like along a motion.
-    pub fn like(&self, motion: &Motion) -> Recording {
+    pub fn like(&self, motion: &DrivesMotion) -> Recording {
         motion.like(self.declared, "planned", self.interval, self.samples)
     }
 
     /// The largest motion that numbers stand for which the machine can follow, and what it is recorded like; none where
     /// it can follow none.
-    pub fn largest(&self, maker: &Maker, numbers: &[f64]) -> Option<(Motion, Recording)> {
+    pub fn largest(&self, maker: &Maker, numbers: &[f64]) -> Option<(DrivesMotion, Recording)> {
         SHARES.iter().find_map(|share| {
             let motion = maker.motion(numbers, *share);
             let like = self.like(&motion);
@@ -86,7 +86,7 @@ impl Way<'_> {
     ///
     /// # Errors
     /// What is in its way.
-    pub fn follows(&self, like: &Recording, limits: &[Limit]) -> Result<(), Blocked> {
+    pub fn follows(&self, like: &Recording, limits: &[DriveLimits]) -> Result<(), Blocked> {
         let machine = machine(self.rig, &[], like).map_err(|_| Blocked::Reach(0.0))?;
         let ideal = machine.without_clearance();
         let starts = ideal.bodies.iter().map(|body| body.start).collect();

@@ -1,6 +1,6 @@
 //! The present motion of the drives, as a candidate beside those that are searched: what is planned is never worse.
 
-use super::limits::{Limit, positions};
+use super::limits::{DriveLimits, positions};
 use super::series::Extremes;
 use crate::calibrate::sensed::recording::Recording;
 use crate::measure::filter::derivative;
@@ -9,13 +9,13 @@ use std::sync::Arc;
 
 /// What one drive was told, row by row.
 #[derive(Debug, PartialEq)]
-pub struct Rows {
+pub struct ToldRows {
     interval: f64,
     /// Coordinate from the first row's on, rate and acceleration, by differences of rows.
     rows: Vec<[f64; 3]>,
 }
 
-impl Rows {
+impl ToldRows {
     /// Of coordinates (m, rad) every `interval` seconds.
     pub fn new(coordinates: &[f64], interval: f64) -> Self {
         let rate = derivative(coordinates, interval);
@@ -53,7 +53,7 @@ impl Rows {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Present {
     /// What it was told.
-    pub rows: Arc<Rows>,
+    pub rows: Arc<ToldRows>,
     /// Where it begins, m or rad.
     pub start: f64,
     /// Share of its size.
@@ -85,7 +85,7 @@ impl Present {
 pub fn present(
     mechanism: &Mechanism,
     recording: &Recording,
-    limits: &[Limit],
+    limits: &[DriveLimits],
     samples: usize,
 ) -> Option<Vec<Present>> {
     if recording.samples < samples {
@@ -93,16 +93,16 @@ pub fn present(
     }
     let told = (0..limits.len()).map(|drive| positions(mechanism, drive, recording));
     let told: Vec<Vec<f64>> = told.collect::<Option<_>>()?;
-    let rows: Vec<Rows> =
-        told.iter().map(|q| Rows::new(&q[..samples], recording.interval)).collect();
+    let rows: Vec<ToldRows> =
+        told.iter().map(|q| ToldRows::new(&q[..samples], recording.interval)).collect();
     // One share for all: drives of a closed chain move together.
-    let fits = |(rows, limit): (&Rows, &Limit)| {
+    let fits = |(rows, limit): (&ToldRows, &DriveLimits)| {
         let [low, high] = rows.range(0);
         let stroke = (limit.stroke[1] - limit.stroke[0]) / (high - low);
         stroke.min(limit.speed / rows.largest(1)).min(limit.acceleration / rows.largest(2))
     };
     let share = rows.iter().zip(limits).map(fits).fold(1.0, f64::min);
-    let one = |((rows, limit), told): ((Rows, &Limit), &Vec<f64>)| {
+    let one = |((rows, limit), told): ((ToldRows, &DriveLimits), &Vec<f64>)| {
         let [low, high] = rows.range(0);
         let room = [limit.stroke[0] - share * low, limit.stroke[1] - share * high];
         let start = told[0].max(room[0]).min(room[1]);
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn rows_are_met_and_chords_lie_between() {
-        let rows = Rows::new(&[0.5, 0.5, 0.75, 1.25], 0.25);
+        let rows = ToldRows::new(&[0.5, 0.5, 0.75, 1.25], 0.25);
         assert_eq!(rows.at(0.5), [0.25, 1.5, 3.0]);
         assert_eq!(rows.at(0.625)[0], 0.5);
         assert_eq!(rows.at(9.0)[0], 0.75);

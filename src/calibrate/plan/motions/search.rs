@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 /// How much is tried.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub struct SearchEffort {
     /// Random candidates, of which the best are starts.
     pub random: usize,
     /// Starts that are followed.
@@ -24,7 +24,7 @@ pub struct Effort {
     pub generations: usize,
 }
 
-impl Effort {
+impl SearchEffort {
     /// About so many candidates: a sixth of them random, the rest children of the three best.
     pub fn of(candidates: usize) -> Self {
         let (starts, children) = (3, 8);
@@ -44,7 +44,7 @@ const STEP: f64 = 0.4;
 
 /// A candidate and its worth.
 #[derive(Clone, Debug)]
-pub struct Scored {
+pub struct ScoredNumbers {
     /// Its numbers.
     pub numbers: Vec<f64>,
     /// The larger, the better; negative infinity of one that cannot be.
@@ -56,15 +56,15 @@ pub struct Scored {
 pub fn best(
     count: usize,
     seed: u64,
-    effort: Effort,
+    effort: SearchEffort,
     worth: &(dyn Fn(&[f64]) -> Option<f64> + Sync),
     tell: &(dyn Fn(usize, f64) + Sync),
-) -> Vec<Scored> {
+) -> Vec<ScoredNumbers> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let all = |drawn: Vec<Vec<f64>>| -> Vec<Scored> {
+    let all = |drawn: Vec<Vec<f64>>| -> Vec<ScoredNumbers> {
         let scored = |numbers: Vec<f64>| {
             let found = worth(&numbers).filter(|worth| worth.is_finite());
-            Scored { worth: found.unwrap_or(f64::NEG_INFINITY), numbers }
+            ScoredNumbers { worth: found.unwrap_or(f64::NEG_INFINITY), numbers }
         };
         drawn.into_par_iter().map(scored).collect()
     };
@@ -73,8 +73,8 @@ pub fn best(
     first.sort_by(|a, b| b.worth.total_cmp(&a.worth));
     first.retain(|candidate| candidate.worth.is_finite());
     first.truncate(effort.starts);
-    let mut starts: Vec<Start> =
-        first.into_iter().map(|best| Start::new(best, effort.children)).collect();
+    let mut starts: Vec<FollowedStart> =
+        first.into_iter().map(|best| FollowedStart::new(best, effort.children)).collect();
     for generation in 0..effort.generations {
         let tried = effort.random + generation * effort.starts * effort.children;
         tell(tried, starts.iter().map(|start| start.best.worth).fold(f64::NEG_INFINITY, f64::max));
@@ -92,7 +92,7 @@ pub fn best(
             start.follow(scored, steps);
         }
     }
-    let mut found: Vec<Scored> = starts.into_iter().map(|start| start.best).collect();
+    let mut found: Vec<ScoredNumbers> = starts.into_iter().map(|start| start.best).collect();
     found.sort_by(|a, b| b.worth.total_cmp(&a.worth));
     found
 }
@@ -102,7 +102,7 @@ fn normal(count: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
 }
 
 /// A start that is followed.
-struct Start {
+struct FollowedStart {
     mean: Vec<f64>,
     /// Variance of each number, and the step that all have in common.
     variances: Vec<f64>,
@@ -112,11 +112,11 @@ struct Start {
     of_variance: Vec<f64>,
     weights: Vec<f64>,
     generation: i32,
-    best: Scored,
+    best: ScoredNumbers,
 }
 
-impl Start {
-    fn new(best: Scored, children: usize) -> Self {
+impl FollowedStart {
+    fn new(best: ScoredNumbers, children: usize) -> Self {
         let n = best.numbers.len();
         let parents = children / 2;
         let raw: Vec<f64> =
@@ -139,7 +139,7 @@ impl Start {
         parts.map(|((mean, variance), z)| mean + self.step * variance.sqrt() * z).collect()
     }
 
-    fn follow(&mut self, scored: &[Scored], steps: &[Vec<f64>]) {
+    fn follow(&mut self, scored: &[ScoredNumbers], steps: &[Vec<f64>]) {
         let mut order: Vec<usize> = (0..scored.len()).collect();
         order.sort_by(|a, b| scored[*b].worth.total_cmp(&scored[*a].worth));
         if scored[order[0]].worth > self.best.worth {
@@ -187,7 +187,8 @@ impl Start {
 mod tests {
     use super::*;
 
-    const EFFORT: Effort = Effort { random: 24, starts: 2, children: 10, generations: 150 };
+    const EFFORT: SearchEffort =
+        SearchEffort { random: 24, starts: 2, children: 10, generations: 150 };
 
     fn ellipsoid(x: &[f64]) -> Option<f64> {
         // Half of the space cannot be.
@@ -209,7 +210,7 @@ mod tests {
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                best(10, 3, Effort { generations: 5, ..EFFORT }, &ellipsoid, &|_, _| {})
+                best(10, 3, SearchEffort { generations: 5, ..EFFORT }, &ellipsoid, &|_, _| {})
             })
         };
         let [one, three] = [on(1), on(3)];

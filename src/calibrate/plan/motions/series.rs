@@ -16,7 +16,7 @@ const GRID: usize = 512;
 
 /// Motion of a drive over `[0, period]`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+pub struct FourierSeries {
     /// Time in s from rest to rest.
     pub period: f64,
     /// Coordinate (m, rad) at the start.
@@ -38,7 +38,7 @@ pub struct Extremes {
     pub acceleration: f64,
 }
 
-impl Series {
+impl FourierSeries {
     /// A motion from 0 on; waves are changed as little as it takes to begin and end at rest.
     pub fn new(period: f64, drift: f64, mut waves: Vec<[f64; 2]>) -> Self {
         let order = |l: usize| (l + 1) as f64;
@@ -103,8 +103,8 @@ impl Series {
 mod tests {
     use super::*;
 
-    fn some() -> Series {
-        Series::new(3.0, 2.0, vec![[0.3, -0.2], [1.0, 0.4], [-0.5, 0.9], [0.1, -0.6]])
+    fn some() -> FourierSeries {
+        FourierSeries::new(3.0, 2.0, vec![[0.3, -0.2], [1.0, 0.4], [-0.5, 0.9], [0.1, -0.6]])
             .scaled(1.5, 0.7)
     }
 

@@ -1,6 +1,6 @@
 //! Sensors that a rig does not have, one instrument at a time: which would help most.
 
-use super::separation::{Posed, apart};
+use super::separation::{PosedQuestion, apart};
 use super::sight::{Seen, Sight};
 use crate::engine::StepControl;
 use crate::mechanism::{JointIndex, Mechanism, Reads};
@@ -21,7 +21,7 @@ pub struct Instrument {
 
 /// How far apart the models of each question are with one more instrument.
 #[derive(Clone, Debug)]
-pub struct Ranked {
+pub struct RankedInstrument {
     /// The instrument.
     pub instrument: Instrument,
     /// Standard deviations, question by question.
@@ -153,11 +153,11 @@ fn point_of(rig: &Scenario, machine: &Mechanism, index: usize) -> Option<(String
 pub fn ranked(
     rig: &Scenario,
     instruments: Vec<Instrument>,
-    posed: &[Posed],
+    posed: &[PosedQuestion],
     control: StepControl,
     seed: u64,
     like: &dyn Fn(&Mechanism) -> crate::calibrate::sensed::recording::Recording,
-) -> Vec<Ranked> {
+) -> Vec<RankedInstrument> {
     let one = |instrument: Instrument| {
         let mut with = rig.clone();
         let scenario::Mechanism::Described(described) = &mut with.mechanism else { return None };
@@ -170,15 +170,15 @@ pub fn ranked(
             .map(|posed| Some(apart(&sight, &seen, posed)?.sigma))
             .collect::<Option<_>>()?;
         let worth = worth(posed, &sigma);
-        Some(Ranked { instrument, sigma, worth })
+        Some(RankedInstrument { instrument, sigma, worth })
     };
-    let mut found: Vec<Ranked> = instruments.into_iter().filter_map(one).collect();
+    let mut found: Vec<RankedInstrument> = instruments.into_iter().filter_map(one).collect();
     found.sort_by(|a, b| b.worth.total_cmp(&a.worth));
     found
 }
 
 /// The least of some separations over what answers their questions.
-pub fn worth(posed: &[Posed], sigma: &[f64]) -> f64 {
+pub fn worth(posed: &[PosedQuestion], sigma: &[f64]) -> f64 {
     posed
         .iter()
         .zip(sigma)

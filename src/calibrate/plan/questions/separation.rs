@@ -14,7 +14,7 @@ use super::sight::{Seen, Sight};
 use crate::calibrate::sensed::limits::ways;
 use crate::calibrate::sensed::thresholds::{GAIN, GAIN_PER_VALUE, SURE, TWINS};
 use crate::calibrate::values::fit::{free, values, with_values};
-use crate::calibrate::values::least_squares::{Effort, jacobian, least_squares};
+use crate::calibrate::values::least_squares::{FitEffort, jacobian, least_squares};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -39,7 +39,7 @@ const STARTS: usize = 2;
 
 /// A question with numbers: what models are held against each other.
 #[derive(Clone, Debug)]
-pub enum Posed {
+pub enum PosedQuestion {
     /// Two rivals.
     Between {
         /// Both.
@@ -57,7 +57,7 @@ pub enum Posed {
     },
 }
 
-impl Posed {
+impl PosedQuestion {
     /// Standard deviations that answer it.
     pub fn wanted(&self) -> f64 {
         match self {
@@ -86,16 +86,16 @@ pub struct Apart {
 
 /// How far apart the models of a question are along a recorded motion, rivals linearised about their values; none where a
 /// model cannot be there.
-pub fn apart(sight: &Sight, seen: &Seen, posed: &Posed) -> Option<Apart> {
+pub fn apart(sight: &Sight, seen: &Seen, posed: &PosedQuestion) -> Option<Apart> {
     let least = |all: Vec<Apart>| all.into_iter().min_by(|a, b| a.sigma.total_cmp(&b.sigma));
     match posed {
-        Posed::Detect { ways, .. } => {
+        PosedQuestion::Detect { ways, .. } => {
             let base = sight.look(seen, &[])?;
             let one =
                 |way: &Setting| Some(of(sight.look(seen, std::slice::from_ref(way))? - &base));
             least(ways.par_iter().map(one).collect::<Option<Vec<_>>>()?)
         }
-        Posed::Between { pairs, .. } => {
+        PosedQuestion::Between { pairs, .. } => {
             let one = |[truth, rival]: &[Setting; 2]| {
                 let look = |values: &[f64]| sight.look(seen, &[rival.with(values)]);
                 let effects = std::slice::from_ref(rival);
@@ -185,7 +185,7 @@ pub fn nearest(
             kept.push(start);
         }
     }
-    let effort = Effort { steps: STEPS, enough: 1e-3, secant: false };
+    let effort = FitEffort { steps: STEPS, enough: 1e-3, secant: false };
     let fitted = |start: &Setting| {
         let effects = std::slice::from_ref(start);
         let look =

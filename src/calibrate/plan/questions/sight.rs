@@ -7,7 +7,7 @@
 use crate::calibrate::record::clean;
 use crate::calibrate::sensed::baseline::Baseline;
 use crate::calibrate::sensed::estimate::View;
-use crate::calibrate::sensed::problem::{Problem, Segment, Stopped};
+use crate::calibrate::sensed::problem::{RigProblem, Segment, Stopped};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::residual::Name;
 use crate::calibrate::sensed::simulate::{record, with_noise};
@@ -22,7 +22,7 @@ use nalgebra::DVector;
 #[derive(Debug)]
 pub struct Sight {
     /// The rig, recorded along the motion.
-    pub problem: Problem,
+    pub problem: RigProblem,
     /// Noise and rattle of its residuals.
     baseline: Baseline,
     segment: Segment,
@@ -81,7 +81,7 @@ impl Sight {
         let clean = clean((rig, &[]), like, like, control, 1)?.swap_remove(0);
         let sensors = machine(rig, &[], like)?.sensors;
         let noisy = with_noise(&clean, &sensors, seed);
-        let mut problem = Problem::new(rig.clone(), vec![noisy], control)?;
+        let mut problem = RigProblem::new(rig.clone(), vec![noisy], control)?;
         problem.look_for_rattle(&[])?;
         let segment = Segment { run: 0, rows: problem.runs[0].view.rows() };
         let segments = std::slice::from_ref(&segment);

@@ -20,7 +20,7 @@ const CORNER: f64 = 25.0;
 const STILL: f64 = 1e-3;
 
 /// Columns beside what they should be like, drive by drive.
-struct Columns {
+struct FollowedColumns {
     sensors: Vec<Option<usize>>,
     series: Vec<Option<[Vec<f64>; 2]>>,
 }
@@ -41,7 +41,7 @@ pub fn wrong(rig: &Scenario, machine: &Mechanism, recording: &Recording) -> Vec<
 }
 
 /// Readings of driven joints beside their commands, each about its mean: a zero is an instrument's own affair.
-fn readings(machine: &Mechanism, recording: &Recording) -> Columns {
+fn readings(machine: &Mechanism, recording: &Recording) -> FollowedColumns {
     let about = |values: &[f64]| -> Vec<f64> {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         values.iter().map(|value| value - mean).collect()
@@ -52,11 +52,11 @@ fn readings(machine: &Mechanism, recording: &Recording) -> Columns {
         let command = told_by(machine, recording, Reads::Command(index))?;
         Some((sensor, [about(recording.get(sensor)?), about(command)]))
     };
-    Columns::of(machine.actuators.iter().enumerate().map(of))
+    FollowedColumns::of(machine.actuators.iter().enumerate().map(of))
 }
 
 /// Efforts of servos beside `k_p (q_cmd − q)`; their damping is small where motion is slow.
-fn efforts(machine: &Mechanism, recording: &Recording) -> Columns {
+fn efforts(machine: &Mechanism, recording: &Recording) -> FollowedColumns {
     let nyquist = 0.5 / recording.interval;
     let filter =
         (CORNER < 0.9 * nyquist).then(|| ZeroPhase::butterworth(4, CORNER, recording.interval));
@@ -69,10 +69,10 @@ fn efforts(machine: &Mechanism, recording: &Recording) -> Columns {
         let law: Vec<f64> = command.iter().zip(read).map(|(c, q)| stiffness * (c - q)).collect();
         Some((sensor, [slow(recording.get(sensor)?), slow(&law)]))
     };
-    Columns::of(machine.actuators.iter().enumerate().map(of))
+    FollowedColumns::of(machine.actuators.iter().enumerate().map(of))
 }
 
-impl Columns {
+impl FollowedColumns {
     fn of(drives: impl Iterator<Item = Option<(usize, [Vec<f64>; 2])>>) -> Self {
         let (sensors, series) =
             drives.map(|found| (found.as_ref().map(|(s, _)| *s), found.map(|(_, s)| s))).unzip();
@@ -81,7 +81,7 @@ impl Columns {
 }
 
 /// Readings that stand still while their drives are told to move.
-fn still(machine: &Mechanism, recording: &Recording, readings: &Columns) -> Vec<LogError> {
+fn still(machine: &Mechanism, recording: &Recording, readings: &FollowedColumns) -> Vec<LogError> {
     let size = |values: &[f64]| rms(values.iter().copied());
     let pairs = readings.sensors.iter().zip(&readings.series);
     pairs
@@ -103,7 +103,7 @@ fn mistaken(
     rig: &Scenario,
     machine: &Mechanism,
     recording: &Recording,
-    columns: &Columns,
+    columns: &FollowedColumns,
     against: &str,
 ) -> Vec<LogError> {
     let sensor = |place: usize| columns.sensors[place].unwrap_or_default();

@@ -8,7 +8,7 @@ use crate::calibrate::measured::spectrum::{Signal, fast_length, transform};
 use crate::calibrate::quantity;
 use crate::calibrate::sensed::motion::simulate::{deviation, with_noise};
 use crate::calibrate::sensed::recorded::recording::Recording;
-use crate::calibrate::sensed::residuals::problem::Problem;
+use crate::calibrate::sensed::residuals::problem::RigProblem;
 use crate::calibrate::sensed::thresholds::{
     MEDIAN, NOISE_BAND, NOISE_DRAWS, OTHER_NOISE, SURE, SURE_NOISE,
 };
@@ -32,7 +32,7 @@ pub struct OtherNoise {
 /// are noiseless recordings of the declared machine, run by run. The problem goes on with what was measured.
 ///
 /// Sensors that declare none are given that of the first recording beforehand, and are among what is found.
-pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<OtherNoise> {
+pub fn correct(problem: &mut RigProblem, simulated: &[Vec<Recording>]) -> Vec<OtherNoise> {
     let before = problem.declared.sensors.clone();
     if let Some(run) = problem.runs.first() {
         measured(&mut problem.declared.sensors, &run.recording);
@@ -48,7 +48,7 @@ pub fn correct(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<Other
 }
 
 /// Sensors whose noise differs from what they have by now.
-fn beside(problem: &mut Problem, simulated: &[Vec<Recording>]) -> Vec<OtherNoise> {
+fn beside(problem: &mut RigProblem, simulated: &[Vec<Recording>]) -> Vec<OtherNoise> {
     let mut found = Vec::new();
     for i in 0..problem.declared.sensors.len() {
         let sensor = problem.declared.sensors[i].clone();

@@ -21,12 +21,12 @@ pub struct Prepared {
     /// How many of them, the first ones, values are fitted to.
     pub(in crate::calibrate::sensed) fits: usize,
     /// How.
-    pub(in crate::calibrate::sensed) way: Way,
+    pub(in crate::calibrate::sensed) way: CalibratedAs,
 }
 
 /// How a machine is calibrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::calibrate) enum Way {
+pub(in crate::calibrate) enum CalibratedAs {
     /// Nothing holds it: by windows.
     Windows,
     /// Sampled controllers hold it: by what they ask of their drives.
@@ -35,7 +35,7 @@ pub(in crate::calibrate) enum Way {
     Residuals,
 }
 
-impl Way {
+impl CalibratedAs {
     /// The way of a machine.
     pub(in crate::calibrate) fn of(machine: &Mechanism) -> Self {
         if suits(machine) {
@@ -55,14 +55,14 @@ impl Way {
 /// Everything that is wrong with them.
 pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, CalibrateError> {
     let built: Mechanism = crate::model::parts_of(&rig)?;
-    let way = Way::of(&built);
+    let way = CalibratedAs::of(&built);
     refuse(against_rig(&rig, &built, way, fits))?;
     let mut recordings = read(&rig, &built, way, paths)?;
     called_apart(&mut recordings);
     through_common_sensors(&mut recordings, &built);
     refuse(noise::wrong(&rig, &built, &recordings))?;
     // What the machine cannot be at a recording's first row is told before anything is written.
-    if way == Way::Windows {
+    if way == CalibratedAs::Windows {
         let bench = Bench::new(&rig, recordings.clone())?;
         refuse(plausible::wrong(&rig, &bench))?;
     } else {
@@ -77,7 +77,7 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
 pub(in crate::calibrate) fn against_rig(
     rig: &Scenario,
     built: &Mechanism,
-    way: Way,
+    way: CalibratedAs,
     fits: usize,
 ) -> Vec<String> {
     let mut wrong: Vec<String> = Vec::new();
@@ -86,13 +86,13 @@ pub(in crate::calibrate) fn against_rig(
         let message = "is missing: nobody knows what the columns of the recordings are".to_owned();
         return vec![rig.problem("sensor", message, help).to_string()];
     }
-    if way == Way::Residuals && !rig.effects.is_empty() {
+    if way == CalibratedAs::Residuals && !rig.effects.is_empty() {
         let message = format!("holds {} effect(s)", rig.effects.len());
         let help =
             "calibrate starts from what a rig's maker declares: give it the rig without [[effect]]";
         wrong.push(rig.problem("effect", message, help).to_string());
     }
-    if way != Way::Windows && fits > 1 {
+    if way != CalibratedAs::Windows && fits > 1 {
         let message =
             "--data: several runs are fitted together of machines that nothing holds alone";
         wrong.push(format!("{message}; give this one a --data and the others as --validate"));
@@ -104,12 +104,12 @@ pub(in crate::calibrate) fn against_rig(
 fn read(
     rig: &Scenario,
     built: &Mechanism,
-    way: Way,
+    way: CalibratedAs,
     paths: &[&Path],
 ) -> Result<Vec<Recording>, CalibrateError> {
     let mut recordings: Vec<Recording> = Vec::new();
     let mut errors: Vec<LogError> = Vec::new();
-    let efforts = way == Way::Windows;
+    let efforts = way == CalibratedAs::Windows;
     for path in paths {
         match Recording::read_with_time(path, &built.sensors, efforts, rig.time_column()) {
             Ok(recording) => {

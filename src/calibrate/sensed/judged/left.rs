@@ -1,6 +1,6 @@
 //! What a model leaves unexplained.
 
-use crate::calibrate::sensed::residuals::residual::{Kind, Name};
+use crate::calibrate::sensed::residuals::residual::{Name, ResidualKind};
 use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::thresholds::{LARGEST, NOISE};
 use crate::calibrate::sensed::values::by_chance::squares_up_to;
@@ -12,7 +12,7 @@ use serde::Serialize;
 #[derive(Clone, Debug, Serialize)]
 pub struct Left {
     /// Which residual.
-    pub residual: Kind,
+    pub residual: ResidualKind,
     /// Of which joint or column.
     pub of: String,
     /// Mean square in units of noise: 1 for noise.

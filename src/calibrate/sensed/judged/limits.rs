@@ -8,16 +8,16 @@
 use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::thresholds::{GAIN, GAIN_PER_VALUE, LARGEST, NOISE, SURE};
 use crate::calibrate::sensed::values::candidates::within;
-use crate::calibrate::sensed::values::fit::Target as Fitted;
+use crate::calibrate::sensed::values::fit::FitTarget as Fitted;
 use crate::calibrate::sensed::values::model::Model;
-use crate::effects::{Kind, Range, Setting, Target};
+use crate::effects::{Kind, ScanRange, Setting, Target};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 /// The smallest size of an effect that would have been seen.
 #[derive(Clone, Debug)]
-pub struct Limit {
+pub struct DetectionLimit {
     /// Which effect.
     pub kind: &'static Kind,
     /// Of what.
@@ -31,14 +31,14 @@ pub struct Limit {
 }
 
 /// Numbers of white residuals that belong together, and what their mean square is now.
-struct Part {
+struct WhiteNumbers {
     places: Vec<usize>,
     squares: f64,
 }
 
 /// Limits of all candidates beside a model whose residuals are noise, on the data that they are judged on; none
 /// where residuals are not.
-pub fn limits(search: &Search, model: &Model) -> Vec<Limit> {
+pub fn limits(search: &Search, model: &Model) -> Vec<DetectionLimit> {
     if !search.is_noise(model) {
         return Vec::new();
     }
@@ -48,15 +48,15 @@ pub fn limits(search: &Search, model: &Model) -> Vec<Limit> {
     let own = hold.jacobian(&base).filter(|jacobian| jacobian.ncols() > 0);
     let own = own.map(|jacobian| jacobian.qr().q());
     let places = model.baseline.places(search.problem, &search.split.hold);
-    let parts: Vec<Part> = (0..search.names.len())
+    let parts: Vec<WhiteNumbers> = (0..search.names.len())
         .map(|k| {
             let places: Vec<usize> = (0..places.len()).filter(|&i| places[i].0 == k).collect();
             let squares = places.iter().map(|&i| base.white[i].powi(2)).sum();
-            Part { places, squares }
+            WhiteNumbers { places, squares }
         })
         .collect();
     let fresh = |candidate: &&Setting| !model.fit.effects.iter().any(|e| e.is(candidate));
-    let found: Vec<Limit> = simplest(search.candidates.iter().filter(fresh))
+    let found: Vec<DetectionLimit> = simplest(search.candidates.iter().filter(fresh))
         .into_par_iter()
         .filter_map(|candidate| {
             let (parameter, neutral) = candidate.values().next()?;
@@ -75,7 +75,7 @@ pub fn limits(search: &Search, model: &Model) -> Vec<Limit> {
             let room = (step.bounds[1] - neutral).abs().max((step.bounds[0] - neutral).abs());
             let smallest = smallest.filter(|size| size.is_finite() && *size <= room);
             let (kind, target) = (candidate.kind, candidate.target.clone());
-            Some(Limit { kind, target, parameter, unit: step.unit, smallest })
+            Some(DetectionLimit { kind, target, parameter, unit: step.unit, smallest })
         })
         .collect();
     found
@@ -109,9 +109,9 @@ pub(in crate::calibrate) fn ways(candidate: &Setting, neutral: f64, step: f64) -
         && let (Some(over), Some(phase)) = (place(scan.over), place(scan.phase))
     {
         let tried: Vec<f64> = match scan.range {
-            Range::Frequencies => vec![1.0, 5.0, 25.0],
-            Range::Orders([from, to, _]) => vec![from, (from * to).sqrt(), to],
-            Range::WaveNumbers([from, to, _]) => {
+            ScanRange::Frequencies => vec![1.0, 5.0, 25.0],
+            ScanRange::Orders([from, to, _]) => vec![from, (from * to).sqrt(), to],
+            ScanRange::WaveNumbers([from, to, _]) => {
                 [from, (from * to).sqrt(), to].map(|k| 1.0 / k).to_vec()
             }
         };
@@ -129,7 +129,12 @@ pub(in crate::calibrate) fn ways(candidate: &Setting, neutral: f64, step: f64) -
 }
 
 /// The size at which an effect with this column would be seen and named.
-fn size(column: &DVector<f64>, own: Option<&DMatrix<f64>>, parts: &[Part], rattles: bool) -> f64 {
+fn size(
+    column: &DVector<f64>,
+    own: Option<&DMatrix<f64>>,
+    parts: &[WhiteNumbers],
+    rattles: bool,
+) -> f64 {
     let across = match own {
         Some(q) => column - q * (q.transpose() * column),
         None => column.clone(),

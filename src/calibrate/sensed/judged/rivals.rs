@@ -11,7 +11,7 @@ use crate::calibrate::sensed::rounds::round::Round;
 use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::rounds::words::names;
 use crate::calibrate::sensed::thresholds::{GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
-use crate::calibrate::sensed::values::linear::Columns;
+use crate::calibrate::sensed::values::linear::Derivatives;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::effects::Setting;
 
@@ -161,7 +161,7 @@ impl Search<'_> {
             .map_or(0.0, |refitted| model.held - refitted.chi2 - shrunk(&refitted.effects));
         let chance = || {
             let on = model.fit.jacobian.clone()?;
-            let columns = Columns { on, hold: hold.jacobian(refitted.as_ref()?)?, known: 0 };
+            let columns = Derivatives { on, hold: hold.jacobian(refitted.as_ref()?)?, known: 0 };
             columns.refitted(&self.draws(model), model.baseline.replicas)
         };
         if drop > enough(values) && chance().is_none_or(|chance| drop > chance) {

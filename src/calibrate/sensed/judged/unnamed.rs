@@ -1,11 +1,11 @@
 //! What remains when no effect explains it: efforts in the measured joints as a table of what they depend on.
 
 use crate::calibrate::sensed::recorded::estimate::position_sensor;
-use crate::calibrate::sensed::residuals::problem::{Problem, Segment, Split, Stopped};
-use crate::calibrate::sensed::residuals::residual::{Kind, Name};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Split, Stopped};
+use crate::calibrate::sensed::residuals::residual::{Name, ResidualKind};
 use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::thresholds::{TABLE, TABLE_PASSES};
-use crate::calibrate::sensed::values::fit::Target;
+use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::model::Model;
 use crate::effects::{Efforts, Over, Setting};
 use crate::mechanism::JointIndex;
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 /// A table that stands in for what has no name.
 #[derive(Clone, Debug)]
-pub struct Described {
+pub struct DescribedEfforts {
     /// The table, as an effect.
     pub effect: Setting,
     /// Share of what was above noise on data that it was not fitted to that it removes, 0…1.
@@ -23,7 +23,7 @@ pub struct Described {
     pub others: Vec<(Over, f64)>,
 }
 
-impl Described {
+impl DescribedEfforts {
     /// What it depends on, in words.
     pub fn words(&self) -> &'static str {
         self.effect.efforts().map_or("something unknown", |table| table.depends_on.words())
@@ -53,7 +53,10 @@ const RIDGES: [f64; 6] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
 ///
 /// # Errors
 /// A machine that cannot be simulated.
-pub fn describe(search: &Search, model: &Model) -> Result<Option<(Described, Model)>, Stopped> {
+pub fn describe(
+    search: &Search,
+    model: &Model,
+) -> Result<Option<(DescribedEfforts, Model)>, Stopped> {
     let mut last = None;
     let mut simulated = model.clone();
     let mut others: Vec<(Over, f64)> = Vec::new();
@@ -72,7 +75,7 @@ pub fn describe(search: &Search, model: &Model) -> Result<Option<(Described, Mod
         let Some(settled) = search.settle(&effects, 1)? else { break };
         simulated = settled.clone();
         let share = share.clamp(0.0, 1.0);
-        last = Some((Described { effect, share, others: others.clone() }, settled));
+        last = Some((DescribedEfforts { effect, share, others: others.clone() }, settled));
     }
     Ok(last)
 }
@@ -87,7 +90,7 @@ fn best_tables(
 ) -> Vec<(f64, Efforts)> {
     let (problem, split) = (search.problem, search.split);
     let [on, hold] =
-        [&split.on, &split.hold].map(|on| Target { problem, baseline: &simulated.baseline, on });
+        [&split.on, &split.hold].map(|on| FitTarget { problem, baseline: &simulated.baseline, on });
     let effects = &model.fit.effects;
     let (Some(fitted), Some(held)) = (on.look(effects), hold.look(effects)) else {
         return Vec::new();
@@ -130,11 +133,11 @@ fn best_tables(
 
 /// Joints whose efforts are looked at, with the middle, the half range and the largest rate of each coordinate
 /// in the data that is fitted to, and the size of what is left of each.
-type Moved = (Vec<String>, Vec<[f64; 3]>, Vec<f64>);
+type MovedJoints = (Vec<String>, Vec<[f64; 3]>, Vec<f64>);
 
-fn motion(problem: &Problem, split: &Split, names: &[Name]) -> Option<Moved> {
+fn motion(problem: &RigProblem, split: &Split, names: &[Name]) -> Option<MovedJoints> {
     let dynamics: Vec<usize> =
-        (0..names.len()).filter(|&i| names[i].kind == Kind::Dynamics).collect();
+        (0..names.len()).filter(|&i| names[i].kind == ResidualKind::Dynamics).collect();
     let joints: Vec<String> = dynamics.iter().map(|&i| names[i].of.clone()).collect();
     let named = |name: &str| problem.declared.joints().find(|(known, _)| *known == name);
     let mut ranges = Vec::new();
@@ -153,7 +156,7 @@ fn motion(problem: &Problem, split: &Split, names: &[Name]) -> Option<Moved> {
 }
 
 /// Middle, half range and largest rate of a joint's coordinate as its own sensor shows it.
-fn range(problem: &Problem, on: &[Segment], joint: JointIndex) -> Option<[f64; 3]> {
+fn range(problem: &RigProblem, on: &[Segment], joint: JointIndex) -> Option<[f64; 3]> {
     let sensor = position_sensor(&problem.declared, joint)?;
     let (mut low, mut high, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
     for segment in on {
@@ -170,7 +173,7 @@ fn range(problem: &Problem, on: &[Segment], joint: JointIndex) -> Option<[f64; 3
 /// Change of a target's residual by each coefficient of a table in units of `sizes`, joint by joint: it is
 /// linear in them.
 fn columns(
-    target: &Target,
+    target: &FitTarget,
     effects: &[Setting],
     white: &DVector<f64>,
     table: &Efforts,

@@ -5,7 +5,7 @@
 //! accelerates otherwise than any encoder does. Without one the coordinates of joints say it, and the commands of drives whose
 //! joints nobody measures.
 
-use super::shown::{Measured, Series, commanded, coordinate, pose};
+use super::shown::{MeasuredCommands, MeasuredPose, commanded, coordinate, pose};
 use crate::calibrate::sensed::recorded::estimate::View;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::mechanism::{
@@ -27,14 +27,14 @@ pub struct Basis {
 #[derive(Clone, Debug)]
 enum Shown {
     /// What says the coordinate of each of the joints.
-    Coordinates(Vec<Source>),
+    Coordinates(Vec<CoordinateSource>),
     /// Sensors of x, y and angle of one body.
     Pose([usize; 3]),
 }
 
 /// What says a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Source {
+enum CoordinateSource {
     /// A sensor of it.
     Sensor(usize),
     /// The command of a drive whose joint nobody measures, less what the drive yields under its effort.
@@ -60,11 +60,13 @@ impl Basis {
             let seen =
                 read(&|reads| matches!(reads, Reads::Position(joint) if *joint == drive.joint));
             (holds && told.is_some() && seen.is_none())
-                .then_some((drive.joint, Source::Command(index)))
+                .then_some((drive.joint, CoordinateSource::Command(index)))
         });
         let sensors = mechanism.sensors.iter().enumerate();
         let joints = sensors.filter_map(|(i, sensor)| match sensor.reads {
-            Reads::Position(joint) => recording.get(i).map(|_| (joint, Source::Sensor(i))),
+            Reads::Position(joint) => {
+                recording.get(i).map(|_| (joint, CoordinateSource::Sensor(i)))
+            }
             _ => None,
         });
         let found = independent(mechanism, drives.chain(joints).collect())?;
@@ -110,7 +112,7 @@ impl Basis {
         let place = point.attachment(mechanism).frame(&states).centre;
         let rotation = states[offset].rotation * UnitComplex::new(angle);
         let at = place.push(rotation.angle());
-        let still = Series {
+        let still = MeasuredPose {
             interval: 1.0,
             columns: [0, 1, 2].map(|k| [vec![at[k]; 2], vec![0.0; 2], vec![0.0; 2]]),
         };
@@ -131,7 +133,7 @@ impl Basis {
     /// Whether the motion is taken from a sensor.
     pub fn needs(&self, sensor: usize) -> bool {
         match &self.shown {
-            Shown::Coordinates(sources) => sources.contains(&Source::Sensor(sensor)),
+            Shown::Coordinates(sources) => sources.contains(&CoordinateSource::Sensor(sensor)),
             Shown::Pose(sensors) => sensors.contains(&sensor),
         }
     }
@@ -175,12 +177,15 @@ impl Basis {
                 let joints = self.joints.iter().zip(sources);
                 let measured: Vec<[Vec<f64>; 3]> = joints
                     .map(|(joint, source)| match source {
-                        Source::Sensor(sensor) => coordinate(view, mechanism, *joint, *sensor),
-                        Source::Command(drive) => commanded(view, mechanism, *drive),
+                        CoordinateSource::Sensor(sensor) => {
+                            coordinate(view, mechanism, *joint, *sensor)
+                        }
+                        CoordinateSource::Command(drive) => commanded(view, mechanism, *drive),
                     })
                     .collect();
                 measured.iter().for_each(|columns_of| hash(columns_of, &mut columns));
-                ideal.commands = Arc::new(Measured { interval: view.interval, columns: measured });
+                ideal.commands =
+                    Arc::new(MeasuredCommands { interval: view.interval, columns: measured });
                 Moved { ideal, imposed: Imposed::Drives, columns: columns.finish() }
             }
         }
@@ -247,7 +252,7 @@ fn independent<T>(
     (freedoms.driven == freedoms.free).then_some(found)
 }
 
-fn imposed(mechanism: &Mechanism, point: Mark, angle: f64, motion: Series) -> Imposed {
+fn imposed(mechanism: &Mechanism, point: Mark, angle: f64, motion: MeasuredPose) -> Imposed {
     let point = point.attachment(mechanism);
     Imposed::Target { point, angle: Some(angle), motion: Arc::new(motion) }
 }
@@ -258,7 +263,7 @@ mod tests {
     use super::super::start::machine;
     use super::*;
     use crate::calibrate::sensed::recorded::estimate::effort_sensor;
-    use crate::calibrate::sensed::residuals::residual::{Kind, residuals};
+    use crate::calibrate::sensed::residuals::residual::{ResidualKind, residuals};
     use crate::mechanism::Command;
     use crate::scenario::Scenario;
     use std::path::Path;
@@ -311,7 +316,7 @@ mod tests {
                 residuals(&view, &mechanism, &basis, view.rows(), &Motions::default()).unwrap();
             let closures = found.names.iter().zip(&found.signals);
             let closures: Vec<_> =
-                closures.filter(|(name, _)| name.kind == Kind::Closure).collect();
+                closures.filter(|(name, _)| name.kind == ResidualKind::Closure).collect();
             let columns: Vec<&str> = closures.iter().map(|(name, _)| name.of.as_str()).collect();
             assert_eq!(columns.join(" "), of);
             for (name, signal) in closures {

@@ -17,10 +17,10 @@ pub type Poses = Arc<Vec<Posed>>;
 
 /// Motions that were asked for more than once.
 #[derive(Debug, Default)]
-pub struct Motions(Mutex<Kept>);
+pub struct Motions(Mutex<KeptMotion>);
 
 #[derive(Debug, Default)]
-struct Kept {
+struct KeptMotion {
     /// Digests of what was asked for once: a motion that one look alone needs is not kept.
     once: HashSet<u64>,
     motions: VecDeque<(u64, Poses)>,
@@ -87,13 +87,13 @@ mod tests {
     use super::super::start::machine;
     use super::*;
     use crate::calibrate::sensed::recorded::recording::Recording;
-    use crate::calibrate::sensed::residuals::problem::Problem;
+    use crate::calibrate::sensed::residuals::problem::RigProblem;
     use crate::calibrate::sensed::residuals::residual::residuals;
     use crate::effects::{Setting, Target, named};
 
     /// A recorded slider-crank, and the same with something on its piston, which moves that body's centre of mass.
     fn loaded() -> (Recording, [Mechanism; 2]) {
-        let mut problem = Problem::planar("planar-1");
+        let mut problem = RigProblem::planar("planar-1");
         let recording = problem.runs.remove(0).recording;
         let target = Target::Body("piston".to_owned());
         let values = [("mass_kg", 0.1), ("com_x_m", 0.01), ("com_y_m", -0.02)];

@@ -6,7 +6,7 @@ use super::start::{Closed, LEAD, closed, placed, release};
 use crate::calibrate::results::outcome::inverse_normal;
 use crate::calibrate::sensed::recorded::estimate::position_sensor;
 use crate::calibrate::sensed::recorded::recording::Recording;
-use crate::calibrate::values::least_squares::{Best, Effort, Free, least_squares};
+use crate::calibrate::values::least_squares::{Best, FitEffort, Free, least_squares};
 use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};
 use crate::mechanism::{Actuator, Drive, JointIndex, Mechanism};
@@ -219,7 +219,7 @@ const KEPT: f64 = 4.0;
 
 /// Steps of that fit on each length, at most, and the drop of Σ of squares in units of noise that is none: a slow error
 /// of a third of a sensor's steps shows only in many rows together, so that their mean square does not tell.
-const EFFORT: Effort = Effort { steps: 6, enough: 1.0, secant: true };
+const EFFORT: FitEffort = FitEffort { steps: 6, enough: 1.0, secant: true };
 
 /// A small change of a coordinate in m or rad: far above rounding, far below a swing.
 pub const SMALL: f64 = 1e-4;

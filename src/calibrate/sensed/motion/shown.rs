@@ -71,7 +71,7 @@ fn derived(position: Vec<f64>, interval: f64) -> [Vec<f64>; 3] {
 }
 
 /// The pose that sensors of x, y and angle show, in the world's axes.
-pub fn pose(view: &View, mechanism: &Mechanism, sensors: [usize; 3]) -> Series {
+pub fn pose(view: &View, mechanism: &Mechanism, sensors: [usize; 3]) -> MeasuredPose {
     let [x, y, angle] = sensors.map(|sensor| shown(view, mechanism, sensor));
     let frames = &mechanism.sensors[sensors[0]].frames;
     let turned: f64 = mechanism.sensors[sensors[2]].frames.iter().map(|f| f.rotation).sum();
@@ -81,7 +81,7 @@ pub fn pose(view: &View, mechanism: &Mechanism, sensors: [usize; 3]) -> Series {
     let (x, y) = places.map(|point| (point.x, point.y)).unzip();
     let angle = angle.iter().map(|angle| angle - turned).collect();
     let columns = [x, y, angle].map(|column| derived(column, view.interval));
-    Series { interval: view.interval, columns }
+    MeasuredPose { interval: view.interval, columns }
 }
 
 /// The point of the world that a tracker's frame shows at `point` (m).
@@ -99,12 +99,12 @@ fn between(columns: &[Vec<f64>; 3], place: f64) -> [f64; 3] {
 
 /// Measured coordinates as commands.
 #[derive(Debug)]
-pub struct Measured {
+pub struct MeasuredCommands {
     pub interval: f64,
     pub columns: Vec<[Vec<f64>; 3]>,
 }
 
-impl Commands for Measured {
+impl Commands for MeasuredCommands {
     fn at(&self, t: f64, commands: &mut [Command]) {
         for (command, columns) in commands.iter_mut().zip(&self.columns) {
             let [position, rate, acceleration] = between(columns, t / self.interval);
@@ -115,12 +115,12 @@ impl Commands for Measured {
 
 /// A measured pose as a motion.
 #[derive(Debug)]
-pub struct Series {
+pub struct MeasuredPose {
     pub interval: f64,
     pub columns: [[Vec<f64>; 3]; 3],
 }
 
-impl Motion for Series {
+impl Motion for MeasuredPose {
     fn at(&self, t: f64) -> PathPoint {
         let now = self.columns.each_ref().map(|columns| between(columns, t / self.interval));
         let of = |k: usize| Vector3::from(now.map(|values| values[k]));

@@ -41,9 +41,9 @@ fn held_at(samples: &[f64], interval: f64, t: f64) -> Option<f64> {
 
 /// Commands of a recording.
 #[derive(Debug)]
-struct Recorded(Vec<Told>);
+struct RecordedCommands(Vec<Told>);
 
-impl Commands for Recorded {
+impl Commands for RecordedCommands {
     fn at(&self, t: f64, commands: &mut [Command]) {
         for (told, to) in self.0.iter().zip(commands) {
             match told {
@@ -91,7 +91,7 @@ pub fn commands(mechanism: &Mechanism, recording: &Recording) -> Arc<dyn Command
         }
         Told::Smooth(CubicSpline::natural(&t, command))
     };
-    Arc::new(Recorded((0..mechanism.actuators.len()).map(told).collect()))
+    Arc::new(RecordedCommands((0..mechanism.actuators.len()).map(told).collect()))
 }
 
 /// The column of a recording that holds what a drive was told.
@@ -172,7 +172,7 @@ pub(in crate::calibrate::sensed) fn placed(mechanism: &mut Mechanism, recording:
             first.position = (value - offset) / scale;
         }
     }
-    let commands = std::mem::replace(&mut mechanism.commands, Arc::new(Fixed(first)));
+    let commands = std::mem::replace(&mut mechanism.commands, Arc::new(FixedCommands(first)));
     // What cannot be closed there stays where it is told to be.
     let starts: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
     if mechanism.close(0.0).is_err() {
@@ -183,9 +183,9 @@ pub(in crate::calibrate::sensed) fn placed(mechanism: &mut Mechanism, recording:
 
 /// Commands that stay.
 #[derive(Debug)]
-struct Fixed(Vec<Command>);
+struct FixedCommands(Vec<Command>);
 
-impl Commands for Fixed {
+impl Commands for FixedCommands {
     fn at(&self, _: f64, commands: &mut [Command]) {
         commands.copy_from_slice(&self.0);
     }
@@ -268,9 +268,9 @@ const SHORT: f64 = 0.03;
 
 /// `f = −D v` on every body.
 #[derive(Debug)]
-struct Calming;
+struct CalmedBodies;
 
-impl Load for Calming {
+impl Load for CalmedBodies {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         let rate = 2.0 * TAU * SWING;
         let bodies = at.mechanism.bodies.iter().zip(at.states);
@@ -296,7 +296,7 @@ pub fn still(released: &Mechanism, control: StepControl) -> Result<Option<Mechan
         return Ok(None);
     }
     let mut calmed = released.clone();
-    calmed.loads.push(Arc::new(Calming));
+    calmed.loads.push(Arc::new(CalmedBodies));
     let mut machine = released.clone();
     run(&calmed, control, Schedule { duration, interval: duration }, &mut |instant| {
         for (i, body) in machine.bodies.iter_mut().enumerate() {

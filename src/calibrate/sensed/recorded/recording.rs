@@ -2,11 +2,11 @@
 
 use super::cells::Cells;
 use super::heads::{TIME, choose};
-use super::samples::{Row, Samples, unread, wrong};
+use super::samples::{FileRow, Samples, unread, wrong};
 use crate::calibrate::sensed::thresholds::{LOWEST_RATE, PLAIN_BAND, SHORTEST};
 use crate::measure::bounded;
 use crate::measure::dialect::Rows;
-use crate::measure::log::{LogError, Source, no_header};
+use crate::measure::log::{ColumnSource, LogError, no_header};
 use crate::measure::shown::shown;
 use crate::mechanism::Sensor;
 use crate::scenario::Columns;
@@ -28,7 +28,7 @@ pub struct Recording {
     pub samples: usize,
     columns: Vec<Option<Vec<f64>>>,
     /// Where its time stands.
-    time: Source,
+    time: ColumnSource,
     /// Columns of the file that no sensor has.
     pub ignored: Vec<String>,
     /// Their cells, column by column; nothing where rows were put on a grid.
@@ -56,7 +56,7 @@ impl Recording {
         path: &Path,
         sensors: &[Sensor],
         efforts: bool,
-        time: Option<Source>,
+        time: Option<ColumnSource>,
     ) -> Result<Self, LogError> {
         let file = path.display().to_string();
         let opened = bounded::open(path, bounded::TABLE)
@@ -67,12 +67,12 @@ impl Recording {
         let places = no_header(&heads)
             .map_or_else(|| choose(&heads, sensors, efforts, asked), Err)
             .map_err(|(message, help)| wrong(&file, Some(1), message, help))?;
-        let time = time.unwrap_or_else(|| Source::new(&heads[places.time], 1.0));
+        let time = time.unwrap_or_else(|| ColumnSource::new(&heads[places.time], 1.0));
         let ignored = places.others.iter().map(|place| heads[*place].to_owned()).collect();
         let mut samples = Samples::none(&places);
         let mut record = csv::StringRecord::new();
         while rows.next(&mut record).map_err(|error| unread(&file, &error))? {
-            let row = Row { rows: &rows, record: &record, heads: &heads, file: &file };
+            let row = FileRow { rows: &rows, record: &record, heads: &heads, file: &file };
             samples.add(&row, &places, sensors, time.scale)?;
         }
         let (interval, jitter) = samples.evenly().map_err(|(row, message)| {
@@ -104,7 +104,7 @@ impl Recording {
             interval,
             samples,
             columns,
-            time: Source::new(TIME[0], 1.0),
+            time: ColumnSource::new(TIME[0], 1.0),
             ignored: Vec::new(),
             carried: Vec::new(),
             jitter: 0.0,

@@ -22,14 +22,14 @@ pub fn unread(file: &str, error: &csv::Error) -> LogError {
 }
 
 /// A row of a file.
-pub struct Row<'a> {
+pub struct FileRow<'a> {
     pub rows: &'a Rows,
     pub record: &'a csv::StringRecord,
     pub heads: &'a csv::StringRecord,
     pub file: &'a str,
 }
 
-impl Row<'_> {
+impl FileRow<'_> {
     fn number(&self, place: usize) -> Result<f64, LogError> {
         let text = self.record.get(place).unwrap_or_default();
         self.rows.number(text).ok_or_else(|| {
@@ -65,7 +65,7 @@ impl Samples {
     /// Adds a row; `seconds` make one unit of its time.
     pub fn add(
         &mut self,
-        row: &Row,
+        row: &FileRow,
         places: &Places,
         sensors: &[Sensor],
         seconds: f64,

@@ -1,7 +1,7 @@
 //! What a right model leaves of its own residuals: their mean, which is the look's own fault, and their spread,
 //! which is noise.
 
-use super::problem::{Problem, Segment, Start, Stopped};
+use super::problem::{RigProblem, Segment, Start, Stopped};
 use crate::calibrate::measured::draws::{Coefficients, difference, mean, without};
 use crate::calibrate::measured::spectrum::Noise;
 use crate::calibrate::sensed::motion::simulate::{apart, with_noise};
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// Bias and noise on one segment.
 #[derive(Clone, Debug)]
-struct Part {
+struct BiasAndNoise {
     segment: Segment,
     /// The model's machine, through which data and whole simulations are seen alike.
     machine: Mechanism,
@@ -44,7 +44,7 @@ struct Part {
 /// What simulations of a model say of its own residuals.
 #[derive(Clone, Debug)]
 pub struct Baseline {
-    parts: Arc<Vec<Part>>,
+    parts: Arc<Vec<BiasAndNoise>>,
     /// Whether replicas differ by more than sensors see.
     pub rattles: bool,
     /// Replicas that its draws are of: the i-th one of that many in turn.
@@ -65,7 +65,7 @@ impl Baseline {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn of(
-        problem: &Problem,
+        problem: &RigProblem,
         effects: &[Setting],
         deviations: &[f64],
         segments: &[Segment],
@@ -78,7 +78,7 @@ impl Baseline {
             let own = Own { problem, segment, machine };
             own.part(&simulated[segment.run], still[segment.run].as_ref())
         });
-        let parts = parts.collect::<Result<Vec<Part>, Stopped>>()?;
+        let parts = parts.collect::<Result<Vec<BiasAndNoise>, Stopped>>()?;
         let replicas = simulated.first().map_or(1, Vec::len);
         Ok(Self { parts: Arc::new(parts), rattles, replicas })
     }
@@ -90,7 +90,7 @@ impl Baseline {
     /// An effect that the machine cannot take.
     pub fn white(
         &self,
-        problem: &Problem,
+        problem: &RigProblem,
         effects: &[Setting],
         segments: &[Segment],
     ) -> Result<Option<DVector<f64>>, Wrong> {
@@ -109,7 +109,7 @@ impl Baseline {
     /// makes less of its encoder's steps, and is not right for that; none where there is no such machine.
     pub fn shrunk(
         &self,
-        problem: &Problem,
+        problem: &RigProblem,
         effects: &[Setting],
         segments: &[Segment],
     ) -> Option<f64> {
@@ -136,7 +136,7 @@ impl Baseline {
     /// An effect that the machine cannot take, a run that broke down.
     pub fn simulated_white(
         &self,
-        problem: &Problem,
+        problem: &RigProblem,
         effects: &[Setting],
         segments: &[Segment],
     ) -> Result<Option<DVector<f64>>, Stopped> {
@@ -180,7 +180,7 @@ impl Baseline {
     }
 
     /// Residual (by its place among the names) and frequency in Hz of each number of [`white`](Self::white).
-    pub fn places(&self, problem: &Problem, segments: &[Segment]) -> Vec<(usize, f64)> {
+    pub fn places(&self, problem: &RigProblem, segments: &[Segment]) -> Vec<(usize, f64)> {
         let parts = self.parts.iter().filter(|part| segments.contains(&part.segment));
         parts
             .flat_map(|part| {
@@ -194,7 +194,7 @@ impl Baseline {
 
 /// A model on one segment.
 struct Own<'a> {
-    problem: &'a Problem,
+    problem: &'a RigProblem,
     segment: &'a Segment,
     machine: Mechanism,
 }
@@ -215,7 +215,7 @@ impl Own<'_> {
     }
 
     /// Bias and noise, by simulations without noise, replica by replica, and one without a swing.
-    fn part(self, clean: &[Recording], still: Option<&Recording>) -> Result<Part, Stopped> {
+    fn part(self, clean: &[Recording], still: Option<&Recording>) -> Result<BiasAndNoise, Stopped> {
         let look = |recording: &Recording| self.seen(&self.view(recording));
         let singular = || self.singular();
         let seen: Vec<Coefficients> =
@@ -250,7 +250,19 @@ impl Own<'_> {
         let noisy = kept().map(|draw| self.view(&noisy(draw))).collect();
         let (segment, clean) = (self.segment.clone(), self.view(&clean[0]));
         let machine = self.machine;
-        Ok(Part { segment, machine, bias, left, noise, clean, noisy, power, rattle, draws, lost })
+        Ok(BiasAndNoise {
+            segment,
+            machine,
+            bias,
+            left,
+            noise,
+            clean,
+            noisy,
+            power,
+            rattle,
+            draws,
+            lost,
+        })
     }
 }
 
@@ -271,7 +283,7 @@ struct Likelier {
     /// Share of the swing that is noise.
     share: f64,
     noise: Noise,
-    /// As of [`Part`].
+    /// As of [`BiasAndNoise`].
     lost: f64,
 }
 
@@ -291,7 +303,7 @@ impl Likelier {
 /// Noiseless recordings of a model, run by run, and whether they rattle. Of a machine that does as declared a model need
 /// not: what presses its journals on their rings makes it as predictable as any, and one simulation stands for it.
 fn replicas(
-    problem: &Problem,
+    problem: &RigProblem,
     effects: &[Setting],
     deviations: &[f64],
     starts: &[Start],
@@ -337,7 +349,7 @@ mod tests {
     #[test]
     fn a_softer_servo_shrinks_noise() {
         use crate::effects::{Target, named};
-        let problem = Problem::planar("planar-2");
+        let problem = RigProblem::planar("planar-2");
         let segments = problem.split().hold;
         let baseline = Baseline::of(&problem, &[], &[], &segments).unwrap();
         let shrunk = |relative: f64| {

@@ -78,7 +78,7 @@ pub struct Split {
 
 /// A rig, its recorded runs, and how to simulate them.
 #[derive(Debug)]
-pub struct Problem {
+pub struct RigProblem {
     /// What its maker declares.
     pub rig: Scenario,
     /// The machine as declared.
@@ -117,7 +117,7 @@ impl From<StartError> for Stopped {
     }
 }
 
-impl Problem {
+impl RigProblem {
     /// A rig and its recordings.
     ///
     /// # Errors
@@ -322,7 +322,7 @@ impl Problem {
 }
 
 #[cfg(test)]
-impl Problem {
+impl RigProblem {
     /// One of the `planar-…` rigs with its first recording.
     pub fn planar(name: &str) -> Self {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -22,7 +22,7 @@ use std::ops::Range;
 /// Which residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum ResidualKind {
     /// A drive against its own command.
     Law,
     /// Efforts against the motion.
@@ -33,7 +33,7 @@ pub enum Kind {
     Acceleration,
 }
 
-impl Kind {
+impl ResidualKind {
     /// As reports spell it.
     pub fn word(self) -> &'static str {
         match self {
@@ -49,7 +49,7 @@ impl Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     /// Which.
-    pub kind: Kind,
+    pub kind: ResidualKind,
     /// Of which joint or column.
     pub of: String,
     /// Unit.
@@ -66,7 +66,7 @@ pub struct Residuals {
 }
 
 /// Where an effort along a coordinate comes from.
-enum Effort<'a> {
+enum EffortSource<'a> {
     /// Samples of a sensor, plain and slow, to be corrected for its errors.
     Measured(usize, &'a [f64], &'a [f64]),
     /// What a sampled drive gives when it is asked for its recorded outputs.
@@ -160,17 +160,17 @@ impl<'a> Look<'a> {
         })
     }
 
-    fn effort(&self, joint: JointIndex) -> Option<Effort<'a>> {
-        let Some(drive) = self.drive_of(joint) else { return Some(Effort::None) };
+    fn effort(&self, joint: JointIndex) -> Option<EffortSource<'a>> {
+        let Some(drive) = self.drive_of(joint) else { return Some(EffortSource::None) };
         if let Some(sensor) = effort_sensor(self.mechanism, drive)
             && let (Some(smooth), Some(slow)) = (self.view.smooth(sensor), self.view.slow(sensor))
         {
-            return Some(Effort::Measured(sensor, smooth, slow));
+            return Some(EffortSource::Measured(sensor, smooth, slow));
         }
         match self.mechanism.actuators[drive].drive {
-            Drive::Servo { .. } if self.rates[drive].is_some() => Some(Effort::Law(drive)),
-            Drive::Effort => Some(Effort::Law(drive)),
-            Drive::Sampled(_) if self.asked[drive].is_some() => Some(Effort::Asked(drive)),
+            Drive::Servo { .. } if self.rates[drive].is_some() => Some(EffortSource::Law(drive)),
+            Drive::Effort => Some(EffortSource::Law(drive)),
+            Drive::Sampled(_) if self.asked[drive].is_some() => Some(EffortSource::Asked(drive)),
             // What holds a prescribed coordinate is anything, a servo's effort is unknown without its error, and a
             // sampled controller remembers what nobody recorded.
             Drive::Servo { .. } | Drive::Prescribed | Drive::Sampled(_) => None,
@@ -188,19 +188,19 @@ impl<'a> Look<'a> {
         };
         for (drive, _) in self.laws() {
             let actuator = &self.mechanism.actuators[drive];
-            add(Kind::Law, &actuator.name, unit(actuator.joint), PLAIN_BAND);
+            add(ResidualKind::Law, &actuator.name, unit(actuator.joint), PLAIN_BAND);
         }
         for &joint in &self.basis.joints {
             if self.effort(joint).is_some() {
                 let name = self.mechanism.joint_name(joint);
-                add(Kind::Dynamics, name, unit(joint), DYNAMICS_BAND);
+                add(ResidualKind::Dynamics, name, unit(joint), DYNAMICS_BAND);
             }
         }
         for sensor in self.others() {
             let of = &self.mechanism.sensors[sensor];
             let (kind, band) = match of.reads {
-                Reads::Acceleration(..) => (Kind::Acceleration, DYNAMICS_BAND),
-                _ => (Kind::Closure, PLAIN_BAND),
+                Reads::Acceleration(..) => (ResidualKind::Acceleration, DYNAMICS_BAND),
+                _ => (ResidualKind::Closure, PLAIN_BAND),
             };
             add(kind, &of.column, of.unit(self.mechanism), band);
         }
@@ -267,12 +267,12 @@ impl<'a> Look<'a> {
             .iter()
             .map(|&joint| {
                 Some(match self.effort(joint)? {
-                    Effort::Measured(sensor, smooth, slow) => {
+                    EffortSource::Measured(sensor, smooth, slow) => {
                         [smooth, slow].map(|series| self.looked_at(sensor, series, row))
                     }
-                    Effort::Asked(drive) => [self.given(drive, row); 2],
-                    Effort::Law(drive) => [self.law(drive, commands[drive], row); 2],
-                    Effort::None => [0.0; 2],
+                    EffortSource::Asked(drive) => [self.given(drive, row); 2],
+                    EffortSource::Law(drive) => [self.law(drive, commands[drive], row); 2],
+                    EffortSource::None => [0.0; 2],
                 })
             })
             .collect();
@@ -314,12 +314,12 @@ impl<'a> Look<'a> {
             .map(|drive| {
                 let joint = self.mechanism.actuators[drive].joint;
                 let effort = match self.effort(joint) {
-                    Some(Effort::Measured(sensor, smooth, _)) => {
+                    Some(EffortSource::Measured(sensor, smooth, _)) => {
                         self.looked_at(sensor, smooth, row)
                     }
-                    Some(Effort::Asked(drive)) => self.given(drive, row),
-                    Some(Effort::Law(drive)) => self.law(drive, commands[drive], row),
-                    Some(Effort::None) | None => 0.0,
+                    Some(EffortSource::Asked(drive)) => self.given(drive, row),
+                    Some(EffortSource::Law(drive)) => self.law(drive, commands[drive], row),
+                    Some(EffortSource::None) | None => 0.0,
                 };
                 (joint, effort)
             })

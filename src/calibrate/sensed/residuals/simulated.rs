@@ -1,6 +1,6 @@
 //! Noiseless recordings of models of a problem.
 
-use super::problem::{Problem, Run, Start, Stopped};
+use super::problem::{RigProblem, Run, Start, Stopped};
 use crate::calibrate::sensed::motion::released::let_go_at;
 use crate::calibrate::sensed::motion::simulate;
 use crate::calibrate::sensed::recorded::recording::Recording;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
-impl Problem {
+impl RigProblem {
     /// Noiseless recordings of a model that begins there, so many replicas of each run.
     ///
     /// # Errors

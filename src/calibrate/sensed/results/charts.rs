@@ -7,7 +7,7 @@ use crate::report::{Curve, Picture, ReportError, Style, panels_svg};
 
 /// Which run is drawn, and what is said of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Drawn {
+pub struct DrawnRun {
     /// Its place among the runs, from 0 on.
     pub index: usize,
     /// What it serves for.
@@ -23,7 +23,7 @@ pub struct Drawn {
 pub fn of_run(
     machine: &Mechanism,
     recording: &Recording,
-    drawn: Drawn,
+    drawn: DrawnRun,
     models: &[(&str, Style, &Recording)],
 ) -> Result<Vec<Picture>, ReportError> {
     let curve = |name: &str, values: &[f64], style| {

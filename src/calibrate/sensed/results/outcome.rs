@@ -5,10 +5,10 @@ use crate::calibrate::sensed::events::Event;
 use crate::calibrate::sensed::events::search::beside;
 use crate::calibrate::sensed::intake::noise::{self, OtherNoise};
 use crate::calibrate::sensed::judged::left::{Left, is_noise};
-use crate::calibrate::sensed::judged::limits::{Limit, limits};
-use crate::calibrate::sensed::judged::unnamed::{Described, describe};
+use crate::calibrate::sensed::judged::limits::{DetectionLimit, limits};
+use crate::calibrate::sensed::judged::unnamed::{DescribedEfforts, describe};
 use crate::calibrate::sensed::recorded::recording::Recording;
-use crate::calibrate::sensed::residuals::problem::{Problem, Split, Start, Stopped};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Split, Start, Stopped};
 use crate::calibrate::sensed::rounds::rest::Rest;
 use crate::calibrate::sensed::rounds::round::Round;
 use crate::calibrate::sensed::rounds::search::{Found, Search};
@@ -22,7 +22,7 @@ use crate::effects::{Setting, UNNAMED};
 
 /// A calibration.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct SensedOutcome {
     /// What it comes to.
     pub verdict: Verdict,
     /// The effects that were found; where the verdict is `unexplained`, a table of efforts alone, if there is
@@ -31,7 +31,7 @@ pub struct Outcome {
     /// What does not last.
     pub events: Vec<Event>,
     /// What stands in for what has no name.
-    pub described: Option<Described>,
+    pub described: Option<DescribedEfforts>,
     /// What the search held for the best, whatever the verdict.
     pub tried: Vec<Setting>,
     /// What speaks against that although it leaves no more than noise.
@@ -43,7 +43,7 @@ pub struct Outcome {
     /// Sensors whose noise is not what is declared.
     pub noises: Vec<OtherNoise>,
     /// How large each other effect would have to be to be seen; none where what is left is not noise.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<DetectionLimit>,
     /// Round by round.
     pub rounds: Vec<Round>,
     /// Errors, run by run and column by column.
@@ -62,16 +62,17 @@ pub struct Outcome {
 /// # Errors
 /// A rig that cannot be simulated.
 pub fn calibrate(
-    problem: &mut Problem,
+    problem: &mut RigProblem,
     without: &[&str],
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Outcome, Stopped> {
+) -> Result<SensedOutcome, Stopped> {
     tell("finding out whether joints rattle");
     let logs = problem.simulated(&problem.let_go(&[])?, 2)?;
     let noises = noise::correct(problem, &logs);
     let mut rattle = problem.rattle(&logs);
     let split = problem.split();
-    let asked = Asked { split: &split, candidates: candidates(&problem.declared, without), tell };
+    let asked =
+        SearchAsked { split: &split, candidates: candidates(&problem.declared, without), tell };
     let unnamed = !without.contains(&UNNAMED);
     let (mut found, events) = searched_with_events(problem, &asked, unnamed, &logs, &mut rattle)?;
     let search = asked.search(problem);
@@ -107,7 +108,7 @@ pub fn calibrate(
     let acting = events.iter().map(|event| (event.setting(), event.params()));
     let effects = found.into_iter().chain(acting).collect();
     let [declared, predicted] = predicting.means(problem);
-    Ok(Outcome {
+    Ok(SensedOutcome {
         effects,
         events,
         described: described.map(|(described, _)| described),
@@ -137,7 +138,7 @@ fn verdict(predicts: bool, nothing: bool) -> Verdict {
 
 /// Effects of the calibrated model: those of the best one if it leaves no more than noise, else what stands in for what has
 /// no name.
-fn calibrated(best: &Model, noise: bool, described: Option<&Described>) -> Vec<Setting> {
+fn calibrated(best: &Model, noise: bool, described: Option<&DescribedEfforts>) -> Vec<Setting> {
     match described {
         _ if noise => best.fit.effects.clone(),
         Some(described) => vec![described.effect.clone()],
@@ -151,21 +152,25 @@ fn largest(left: &[Left]) -> f64 {
 }
 
 /// What a search is asked.
-struct Asked<'a> {
+struct SearchAsked<'a> {
     split: &'a Split,
     candidates: Vec<Setting>,
     tell: &'a (dyn Fn(&str) + Sync),
 }
 
-impl Asked<'_> {
-    fn search<'b>(&'b self, problem: &'b Problem) -> Search<'b> {
+impl SearchAsked<'_> {
+    fn search<'b>(&'b self, problem: &'b RigProblem) -> Search<'b> {
         Search::new(problem, self.split, &self.candidates, self.tell)
     }
 }
 
 /// What a search finds; a load may lift joints off that rest in the declared machine: what nobody can predict is no
 /// model's fault, and is simulated several times then.
-fn searched(problem: &mut Problem, asked: &Asked, rattle: &mut f64) -> Result<Found, Stopped> {
+fn searched(
+    problem: &mut RigProblem,
+    asked: &SearchAsked,
+    rattle: &mut f64,
+) -> Result<Found, Stopped> {
     let mut found = asked.search(problem).run()?;
     let effects = found.best.fit.effects.clone();
     if problem.replicas == 1 && !effects.is_empty() {
@@ -184,8 +189,8 @@ fn searched(problem: &mut Problem, asked: &Asked, rattle: &mut f64) -> Result<Fo
 /// What a search finds, and what does not last where what has no name is looked for; `declared` are simulations of the
 /// declared machine.
 fn searched_with_events(
-    problem: &mut Problem,
-    asked: &Asked,
+    problem: &mut RigProblem,
+    asked: &SearchAsked,
     unnamed: bool,
     declared: &[Vec<Recording>],
     rattle: &mut f64,
@@ -205,8 +210,8 @@ fn searched_with_events(
 /// none, or where they leave most of what there was, beside the declared and beside the best model: then they are not what
 /// acted. An effect that imitates a part of them may leave less without them.
 fn searched_beside(
-    problem: &mut Problem,
-    asked: &Asked,
+    problem: &mut RigProblem,
+    asked: &SearchAsked,
     events: &[Event],
     before: &Found,
     rattle: &mut f64,
@@ -214,7 +219,7 @@ fn searched_beside(
     if events.is_empty() {
         return Ok(None);
     }
-    let all = |problem: &Problem, found: &Found| {
+    let all = |problem: &RigProblem, found: &Found| {
         let search = asked.search(problem);
         [&found.declared, &found.best].map(|model| search.left(model))
     };
@@ -233,7 +238,7 @@ fn searched_beside(
 
 /// What does not last, beside the declared model, or, where nothing of it shows there, beside what was found.
 fn what_does_not_last(
-    problem: &Problem,
+    problem: &RigProblem,
     found: &Found,
     declared: &[Vec<Recording>],
     tell: &(dyn Fn(&str) + Sync),
@@ -276,7 +281,7 @@ fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped
 }
 
 /// Whether the errors of all runs are met: a model that misses the run that it was fitted to lacks something.
-fn met(problem: &Problem, errors: &[ChannelError], predicting: &Predicting) -> bool {
+fn met(problem: &RigProblem, errors: &[ChannelError], predicting: &Predicting) -> bool {
     problem.runs.iter().zip(&predicting.calibrated).all(|(run, calibrated)| {
         let own = errors.iter().filter(|error| error.run == run.recording.name);
         let own: Vec<ChannelError> = own.cloned().collect();
@@ -285,7 +290,7 @@ fn met(problem: &Problem, errors: &[ChannelError], predicting: &Predicting) -> b
 }
 
 /// Errors of all runs of two models, simulated replica by replica.
-fn of_all(problem: &Problem, predicting: &Predicting) -> Vec<ChannelError> {
+fn of_all(problem: &RigProblem, predicting: &Predicting) -> Vec<ChannelError> {
     let Predicting { declared, calibrated } = predicting;
     let of = |index: usize| {
         let role = if index == 0 { "calibration" } else { "validation" };
@@ -303,7 +308,11 @@ struct Predicting {
 
 impl Predicting {
     /// Leaves the rig as it was declared: what the declared machine would have done knows of nothing that does not last.
-    fn of(problem: &mut Problem, effects: &[Setting], deviations: &[f64]) -> Result<Self, Stopped> {
+    fn of(
+        problem: &mut RigProblem,
+        effects: &[Setting],
+        deviations: &[f64],
+    ) -> Result<Self, Stopped> {
         let starts = problem.starts(effects)?;
         // What nobody knows of values and of how a free machine was let go grows as it swings.
         let open = !deviations.is_empty() && starts.iter().any(Start::is_fitted);
@@ -318,7 +327,7 @@ impl Predicting {
     }
 
     /// Means over replicas, run by run, of the declared and of the calibrated model.
-    fn means(&self, problem: &Problem) -> [Vec<Recording>; 2] {
+    fn means(&self, problem: &RigProblem) -> [Vec<Recording>; 2] {
         let sensors = problem.declared.sensors.len();
         [&self.declared, &self.calibrated]
             .map(|runs| runs.iter().map(|logs| mean(logs, sensors)).collect())

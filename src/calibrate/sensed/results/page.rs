@@ -1,12 +1,12 @@
 //! The page of a calibration and its pictures.
 
-use super::charts::{Drawn, of_run};
-use super::outcome::Outcome;
+use super::charts::{DrawnRun, of_run};
+use super::outcome::SensedOutcome;
 use super::report::Report;
 use crate::calibrate::results::page::{errors_table, verdict, why};
-use crate::calibrate::sensed::residuals::problem::Problem;
+use crate::calibrate::sensed::residuals::problem::RigProblem;
 use crate::calibrate::sensed::windows::horizons::Windows;
-use crate::report::{Part, Picture, ReportError, Style, Table, document, known_to, number};
+use crate::report::{PagePart, PageTable, Picture, ReportError, Style, document, known_to, number};
 
 /// Runs that are drawn, the calibration run first: more would hide what matters.
 const DRAWN: usize = 3;
@@ -15,8 +15,8 @@ const CAPTION: &str = "Declared: the rig as its file has it. Calibrated: with th
 
 /// Each measured column of each run as it was recorded and as it is predicted, and what is missed.
 pub(in crate::calibrate::sensed) fn pictures(
-    problem: &Problem,
-    outcome: &Outcome,
+    problem: &RigProblem,
+    outcome: &SensedOutcome,
 ) -> Result<Vec<Picture>, ReportError> {
     let mut pictures = Vec::new();
     for (index, run) in problem.runs.iter().take(DRAWN).enumerate() {
@@ -25,7 +25,7 @@ pub(in crate::calibrate::sensed) fn pictures(
             ("declared", Style::Reference, &outcome.declared[index]),
             ("calibrated", Style::Solid, &outcome.predicted[index]),
         ];
-        let drawn = Drawn { index, role, caption: CAPTION };
+        let drawn = DrawnRun { index, role, caption: CAPTION };
         pictures.extend(of_run(&problem.declared, &run.recording, drawn, &models)?);
     }
     Ok(pictures)
@@ -44,32 +44,32 @@ pub(in crate::calibrate::sensed) fn page(report: &Report, pictures: &[Picture]) 
         ("Time of computing", format!("{} s", number(report.wall_s))),
     ];
     let provenance = report.provenance.lines("rig", None, more);
-    let mut parts = vec![Part::Table(values(report))];
+    let mut parts = vec![PagePart::Table(values(report))];
     if !equations.is_empty() {
-        parts.push(Part::Text { id: "why", title: "Why these", paragraphs: &equations });
+        parts.push(PagePart::Text { id: "why", title: "Why these", paragraphs: &equations });
     }
     if let Some(windows) = &report.windows {
-        parts.push(Part::Table(errors_table(&report.errors, windows.note)));
-        parts.push(Part::Table(horizons(windows)));
+        parts.push(PagePart::Table(errors_table(&report.errors, windows.note)));
+        parts.push(PagePart::Table(horizons(windows)));
         if !windows.remarks.is_empty() {
-            parts.push(Part::Text {
+            parts.push(PagePart::Text {
                 id: "remarks",
                 title: "The recordings",
                 paragraphs: &windows.remarks,
             });
         }
     } else {
-        parts.push(Part::Table(errors_table(&report.errors, NOTE)));
+        parts.push(PagePart::Table(errors_table(&report.errors, NOTE)));
         if !report.residuals.is_empty() {
-            parts.push(Part::Table(residuals(report)));
+            parts.push(PagePart::Table(residuals(report)));
         }
     }
-    parts.push(Part::Pictures(pictures));
-    parts.push(Part::Table(ranking(report)));
+    parts.push(PagePart::Pictures(pictures));
+    parts.push(PagePart::Table(ranking(report)));
     if !report.limits.is_empty() {
-        parts.push(Part::Table(limits(report)));
+        parts.push(PagePart::Table(limits(report)));
     }
-    parts.push(Part::Provenance(&provenance));
+    parts.push(PagePart::Provenance(&provenance));
     let title =
         format!("Calibration of {}: {}", report.provenance.scenario_name, verdict(report.verdict));
     document(&title, &report.summary, &parts)
@@ -80,7 +80,7 @@ fn head(names: &[&str]) -> Vec<String> {
 }
 
 /// What the effects of the model were found to be.
-fn values(report: &Report) -> Table {
+fn values(report: &Report) -> PageTable {
     let mut rows = Vec::new();
     for effect in &report.effects {
         for (name, fitted) in &effect.params {
@@ -93,7 +93,7 @@ fn values(report: &Report) -> Table {
             ]);
         }
     }
-    Table {
+    PageTable {
         id: "effects",
         title: "What the model was given".into(),
         header: head(&["effect", "parameter", "value", "95 % interval"]),
@@ -103,8 +103,8 @@ fn values(report: &Report) -> Table {
 }
 
 /// What is left of residuals before and after.
-fn residuals(report: &Report) -> Table {
-    Table {
+fn residuals(report: &Report) -> PageTable {
+    PageTable {
         id: "residuals",
         title: "Residuals in units of noise, on the run where most is left".into(),
         header: head(&[
@@ -132,8 +132,8 @@ fn residuals(report: &Report) -> Table {
 }
 
 /// What the search tried.
-fn ranking(report: &Report) -> Table {
-    Table {
+fn ranking(report: &Report) -> PageTable {
+    PageTable {
         id: "candidates",
         title: "Candidates, round by round".into(),
         header: head(&["round", "candidate", "removes", "gain", ""]),
@@ -156,8 +156,8 @@ fn ranking(report: &Report) -> Table {
 }
 
 /// How large other effects would have to be.
-fn limits(report: &Report) -> Table {
-    Table {
+fn limits(report: &Report) -> PageTable {
+    PageTable {
         id: "limits",
         title: "What would have been seen".into(),
         header: head(&["effect", "parameter", "from", "unit"]),
@@ -180,7 +180,7 @@ fn limits(report: &Report) -> Table {
 }
 
 /// Errors of all runs by windows.
-fn horizons(windows: &Windows) -> Table {
+fn horizons(windows: &Windows) -> PageTable {
     let rows = windows.horizons.iter().flat_map(|of| {
         of.errors.iter().map(|e| {
             let horizon = of.horizon;
@@ -190,7 +190,7 @@ fn horizons(windows: &Windows) -> Table {
             run.into_iter().chain(times).chain([e.channel.clone()]).chain(errors).collect()
         })
     });
-    Table {
+    PageTable {
         id: "horizons",
         title: "Errors over windows".into(),
         header: head(&[

@@ -1,9 +1,11 @@
 //! A model of any mechanism that drives hold or joints keep, driven by a recording's commands: what it predicts, and by
 //! how much it misses.
 
-use super::charts::{Drawn, of_run};
+use super::charts::{DrawnRun, of_run};
 use crate::calibrate::results::predict_page;
-use crate::calibrate::results::predicted::{ERRORS_FILE, PREDICTED_FILE, Predicted, Prediction};
+use crate::calibrate::results::predicted::{
+    ERRORS_FILE, PREDICTED_FILE, Predicted, PredictionReport,
+};
 use crate::calibrate::results::report::RattleReport;
 use crate::calibrate::results::result::{CalibrateError, control, publish, refuse, to_json};
 use crate::calibrate::sensed::held;
@@ -30,12 +32,12 @@ const CAPTION: &str =
 
 /// A model and a recording that nothing speaks against.
 #[derive(Debug)]
-pub struct Prepared {
+pub struct PreparedPrediction {
     machine: Mechanism,
     recording: Recording,
 }
 
-impl Prepared {
+impl PreparedPrediction {
     /// What is to be known of the recording: late rows, columns that nobody asks for.
     pub fn remarks(&self) -> Vec<String> {
         remarks(std::slice::from_ref(&self.recording))
@@ -46,7 +48,7 @@ impl Prepared {
 ///
 /// # Errors
 /// What is wrong with the model or the recording.
-pub fn prepare(model: &Scenario, path: &Path) -> Result<Prepared, CalibrateError> {
+pub fn prepare(model: &Scenario, path: &Path) -> Result<PreparedPrediction, CalibrateError> {
     let machine = crate::model::parts_of(model)?;
     let mut wrong = Vec::new();
     if machine.sensors.is_empty() {
@@ -74,7 +76,7 @@ pub fn prepare(model: &Scenario, path: &Path) -> Result<Prepared, CalibrateError
         noise::measured(&mut machine.sensors, &recording);
     }
     crate::calibrate::sensed::motion::start::machine(model, &[], &recording)?;
-    Ok(Prepared { machine, recording })
+    Ok(PreparedPrediction { machine, recording })
 }
 
 impl From<StartError> for CalibrateError {
@@ -89,12 +91,12 @@ impl From<StartError> for CalibrateError {
 /// A model that cannot be simulated, files that cannot be written.
 pub fn into_folder(
     model: &Scenario,
-    prepared: &Prepared,
+    prepared: &PreparedPrediction,
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Predicted, CalibrateError> {
     let started = Clock::now();
-    let Prepared { machine, recording } = prepared;
+    let PreparedPrediction { machine, recording } = prepared;
     tell("simulating two replicas: does it rattle?");
     let along = Along { model, recording, like: &complete(machine, recording) };
     let (after, difference) = along.predicted(machine)?;
@@ -119,10 +121,10 @@ pub fn into_folder(
     let mut models = Vec::new();
     models.extend(plain.as_ref().map(|plain| ("without effects", Style::Reference, plain)));
     models.push(("predicted", Style::Solid, &predicted));
-    let drawn = Drawn { index: 0, role: "prediction", caption: CAPTION };
+    let drawn = DrawnRun { index: 0, role: "prediction", caption: CAPTION };
     let pictures = of_run(machine, recording, drawn, &models).map_err(RunError::from)?;
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
-    let prediction = Prediction {
+    let prediction = PredictionReport {
         provenance: Provenance::of(model),
         run: recording.name.clone(),
         effects: model.effects.iter().map(ToString::to_string).collect(),

@@ -1,6 +1,6 @@
 //! `report.json` and the folder of results.
 
-use super::outcome::Outcome;
+use super::outcome::SensedOutcome;
 use crate::calibrate::quantity;
 use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::results::report::{
@@ -8,7 +8,7 @@ use crate::calibrate::results::report::{
 };
 use crate::calibrate::sensed::intake::noise::OtherNoise;
 use crate::calibrate::sensed::judged::left::Left;
-use crate::calibrate::sensed::judged::limits::Limit;
+use crate::calibrate::sensed::judged::limits::DetectionLimit;
 use crate::calibrate::sensed::rounds::rest::Rest;
 use crate::calibrate::sensed::rounds::round::Tried;
 use crate::calibrate::sensed::rounds::words::{name, names};
@@ -59,7 +59,7 @@ pub struct Report {
     pub windows: Option<Windows>,
 }
 
-pub(in crate::calibrate::sensed) fn summary(outcome: &Outcome) -> String {
+pub(in crate::calibrate::sensed) fn summary(outcome: &SensedOutcome) -> String {
     let lasting = outcome.effects.iter().filter(|(effect, _)| effect.history().is_none());
     let list = lasting.map(|(e, _)| name(e)).collect::<Vec<_>>().join(", ");
     let worst = worst(&outcome.errors).map_or_else(String::new, |error| {
@@ -102,7 +102,7 @@ pub(in crate::calibrate::sensed) fn summary(outcome: &Outcome) -> String {
 }
 
 /// What explains the recordings as well as what was found does.
-fn as_good(outcome: &Outcome) -> String {
+fn as_good(outcome: &SensedOutcome) -> String {
     let all = outcome.effects.iter().filter_map(|(effect, _)| {
         let mut rounds = outcome.rounds.iter();
         let own = rounds.find(|round| round.added.as_ref().is_some_and(|a| a.is(effect)))?;
@@ -129,7 +129,7 @@ pub(in crate::calibrate::sensed) fn noises(noises: &[OtherNoise]) -> String {
     noises.iter().map(one).collect()
 }
 
-pub(in crate::calibrate::sensed) fn effects(outcome: &Outcome) -> Vec<EffectReport> {
+pub(in crate::calibrate::sensed) fn effects(outcome: &SensedOutcome) -> Vec<EffectReport> {
     let report = |(effect, params): &crate::calibrate::sensed::values::certainty::Estimated| {
         let own = outcome.events.iter().find(|event| Some(&event.history) == effect.history());
         if let Some(event) = own {
@@ -181,7 +181,7 @@ pub struct LimitReport {
     pub smallest: Option<f64>,
 }
 
-pub(in crate::calibrate::sensed) fn limit(limit: &Limit) -> LimitReport {
+pub(in crate::calibrate::sensed) fn limit(limit: &DetectionLimit) -> LimitReport {
     LimitReport {
         kind: limit.kind.name,
         on: ActsOn::at(&limit.target),
@@ -191,7 +191,7 @@ pub(in crate::calibrate::sensed) fn limit(limit: &Limit) -> LimitReport {
     }
 }
 
-pub(in crate::calibrate::sensed) fn ranking(outcome: &Outcome) -> Vec<Ranked> {
+pub(in crate::calibrate::sensed) fn ranking(outcome: &SensedOutcome) -> Vec<Ranked> {
     let kept = |tried: &Tried| outcome.effects.iter().any(|(effect, _)| effect.is(&tried.effect));
     let mut ranked = Vec::new();
     for (i, round) in outcome.rounds.iter().enumerate() {

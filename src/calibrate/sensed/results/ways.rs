@@ -3,7 +3,7 @@
 use super::outcome::calibrate;
 use super::page;
 use super::report::{Report, effects, limit, noises, ranking, residuals, summary};
-use super::written::{Calibrated, Made, names_of_files};
+use super::written::{Made, SensedCalibration, names_of_files};
 use crate::calibrate::measured::recording::stem_of;
 use crate::calibrate::results::report::{RattleReport, Seeds};
 use crate::calibrate::results::result::{CalibrateError, control};
@@ -11,9 +11,9 @@ use crate::calibrate::results::unnamed_picture;
 use crate::calibrate::sensed::events::found::sentence;
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::held;
-use crate::calibrate::sensed::intake::prepare::{Prepared, Way};
+use crate::calibrate::sensed::intake::prepare::{CalibratedAs, Prepared};
 use crate::calibrate::sensed::recorded::recording::Recording;
-use crate::calibrate::sensed::residuals::problem::{Problem, Stopped};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Stopped};
 use crate::calibrate::sensed::windows::report::into_folder as by_windows;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -29,12 +29,12 @@ pub fn into_folder(
     without: &[&str],
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Calibrated, CalibrateError> {
+) -> Result<SensedCalibration, CalibrateError> {
     let Prepared { rig, recordings, fits, way } = prepared;
     match way {
-        Way::Windows => by_windows(&rig, recordings, fits, without, folder, tell),
-        Way::Held => held::report::into_folder(&rig, recordings, without, folder, tell),
-        Way::Residuals => by_residuals(rig, recordings, without, tell)?.written(folder),
+        CalibratedAs::Windows => by_windows(&rig, recordings, fits, without, folder, tell),
+        CalibratedAs::Held => held::report::into_folder(&rig, recordings, without, folder, tell),
+        CalibratedAs::Residuals => by_residuals(rig, recordings, without, tell)?.written(folder),
     }
 }
 
@@ -50,7 +50,7 @@ pub(in crate::calibrate) fn by_residuals(
 ) -> Result<Made, CalibrateError> {
     let started = Clock::now();
     let control = control(&rig);
-    let mut problem = Problem::new(rig, recordings, control)?;
+    let mut problem = RigProblem::new(rig, recordings, control)?;
     let outcome = calibrate(&mut problem, without, tell)?;
     tell("drawing and writing");
     let mut pictures = page::pictures(&problem, &outcome).map_err(RunError::from)?;

@@ -10,7 +10,7 @@ use crate::scenario::Scenario;
 use crate::study::{Folder, PAGE_FILE};
 
 /// A finished calibration.
-pub type Calibrated = result::Calibrated<Report>;
+pub type SensedCalibration = result::FinishedCalibration<Report>;
 
 /// A calibration before it is written.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ impl Made {
     ///
     /// # Errors
     /// Files that cannot be written; the folder is left as it was.
-    pub fn written(self, folder: Folder) -> Result<Calibrated, CalibrateError> {
+    pub fn written(self, folder: Folder) -> Result<SensedCalibration, CalibrateError> {
         written(self.report, &self.calibrated, &self.files, &self.pictures, folder)
     }
 }
@@ -49,11 +49,11 @@ pub(in crate::calibrate::sensed) fn written(
     files: &[(String, String)],
     pictures: &[Picture],
     folder: Folder,
-) -> Result<Calibrated, CalibrateError> {
+) -> Result<SensedCalibration, CalibrateError> {
     let json = to_json(&report);
     let (model, page) = (calibrated.to_toml(), page::page(&report, pictures));
     let mut texts = vec![(REPORT_FILE, &json), (CALIBRATED_FILE, &model), (PAGE_FILE, &page)];
     texts.extend(files.iter().map(|(name, text)| (name.as_str(), text)));
     let folder = publish(folder, &texts, pictures)?;
-    Ok(Calibrated { report, json, folder })
+    Ok(SensedCalibration { report, json, folder })
 }

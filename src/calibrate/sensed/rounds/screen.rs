@@ -4,8 +4,8 @@ use super::round::Tried;
 use super::search::Search;
 use crate::calibrate::sensed::thresholds::{AS_MUCH, CLOSER, GAIN, GAIN_PER_VALUE, JUDGED};
 use crate::calibrate::sensed::values::candidates::starts;
-use crate::calibrate::sensed::values::fit::Target;
-use crate::calibrate::sensed::values::linear::{Columns, Step, step as linear_step};
+use crate::calibrate::sensed::values::fit::FitTarget;
+use crate::calibrate::sensed::values::linear::{Derivatives, LinearStep, step as linear_step};
 use crate::calibrate::sensed::values::model::Model;
 use crate::calibrate::values::fit::free;
 use crate::calibrate::values::least_squares::derivative;
@@ -42,7 +42,7 @@ impl Search<'_> {
             let (left, hold) = found.judged(&hold, model, &held.white, jacobians[1].as_ref())?;
             let gain = held.chi2 - left;
             let share = (gain / held.chi2).clamp(0.0, 1.0);
-            let columns = Columns { on: found.on.clone(), hold, known: found.known };
+            let columns = Derivatives { on: found.on.clone(), hold, known: found.known };
             let chance = match gain > 0.5 * GAIN[0] {
                 true => columns.chance(&found.step, &draws, model.baseline.replicas)?,
                 false => 0.0,
@@ -102,7 +102,7 @@ struct Linear {
     on: DMatrix<f64>,
     /// How many values the model has.
     known: usize,
-    step: Step,
+    step: LinearStep,
     /// Σ of squares that the step leaves there.
     left: f64,
 }
@@ -110,7 +110,7 @@ struct Linear {
 /// A candidate beside a model by one linear step from where it starts, of which `base` is left if that is known; none where
 /// there is no such machine.
 fn linear(
-    on: &Target,
+    on: &FitTarget,
     model: &Model,
     base: Option<&DVector<f64>>,
     jacobian: Option<&DMatrix<f64>>,
@@ -129,7 +129,7 @@ fn linear(
 /// What a candidate as it starts leaves beside a model, unless that is `base`, and the derivatives of that by the model's
 /// values and its own.
 fn columns(
-    target: &Target,
+    target: &FitTarget,
     model: &Model,
     base: Option<&DVector<f64>>,
     jacobian: Option<&DMatrix<f64>>,
@@ -154,7 +154,7 @@ impl Linear {
     /// Σ of squares that it leaves on data to judge on, of which the model leaves `held`, and the derivatives there.
     fn judged(
         &self,
-        hold: &Target,
+        hold: &FitTarget,
         model: &Model,
         held: &DVector<f64>,
         jacobian: Option<&DMatrix<f64>>,
@@ -194,13 +194,13 @@ fn simpler_next(tried: &mut [Tried]) {
 #[cfg(test)]
 mod tests {
     use crate::calibrate::sensed::residuals::baseline::Baseline;
-    use crate::calibrate::sensed::residuals::problem::Problem;
+    use crate::calibrate::sensed::residuals::problem::RigProblem;
     use crate::calibrate::sensed::values::candidates::candidates;
 
     /// A candidate at neutral values leaves what the model leaves: it is not looked at again.
     #[test]
     fn neutral_candidates_leave_what_the_model_leaves() {
-        let problem = Problem::planar("planar-3");
+        let problem = RigProblem::planar("planar-3");
         let on = problem.split().on;
         let baseline = Baseline::of(&problem, &[], &[], &on).unwrap();
         let look = |effects: &[_]| baseline.white(&problem, effects, &on).unwrap().unwrap();

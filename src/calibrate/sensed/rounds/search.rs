@@ -5,10 +5,10 @@ use super::rest::Rest;
 use super::round::Round;
 use super::words::names;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
-use crate::calibrate::sensed::residuals::problem::{Problem, Split, Stopped};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Split, Stopped};
 use crate::calibrate::sensed::residuals::residual::Name;
 use crate::calibrate::sensed::thresholds::{BUDGET, EFFECTS, HYPOTHESES, NEAR, TWINS};
-use crate::calibrate::sensed::values::fit::Target;
+use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::effects::Setting;
 
@@ -28,7 +28,7 @@ pub struct Found {
 /// What is searched in.
 pub struct Search<'a> {
     /// The rig and its runs.
-    pub problem: &'a Problem,
+    pub problem: &'a RigProblem,
     /// Which data count for what.
     pub split: &'a Split,
     /// Effects at their neutral values.
@@ -44,7 +44,7 @@ pub struct Search<'a> {
 impl<'a> Search<'a> {
     /// A search in a problem, and who hears what is being tried.
     pub fn new(
-        problem: &'a Problem,
+        problem: &'a RigProblem,
         split: &'a Split,
         candidates: &'a [Setting],
         tell: &'a (dyn Fn(&str) + Sync),
@@ -62,9 +62,9 @@ impl<'a> Search<'a> {
         &'b self,
         baseline: &'b Baseline,
         held: bool,
-    ) -> Target<'b> {
+    ) -> FitTarget<'b> {
         let on = if held { &self.split.hold } else { &self.split.on };
-        Target { problem: self.problem, baseline, on }
+        FitTarget { problem: self.problem, baseline, on }
     }
 
     /// Searches for what the declared model lacks.

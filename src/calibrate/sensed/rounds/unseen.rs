@@ -11,7 +11,7 @@ use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::{Far, followed, shorter};
 use crate::calibrate::sensed::values::whole::Whole;
 use crate::calibrate::values::fit::free;
-use crate::calibrate::values::least_squares::{Free, Look, derivative};
+use crate::calibrate::values::least_squares::{Free, ResidualAt, derivative};
 use crate::effects::Setting;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -136,7 +136,7 @@ impl Search<'_> {
 /// coordinates from which a machine that nothing holds was let go, by which `starts` are the derivatives; and the candidate
 /// after it. None where such a machine cannot be.
 fn linear_step(
-    look: Look,
+    look: ResidualAt,
     candidate: &Setting,
     starts: &[DVector<f64>],
     left: &DVector<f64>,

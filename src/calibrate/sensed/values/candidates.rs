@@ -1,9 +1,9 @@
 //! Where to start looking for the values of a candidate.
 
-use super::fit::{Fit, Target};
+use super::fit::{Fit, FitTarget};
 use super::periodic::frequencies;
 use crate::calibrate::values::least_squares::{REDUCED, REDUCTIONS, too_far};
-use crate::effects::{ALL, CONTAINS, Kind, Range, Scan, Setting};
+use crate::effects::{ALL, CONTAINS, Kind, Scan, ScanRange, Setting};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::FRAC_PI_2;
@@ -30,7 +30,7 @@ const KEPT: usize = 2;
 const TRIED: usize = 12;
 
 /// A candidate beside the effects of a model, at its most promising values.
-pub fn starts(target: &Target, model: &Fit, candidate: &Setting) -> Vec<Setting> {
+pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting) -> Vec<Setting> {
     let change = |values: &[f64]| {
         let with = [model.effects.as_slice(), &[candidate.with(values)]].concat();
         target.look(&with).map(|there| there.white - &model.white)
@@ -96,7 +96,7 @@ fn best(mut scored: Vec<(f64, Setting)>) -> Vec<Setting> {
 
 /// Starts of a repeating effect: the frequencies that explain most by least squares.
 fn scanned(
-    target: &Target,
+    target: &FitTarget,
     model: &Fit,
     candidate: &Setting,
     scan: Scan,
@@ -109,15 +109,15 @@ fn scanned(
     };
     let amplitudes: Vec<usize> = (0..names.len()).filter(|&i| i != over && i != phase).collect();
     let tried = match scan.range {
-        Range::Frequencies => {
+        ScanRange::Frequencies => {
             let names: Vec<&'static str> = amplitudes.iter().map(|&i| names[i]).collect();
             frequencies(target, model, candidate, scan, &names)
         }
-        Range::Orders([from, to, step]) => {
+        ScanRange::Orders([from, to, step]) => {
             let count = ((to - from) / step) as usize;
             (0..=count).map(|i| from + i as f64 * step).collect()
         }
-        Range::WaveNumbers([from, to, step]) => {
+        ScanRange::WaveNumbers([from, to, step]) => {
             let count = ((to - from) / step) as usize;
             let stride = count.div_ceil(TRIED).max(1);
             (0..=count).step_by(stride).map(|i| 1.0 / (from + i as f64 * step)).collect()

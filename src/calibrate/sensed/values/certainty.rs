@@ -4,7 +4,7 @@ use super::fit::Fit;
 use super::model::Model;
 use crate::calibrate::results::outcome::{inverse_normal, pull};
 use crate::calibrate::results::report::Fitted;
-use crate::calibrate::sensed::residuals::problem::{Problem, Segment};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
 use crate::calibrate::sensed::thresholds::SURE;
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
@@ -30,7 +30,7 @@ fn covariance(model: &Model, on: &[Segment]) -> Option<DMatrix<f64>> {
 }
 
 /// An effect of a model of which nobody knows that there is any, if there is one.
-pub fn uncertain(problem: &Problem, model: &Model, on: &[Segment]) -> Option<Setting> {
+pub fn uncertain(problem: &RigProblem, model: &Model, on: &[Segment]) -> Option<Setting> {
     let effects = &model.fit.effects;
     let away = |effect: &Setting| -> Vec<f64> {
         let names: Vec<&'static str> = effect.values().map(|(name, _)| name).collect();

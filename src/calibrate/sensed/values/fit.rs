@@ -2,9 +2,9 @@
 
 use crate::calibrate::results::outcome::inverse_normal;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
-use crate::calibrate::sensed::residuals::problem::{Problem, Segment};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
 use crate::calibrate::values::fit::{free, values, with_values};
-use crate::calibrate::values::least_squares::{self, Effort, least_squares};
+use crate::calibrate::values::least_squares::{self, FitEffort, least_squares};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 
@@ -37,16 +37,16 @@ impl Fit {
 
 /// What is fitted to what.
 #[derive(Clone, Copy, Debug)]
-pub struct Target<'a> {
+pub struct FitTarget<'a> {
     /// The rig and its runs.
-    pub problem: &'a Problem,
+    pub problem: &'a RigProblem,
     /// Bias and noise.
     pub baseline: &'a Baseline,
     /// Segments that count.
     pub on: &'a [Segment],
 }
 
-impl Target<'_> {
+impl FitTarget<'_> {
     /// The residual with these effects; none where such a machine cannot be.
     pub fn look(&self, effects: &[Setting]) -> Option<Fit> {
         let white = self.baseline.white(self.problem, effects, self.on).ok()??;
@@ -71,7 +71,7 @@ impl Target<'_> {
     pub fn fit(&self, effects: &[Setting], steps: usize) -> Option<Fit> {
         let look = |values: &[f64]| Some(self.look(&with_values(effects, values))?.white);
         // A drop of a thousandth is none: looks are cheap.
-        let effort = Effort { steps, enough: 1e-3, secant: false };
+        let effort = FitEffort { steps, enough: 1e-3, secant: false };
         let best = least_squares(&look, &free(effects), values(effects), effort, None)?;
         Some(Fit {
             effects: with_values(effects, &best.values),

@@ -6,7 +6,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Derivatives of the residual in units of noise on the data that values are fitted on and on those that they are judged
 /// on, by the values of a model (the first `known`) and by those of a candidate.
-pub(in crate::calibrate::sensed) struct Columns {
+pub(in crate::calibrate::sensed) struct Derivatives {
     /// On data for the fit.
     pub on: DMatrix<f64>,
     /// On data to judge on.
@@ -16,7 +16,7 @@ pub(in crate::calibrate::sensed) struct Columns {
 }
 
 /// A linear step: which columns move, by how much.
-pub(in crate::calibrate::sensed) struct Step {
+pub(in crate::calibrate::sensed) struct LinearStep {
     moving: Vec<usize>,
     /// Change of each value.
     pub change: DVector<f64>,
@@ -60,7 +60,7 @@ pub(in crate::calibrate::sensed) fn step(
     residual: &DVector<f64>,
     own: &[f64],
     free: &[Free],
-) -> Option<Step> {
+) -> Option<LinearStep> {
     let count = derivatives.ncols();
     let mut moving: Vec<usize> = (0..count).collect();
     let mut change = DVector::zeros(count);
@@ -79,7 +79,7 @@ pub(in crate::calibrate::sensed) fn step(
         let Some(leaving) = leaving else { break };
         moving.remove(leaving);
     }
-    Some(Step { moving, change })
+    Some(LinearStep { moving, change })
 }
 
 /// The sum of squares that is left after one step along these columns, the first `known` of which are not bounded, and the
@@ -99,11 +99,16 @@ pub(in crate::calibrate::sensed) fn stepped_along(
     Some(((left + &columns * &change).norm_squared(), change))
 }
 
-impl Columns {
+impl Derivatives {
     /// The largest drop of the sum of squares, on data to judge on, that such a step of the candidate's values brings in
     /// draws of noise (on both kinds of data): where joints rattle noise has more of some shapes than a covariance frequency
     /// by frequency knows, and a candidate of that shape fits it.
-    pub fn chance(&self, step: &Step, draws: &[[DVector<f64>; 2]], replicas: usize) -> Option<f64> {
+    pub fn chance(
+        &self,
+        step: &LinearStep,
+        draws: &[[DVector<f64>; 2]],
+        replicas: usize,
+    ) -> Option<f64> {
         let model: Vec<usize> = (0..self.known).collect();
         let parts = [&model, &step.moving];
         let solvers = parts.map(|moving| Normal::of(&self.on, moving));
@@ -148,7 +153,7 @@ mod tests {
             DVector::from_fn(200, |_, _| Distribution::<f64>::sample(&StandardNormal, &mut random))
         };
         let shape = DMatrix::from_fn(200, 1, |r, _| (r as f64 * 0.1).sin() / 10.0);
-        let columns = Columns { on: shape.clone(), hold: shape.clone(), known: 0 };
+        let columns = Derivatives { on: shape.clone(), hold: shape.clone(), known: 0 };
         let plain: Vec<[DVector<f64>; 2]> = (0..16).map(|_| [white(), white()]).collect();
         let shaped: Vec<[DVector<f64>; 2]> = (0..16)
             .map(|draw| {

@@ -4,10 +4,10 @@
 //! makes of it in its poses. A machine that moves spreads one frequency over many: the residual's highest peaks may
 //! lie beside it. Two looks at one frequency tell a and b, and these what any other one would show.
 
-use super::fit::{Fit, Target};
+use super::fit::{Fit, FitTarget};
 use crate::calibrate::measured::spectrum::{Signal, transform};
 use crate::calibrate::sensed::motion::start::machine;
-use crate::calibrate::sensed::residuals::problem::{Problem, Segment};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
 use crate::calibrate::sensed::residuals::residual::Residuals;
 use crate::calibrate::sensed::thresholds::DYNAMICS_BAND;
 use crate::effects::{Scan, Setting};
@@ -26,7 +26,7 @@ const KEPT: usize = 4;
 
 /// What a unit of an amplitude does on one segment, residual by residual: the parts that go with the cosine and with
 /// the sine of its phase.
-struct Parts {
+struct AmplitudeParts {
     times: Vec<f64>,
     cosine: Vec<Signal>,
     sine: Vec<Signal>,
@@ -35,13 +35,13 @@ struct Parts {
 /// Frequencies in Hz at which a repeating candidate with these `amplitudes` explains most of what a model leaves, by
 /// least squares, the best first.
 pub(in crate::calibrate::sensed) fn frequencies(
-    target: &Target,
+    target: &FitTarget,
     model: &Fit,
     candidate: &Setting,
     scan: Scan,
     amplitudes: &[&'static str],
 ) -> Vec<f64> {
-    let of = |amplitude: &&str| -> Option<Vec<Parts>> {
+    let of = |amplitude: &&str| -> Option<Vec<AmplitudeParts>> {
         let part = |on| parts(target.problem, &model.effects, candidate, scan, amplitude, on);
         target.on.iter().map(part).collect()
     };
@@ -71,13 +71,13 @@ pub(in crate::calibrate::sensed) fn frequencies(
 
 /// What one amplitude does on a segment; none where there is no such machine.
 fn parts(
-    problem: &Problem,
+    problem: &RigProblem,
     model: &[Setting],
     candidate: &Setting,
     scan: Scan,
     amplitude: &str,
     segment: &Segment,
-) -> Option<Parts> {
+) -> Option<AmplitudeParts> {
     let look = |values: &[(&str, f64)]| -> Option<Residuals> {
         let run = &problem.runs[segment.run];
         let own = candidate.values().map(|(name, neutral)| {
@@ -113,12 +113,17 @@ fn parts(
     };
     let cosine = turned(&|first, later, cos, sin| first * cos - later * sin);
     let sine = turned(&|first, later, cos, sin| first * sin + later * cos);
-    Some(Parts { times, cosine, sine })
+    Some(AmplitudeParts { times, cosine, sine })
 }
 
 /// How much of what a model leaves waves of one frequency (Hz) explain.
-fn gain(target: &Target, model: &Fit, parts: &[Vec<Parts>], frequency: f64) -> Option<f64> {
-    let column = |parts: &[Parts], later: bool| -> Option<DVector<f64>> {
+fn gain(
+    target: &FitTarget,
+    model: &Fit,
+    parts: &[Vec<AmplitudeParts>],
+    frequency: f64,
+) -> Option<f64> {
+    let column = |parts: &[AmplitudeParts], later: bool| -> Option<DVector<f64>> {
         let segments = target.on.iter().zip(parts).map(|(segment, parts)| {
             let pairs = parts.cosine.iter().zip(&parts.sine);
             let signals: Vec<Signal> =
@@ -159,7 +164,7 @@ mod tests {
     /// shakes along a line.
     #[test]
     fn looks_at_one_frequency_tell_of_any_other() {
-        let problem = Problem::planar("planar-2");
+        let problem = RigProblem::planar("planar-2");
         let segment = Segment { run: 0, rows: problem.runs[0].view.rows() };
         let (frequency, phase) = (7.3, 0.8);
         for (kind, on, amplitude, grows) in [

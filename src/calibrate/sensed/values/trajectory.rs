@@ -6,10 +6,10 @@ use super::errors::{floors_of, in_floors};
 use super::whole::Whole;
 use crate::calibrate::sensed::motion::simulate::apart;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
-use crate::calibrate::sensed::residuals::problem::{Problem, Segment, Stopped};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Stopped};
 use crate::calibrate::sensed::thresholds::ALIKE;
 use crate::calibrate::values::fit::{free, values, with_values};
-use crate::calibrate::values::least_squares::{Effort, least_squares};
+use crate::calibrate::values::least_squares::{FitEffort, least_squares};
 use crate::effects::Setting;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ const LENGTHS: [f64; 2] = [0.5, 1.2];
 
 /// Steps of Gauss and Newton on each length, at most: where journals lift off a residual is rough, and
 /// four end on its way down. And the drop of Σ of squares that is none: a look costs a simulation.
-const EFFORT: Effort = Effort { steps: 10, enough: 2.0, secant: true };
+const EFFORT: FitEffort = FitEffort { steps: 10, enough: 2.0, secant: true };
 
 /// The lengths of these runs, one after another, over which values of a model with these effects are fitted to one simulation
 /// of it: as long as its replicas keep together, at least the first. What nothing holds falls for a while before they part,
@@ -29,7 +29,7 @@ const EFFORT: Effort = Effort { steps: 10, enough: 2.0, secant: true };
 /// # Errors
 /// A machine that cannot be simulated.
 pub fn followed(
-    problem: &Problem,
+    problem: &RigProblem,
     effects: &[Setting],
     on: &[Segment],
 ) -> Result<Vec<Option<f64>>, Stopped> {
@@ -67,7 +67,7 @@ pub enum Far {
 /// # Errors
 /// A machine that cannot be simulated.
 pub fn fitted(
-    problem: &Problem,
+    problem: &RigProblem,
     effects: &[Setting],
     on: &[Segment],
     far: Far,
@@ -100,7 +100,7 @@ pub fn fitted(
 /// # Errors
 /// A machine that cannot be simulated.
 pub fn predicted(
-    problem: &Problem,
+    problem: &RigProblem,
     effects: &[Setting],
     on: &[Segment],
 ) -> Result<Vec<Setting>, Stopped> {
@@ -129,7 +129,7 @@ pub fn predicted(
 }
 
 /// The first so many seconds of a segment.
-pub fn shorter(problem: &Problem, segment: &Segment, length: Option<f64>) -> Segment {
+pub fn shorter(problem: &RigProblem, segment: &Segment, length: Option<f64>) -> Segment {
     let view = &problem.runs[segment.run].view;
     let Some(length) = length else { return segment.clone() };
     let rows = (length / (view.interval * view.stride as f64)) as usize;

@@ -7,21 +7,23 @@ use super::errors::{OVERSAMPLED, floors_of, in_floors};
 use crate::calibrate::results::outcome::{inverse_normal, pull};
 use crate::calibrate::sensed::motion::released::SMALL;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
-use crate::calibrate::sensed::residuals::problem::{Problem, Segment, Stopped};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Stopped};
 use crate::calibrate::values::fit::{free, values, with_values};
-use crate::calibrate::values::least_squares::{Effort, Free, derivative, jacobian, least_squares};
+use crate::calibrate::values::least_squares::{
+    FitEffort, Free, derivative, jacobian, least_squares,
+};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 
 /// Simulations of runs from where a model lets them begin.
 pub(in crate::calibrate::sensed) struct Whole<'a> {
-    problem: &'a Problem,
+    problem: &'a RigProblem,
     segments: &'a [Segment],
-    compared: Compared,
+    compared: ComparedBy,
 }
 
 /// What is compared.
-enum Compared {
+enum ComparedBy {
     /// Residuals, with the bias and noise of a model.
     Looks(Baseline),
     /// What sensors show: floors column by column, and coordinates in m or rad from which the machine is let go, both
@@ -35,14 +37,14 @@ impl<'a> Whole<'a> {
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
     pub fn of(
-        problem: &'a Problem,
+        problem: &'a RigProblem,
         effects: &[Setting],
         segments: &'a [Segment],
         baseline: impl FnOnce() -> Result<Baseline, Stopped>,
     ) -> Result<Self, Stopped> {
         let begins = problem.let_go(effects)?;
         if !begins.iter().any(|start| start.is_fitted()) {
-            return Ok(Self { problem, segments, compared: Compared::Looks(baseline()?) });
+            return Ok(Self { problem, segments, compared: ComparedBy::Looks(baseline()?) });
         }
         let mut floors = Vec::new();
         for Segment { run, rows } in segments {
@@ -53,12 +55,12 @@ impl<'a> Whole<'a> {
         }
         let start = |segment: &Segment| begins[segment.run].coordinates().to_vec();
         let starts = segments.iter().map(start).collect();
-        Ok(Self { problem, segments, compared: Compared::Columns { floors, starts } })
+        Ok(Self { problem, segments, compared: ComparedBy::Columns { floors, starts } })
     }
 
     /// Whether starts are fitted, too.
     pub fn falls(&self) -> bool {
-        matches!(self.compared, Compared::Columns { .. })
+        matches!(self.compared, ComparedBy::Columns { .. })
     }
 
     /// The residual in units of noise with these effects; none where there is no such machine.
@@ -75,7 +77,7 @@ impl<'a> Whole<'a> {
 
     /// The effects at the values that leave the least, from these on; none where there is no such machine. Where it was let
     /// go with them is known from then on.
-    pub fn fitted(&self, effects: &[Setting], effort: Effort) -> Option<Vec<Setting>> {
+    pub fn fitted(&self, effects: &[Setting], effort: FitEffort) -> Option<Vec<Setting>> {
         let count = values(effects).len();
         let look = |all: &[f64]| {
             let (values, coordinates) = all.split_at(count);
@@ -103,12 +105,12 @@ impl<'a> Whole<'a> {
         let mean_square = |independent: f64| left.norm_squared() / independent.max(1.0);
         let count = left.len() as f64;
         let (own, factor) = match &self.compared {
-            Compared::Looks(baseline) => {
+            ComparedBy::Looks(baseline) => {
                 let inverse = inverse_normal(&own)?;
                 let pulled = pull(&own, &inverse, &baseline.draws(self.segments));
                 (own, mean_square(count).max(pulled).max(1.0))
             }
-            Compared::Columns { .. } => {
+            ComparedBy::Columns { .. } => {
                 let across = DMatrix::from_columns(&self.by_start(effects, &left)?).qr().q();
                 let own = &own - &across * across.tr_mul(&own);
                 (own, mean_square(count / OVERSAMPLED).max(1.0))
@@ -120,8 +122,8 @@ impl<'a> Whole<'a> {
     /// The coordinates from which the machine is let go, segment by segment.
     fn starts(&self) -> &[Vec<f64>] {
         match &self.compared {
-            Compared::Looks(_) => &[],
-            Compared::Columns { starts, .. } => starts,
+            ComparedBy::Looks(_) => &[],
+            ComparedBy::Columns { starts, .. } => starts,
         }
     }
 
@@ -138,10 +140,10 @@ impl<'a> Whole<'a> {
     fn look_from(&self, effects: &[Setting], coordinates: &[f64]) -> Option<DVector<f64>> {
         let problem = self.problem;
         let (floors, starts) = match &self.compared {
-            Compared::Looks(baseline) => {
+            ComparedBy::Looks(baseline) => {
                 return baseline.simulated_white(problem, effects, self.segments).ok().flatten();
             }
-            Compared::Columns { floors, starts } => (floors, starts),
+            ComparedBy::Columns { floors, starts } => (floors, starts),
         };
         let (mut rest, mut all) = (coordinates, Vec::new());
         for ((Segment { run, rows }, floors), start) in self.segments.iter().zip(floors).zip(starts)
@@ -159,7 +161,7 @@ impl<'a> Whole<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fit::Target;
+    use super::super::fit::FitTarget;
     use super::super::trajectory::shorter;
     use super::*;
     use crate::effects::named;
@@ -168,7 +170,7 @@ mod tests {
     /// residuals, which are accelerations, tell that less closely than the way that it falls.
     #[test]
     fn how_a_pendulum_falls_tells_drag_better_than_its_accelerations() {
-        let problem = Problem::planar("planar-4");
+        let problem = RigProblem::planar("planar-4");
         let on: Vec<Segment> =
             problem.split().on.iter().map(|whole| shorter(&problem, whole, Some(1.2))).collect();
         let mut all = named("drag").unwrap().candidates(&problem.declared).into_iter();
@@ -177,13 +179,13 @@ mod tests {
         let baseline = Baseline::of(&problem, &[], &[], &on).unwrap();
         let whole = Whole::of(&problem, &[], &on, || Ok(baseline.clone())).unwrap();
         assert!(whole.falls());
-        let effort = Effort { steps: 4, enough: 1.0, secant: false };
+        let effort = FitEffort { steps: 4, enough: 1.0, secant: false };
         let fitted = whole.fitted(&drag(0.01), effort).unwrap();
         let found = values(&fitted)[0];
         let deviation = |covariance: DMatrix<f64>| covariance[(0, 0)].sqrt();
         let own = deviation(whole.covariance(&fitted).unwrap());
         assert!(found.abs() < 1e-4 * 0.01, "{found} ± {own}");
-        let target = Target { problem: &problem, baseline: &baseline, on: &on };
+        let target = FitTarget { problem: &problem, baseline: &baseline, on: &on };
         let looked = target.look(&drag(0.0)).unwrap();
         let by_looks = deviation(inverse_normal(&target.jacobian(&looked).unwrap()).unwrap());
         assert!(own < 0.7 * by_looks, "{own} {by_looks}");

@@ -17,7 +17,7 @@ use super::between;
 use super::energy::{Books, Exchange, Power};
 use super::looks::Looks;
 use super::stepper::Stepper;
-use crate::engine::physics::world::{Target, World, joint_advance};
+use crate::engine::physics::world::{MotorTarget, World, joint_advance};
 use crate::mechanism::{Bearing, BodyState, Command, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
@@ -209,7 +209,12 @@ impl Adaptive {
             let joint = &mechanism.prismatics[i];
             let commanded = dynamics.prescribed(i).map(|drive| path.commands[drive].position);
             let turn = joint.base.body.map_or(0.0, |body| turns[body]);
-            Some(Target::new(joint, commanded.unwrap_or(path.lengths[i]), now.lengths[i], turn))
+            Some(MotorTarget::new(
+                joint,
+                commanded.unwrap_or(path.lengths[i]),
+                now.lengths[i],
+                turn,
+            ))
         };
         let advances = |i: usize| {
             let advance = path.commands[i].position - now.coordinates[i];

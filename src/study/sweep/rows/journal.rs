@@ -18,7 +18,7 @@ use std::path::Path;
 pub(in crate::study::sweep) const JOURNAL_FILE: &str = "rows.jsonl";
 
 /// Rows by the number of their run.
-pub(in crate::study::sweep) type Rows = BTreeMap<usize, StringRecord>;
+pub(in crate::study::sweep) type RunRows = BTreeMap<usize, StringRecord>;
 
 /// A row as it is kept: its cells in one text, as long as they are.
 pub(in crate::study::sweep) fn kept(cells: &[String]) -> StringRecord {
@@ -29,7 +29,7 @@ pub(in crate::study::sweep) fn kept(cells: &[String]) -> StringRecord {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Line {
+struct JournalLine {
     run: usize,
     cells: Vec<String>,
     seal: String,
@@ -54,7 +54,7 @@ impl Journal {
         folder: &Path,
         identity: &Identity,
         shard: Shard,
-    ) -> Result<(Journal, Rows), SweepError> {
+    ) -> Result<(Journal, RunRows), SweepError> {
         let path = folder.join(JOURNAL_FILE);
         let mut file = lock(folder)?;
         let mut text = Vec::new();
@@ -75,7 +75,7 @@ impl Journal {
             return Err(refused(JOURNAL_FILE)(source));
         }
         let seal = seal(&self.seed_of_seals, run, cells);
-        let line = Line { run, cells: cells.to_vec(), seal };
+        let line = JournalLine { run, cells: cells.to_vec(), seal };
         // Numbers and texts always become JSON.
         let text = serde_json::to_string(&line).unwrap_or_default() + "\n";
         self.file.write_all(text.as_bytes()).map_err(|error| {
@@ -106,19 +106,19 @@ pub(in crate::study::sweep) fn read(
     folder: &Path,
     identity: &Identity,
     shard: Shard,
-) -> Result<Rows, SweepError> {
+) -> Result<RunRows, SweepError> {
     let path = folder.join(JOURNAL_FILE);
     let text = std::fs::read(&path).map_err(|error| unreadable(&path, &error))?;
     Ok(parse(&text, &path, identity, shard)?.0)
 }
 
 /// The text of a journal that holds `rows`.
-pub(in crate::study::sweep) fn text(identity: &Identity, rows: &Rows) -> String {
+pub(in crate::study::sweep) fn text(identity: &Identity, rows: &RunRows) -> String {
     let hash = identity.hash();
     rows.iter()
         .map(|(run, cells)| {
             let cells: Vec<String> = cells.iter().map(str::to_owned).collect();
-            let line = Line { run: *run, seal: seal(&hash, *run, &cells), cells };
+            let line = JournalLine { run: *run, seal: seal(&hash, *run, &cells), cells };
             serde_json::to_string(&line).unwrap_or_default() + "\n"
         })
         .collect()
@@ -137,10 +137,10 @@ fn parse(
     path: &Path,
     identity: &Identity,
     shard: Shard,
-) -> Result<(Rows, usize), SweepError> {
+) -> Result<(RunRows, usize), SweepError> {
     let hash = identity.hash();
     let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-    let mut rows = Rows::new();
+    let mut rows = RunRows::new();
     for (number, line) in (1..).zip(text[..whole].split_inclusive(|byte| *byte == b'\n')) {
         let damaged = |what: String| {
             SweepError::input(format!(
@@ -149,7 +149,7 @@ fn parse(
                 path.display()
             ))
         };
-        let line: Line = serde_json::from_slice(line)
+        let line: JournalLine = serde_json::from_slice(line)
             .map_err(|error| damaged(format!("is no row of a sweep ({error})")))?;
         if line.seal != seal(&hash, line.run, &line.cells) {
             return Err(damaged(

@@ -1,27 +1,32 @@
 //! The page of a sweep: how the runs ended, the spread of the figures, the pictures.
 
-use super::journal::Rows;
+use super::journal::RunRows;
 use super::pictures;
 use super::row::{FORCES, Status, of_joint, status};
 use super::statistics::{self, Spread, groups, has_starts, shared};
-use crate::report::{self, Fact, Part, Picture, Table, number};
+use crate::report::{self, Fact, PagePart, PageTable, Picture, number};
 use crate::study::compare::QUANTITIES;
 use crate::study::files::SCENARIO_FILE;
 use crate::study::sweep::Record;
 use statrs::statistics::{Data, OrderStatistics};
 
 /// The page as HTML.
-pub(in crate::study::sweep) fn page(record: &Record, rows: &Rows, pictures: &[Picture]) -> String {
+pub(in crate::study::sweep) fn page(
+    record: &Record,
+    rows: &RunRows,
+    pictures: &[Picture],
+) -> String {
     let title = format!("Sweep: {}", record.identity.provenance.scenario_name);
     let (facts, provenance) = (facts(record, rows), provenance(record));
-    let groups = over_starts(record, rows).map(Part::Table);
-    let rest = [Part::Facts(&facts), Part::Pictures(pictures), Part::Provenance(&provenance)];
-    let parts: Vec<Part> = groups.into_iter().chain(rest).collect();
+    let groups = over_starts(record, rows).map(PagePart::Table);
+    let rest =
+        [PagePart::Facts(&facts), PagePart::Pictures(pictures), PagePart::Provenance(&provenance)];
+    let parts: Vec<PagePart> = groups.into_iter().chain(rest).collect();
     report::document(&title, &lead(record, rows), &parts)
 }
 
 /// How the runs ended, in words.
-fn lead(record: &Record, rows: &Rows) -> String {
+fn lead(record: &Record, rows: &RunRows) -> String {
     let identity = &record.identity;
     let paths = identity.columns.iter().zip(&identity.vary).map(|(path, _)| path.as_str());
     let mut lead = format!(
@@ -67,7 +72,7 @@ const SHOWN: [&str; 5] = [
 ];
 
 /// Means over the starts, group by group; none where no start was varied.
-fn over_starts(record: &Record, rows: &Rows) -> Option<Table> {
+fn over_starts(record: &Record, rows: &RunRows) -> Option<PageTable> {
     let identity = &record.identity;
     if !has_starts(identity) {
         return None;
@@ -83,7 +88,7 @@ fn over_starts(record: &Record, rows: &Rows) -> Option<Table> {
         Some(Spread { mean, .. }) => number(mean),
         None => "–".to_owned(),
     };
-    let row = |group: &statistics::Group| {
+    let row = |group: &statistics::StartsGroup| {
         let first = group.values.iter().map(|value| short(value)).chain([group.runs.to_string()]);
         first.chain(shown.iter().map(|k| cell(group.figures[*k]))).collect()
     };
@@ -94,7 +99,7 @@ fn over_starts(record: &Record, rows: &Rows) -> Option<Table> {
     } else {
         String::new()
     };
-    Some(Table {
+    Some(PageTable {
         id: "starts",
         title: "Means over the starts".to_owned(),
         header: heads.chain(shown.iter().map(|k| in_words(&figures[*k]))).collect(),
@@ -140,7 +145,7 @@ fn in_words(column: &str) -> String {
 
 /// Median and span of each figure over the runs that reached their end. Its columns stand behind those of the
 /// varied values; the status, the last one, is no number.
-fn facts(record: &Record, rows: &Rows) -> Vec<Fact> {
+fn facts(record: &Record, rows: &RunRows) -> Vec<Fact> {
     let identity = &record.identity;
     let columns = identity.columns.iter().enumerate().skip(identity.vary.len());
     columns

@@ -4,7 +4,7 @@
 //! Figures are doubles or, where they count, 64-bit integers; a varied key is a column of doubles if all
 //! its values are numbers, and of texts otherwise; `status` is a text. An empty cell is null.
 
-use super::journal::Rows;
+use super::journal::RunRows;
 use super::row::{COUNTS, FIGURES};
 use crate::study::sweep::Identity;
 use csv::StringRecord;
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// A column by what it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+enum ColumnKind {
     Count,
     Number,
     Text,
@@ -29,12 +29,12 @@ enum Kind {
 ///
 /// # Errors
 /// If the library refuses. No rows lead there.
-pub(in crate::study::sweep) fn table(identity: &Identity, rows: &Rows) -> io::Result<Vec<u8>> {
+pub(in crate::study::sweep) fn table(identity: &Identity, rows: &RunRows) -> io::Result<Vec<u8>> {
     bytes(identity, rows).map_err(io::Error::other)
 }
 
-fn bytes(identity: &Identity, rows: &Rows) -> Result<Vec<u8>, ParquetError> {
-    let kinds: Vec<Kind> =
+fn bytes(identity: &Identity, rows: &RunRows) -> Result<Vec<u8>, ParquetError> {
+    let kinds: Vec<ColumnKind> =
         identity.columns.iter().enumerate().map(|(i, name)| kind(name, i, rows)).collect();
     let fields = identity.columns.iter().zip(&kinds).map(|(name, kind)| field(name, *kind));
     let fields = fields.collect::<Result<Vec<_>, _>>()?;
@@ -45,11 +45,13 @@ fn bytes(identity: &Identity, rows: &Rows) -> Result<Vec<u8>, ParquetError> {
     for (i, kind) in kinds.iter().enumerate() {
         let cells = || rows.values().map(move |row| row.get(i).unwrap_or_default());
         match kind {
-            Kind::Count => column::<Int64Type>(&mut group, cells().map(|cell| cell.parse().ok()))?,
-            Kind::Number => {
+            ColumnKind::Count => {
+                column::<Int64Type>(&mut group, cells().map(|cell| cell.parse().ok()))?
+            }
+            ColumnKind::Number => {
                 column::<DoubleType>(&mut group, cells().map(|cell| cell.parse().ok()))?;
             }
-            Kind::Text => {
+            ColumnKind::Text => {
                 column::<ByteArrayType>(&mut group, cells().map(|c| Some(ByteArray::from(c))))?;
             }
         }
@@ -59,22 +61,22 @@ fn bytes(identity: &Identity, rows: &Rows) -> Result<Vec<u8>, ParquetError> {
 }
 
 /// What column `i` holds.
-fn kind(name: &str, i: usize, rows: &Rows) -> Kind {
+fn kind(name: &str, i: usize, rows: &RunRows) -> ColumnKind {
     let number = |row: &StringRecord| row.get(i).is_some_and(|cell| cell.parse::<f64>().is_ok());
     if COUNTS.contains(&name) {
-        Kind::Count
+        ColumnKind::Count
     } else if FIGURES.contains(&name) || rows.values().all(number) {
-        Kind::Number
+        ColumnKind::Number
     } else {
-        Kind::Text
+        ColumnKind::Text
     }
 }
 
-fn field(name: &str, kind: Kind) -> Result<Arc<Type>, ParquetError> {
+fn field(name: &str, kind: ColumnKind) -> Result<Arc<Type>, ParquetError> {
     let (physical, logical) = match kind {
-        Kind::Count => (PhysicalType::INT64, None),
-        Kind::Number => (PhysicalType::DOUBLE, None),
-        Kind::Text => (PhysicalType::BYTE_ARRAY, Some(LogicalType::String)),
+        ColumnKind::Count => (PhysicalType::INT64, None),
+        ColumnKind::Number => (PhysicalType::DOUBLE, None),
+        ColumnKind::Text => (PhysicalType::BYTE_ARRAY, Some(LogicalType::String)),
     };
     let builder = Type::primitive_type_builder(name, physical);
     let built = builder.with_repetition(Repetition::OPTIONAL).with_logical_type(logical).build()?;

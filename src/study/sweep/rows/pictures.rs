@@ -1,6 +1,6 @@
 //! The pictures of a sweep: its main figures over each varied number.
 
-use super::journal::Rows;
+use super::journal::RunRows;
 use super::row::{FORCES, Status, status};
 use super::statistics::{Spread, is_start};
 use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, panels_svg};
@@ -11,10 +11,10 @@ use std::collections::BTreeMap;
 
 /// An output: column, heading, label of the axis, factor to the axis' unit, and the column of the same of the machine
 /// without clearance.
-type Output = (&'static str, &'static str, &'static str, f64, Option<&'static str>);
+type SweptOutput = (&'static str, &'static str, &'static str, f64, Option<&'static str>);
 
 /// What is drawn.
-const OUTPUTS: [Output; 8] = [
+const OUTPUTS: [SweptOutput; 8] = [
     ("peak_contact_force_N", "Peak contact force", "force (N)", 1.0, None),
     (
         "peak_platform_acceleration_m_s2",
@@ -80,7 +80,7 @@ fn file(path: &str) -> String {
 /// One picture for each varied number.
 pub(in crate::study::sweep) fn draw(
     identity: &Identity,
-    rows: &Rows,
+    rows: &RunRows,
 ) -> Result<Vec<Picture>, ReportError> {
     // A record that was edited has been refused before; what cannot be read is not drawn.
     let varied: Vec<Vary> = identity.vary.iter().filter_map(|v| Vary::parse(v).ok()).collect();
@@ -98,8 +98,8 @@ fn picture(
     input: usize,
 ) -> Result<Picture, ReportError> {
     let path = &varied[input].path;
-    let over = Over::new(identity, varied, rows, input);
-    let drawn: Vec<Drawn> = OUTPUTS.iter().filter_map(|output| over.panel(output)).collect();
+    let over = DrawnOver::new(identity, varied, rows, input);
+    let drawn: Vec<DrawnPanel> = OUTPUTS.iter().filter_map(|output| over.panel(output)).collect();
     let averaged = drawn.iter().any(|drawn| drawn.averaged);
     let panels: Vec<Panel> = drawn.into_iter().map(|drawn| drawn.panel).collect();
     Ok(Picture {
@@ -111,7 +111,7 @@ fn picture(
 }
 
 /// What is drawn over one varied number.
-struct Over<'a> {
+struct DrawnOver<'a> {
     identity: &'a Identity,
     path: &'a str,
     rows: &'a [&'a StringRecord],
@@ -124,12 +124,12 @@ struct Over<'a> {
 }
 
 /// A panel, and whether it shows means.
-struct Drawn {
+struct DrawnPanel {
     panel: Panel,
     averaged: bool,
 }
 
-impl<'a> Over<'a> {
+impl<'a> DrawnOver<'a> {
     fn new(
         identity: &'a Identity,
         varied: &'a [Vary],
@@ -167,7 +167,7 @@ impl<'a> Over<'a> {
         points.into_iter().map(|(x, y)| (scale(x, self.x_log), scale(y, y_log))).collect()
     }
 
-    fn panel(&self, output: &Output) -> Option<Drawn> {
+    fn panel(&self, output: &SweptOutput) -> Option<DrawnPanel> {
         let (name, title, label, factor, ideal) = *output;
         let column = self.column(name)?;
         let all = self.points(self.rows, column, factor);
@@ -192,7 +192,7 @@ impl<'a> Over<'a> {
             y_label: Label::log_if(label, y_log),
             curves,
         };
-        Some(Drawn { panel, averaged })
+        Some(DrawnPanel { panel, averaged })
     }
 
     /// A dot for each run, group by group.

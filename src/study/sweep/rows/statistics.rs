@@ -1,6 +1,6 @@
 //! Runs that differ in nothing but where they start: means over the starts, with the interval that chaos leaves.
 
-use super::journal::Rows;
+use super::journal::RunRows;
 use super::row::{Status, status};
 use crate::measure::student::t95;
 use crate::study::compare::Mean;
@@ -50,7 +50,7 @@ impl Spread {
 
 /// Runs that differ in their starts alone.
 #[derive(Clone, Debug)]
-pub(in crate::study::sweep) struct Group {
+pub(in crate::study::sweep) struct StartsGroup {
     /// The varied values that they share, in the order of the columns.
     pub values: Vec<String>,
     /// How many there are.
@@ -60,7 +60,7 @@ pub(in crate::study::sweep) struct Group {
 }
 
 /// The groups of the runs that reached their end, in the order of their first runs.
-pub(in crate::study::sweep) fn groups(identity: &Identity, rows: &Rows) -> Vec<Group> {
+pub(in crate::study::sweep) fn groups(identity: &Identity, rows: &RunRows) -> Vec<StartsGroup> {
     let shared: Vec<usize> =
         varied(identity).filter(|(_, path)| !is_start(path)).map(|(column, _)| column).collect();
     let mut places: BTreeMap<Vec<String>, usize> = BTreeMap::new();
@@ -81,7 +81,7 @@ pub(in crate::study::sweep) fn groups(identity: &Identity, rows: &Rows) -> Vec<G
             let values: Vec<f64> = values.collect();
             (!values.is_empty()).then(|| Spread::of(&values))
         };
-        Group { values, runs: rows.len(), figures: columns.clone().map(figure).collect() }
+        StartsGroup { values, runs: rows.len(), figures: columns.clone().map(figure).collect() }
     };
     found.into_iter().map(group).collect()
 }
@@ -93,7 +93,7 @@ pub(super) fn shared(identity: &Identity) -> Vec<&str> {
 }
 
 /// The table: a row a group, with mean and ends of the 95 % interval of each figure.
-pub(in crate::study::sweep) fn csv(identity: &Identity, groups: &[Group]) -> String {
+pub(in crate::study::sweep) fn csv(identity: &Identity, groups: &[StartsGroup]) -> String {
     let mut table = csv::Writer::from_writer(Vec::new());
     let figures = &identity.columns[identity.vary.len()..];
     let some = |k: &usize| groups.iter().any(|group| group.figures[*k].is_some());

@@ -17,7 +17,7 @@ pub struct Design {
     varied: Vec<Vary>,
     /// What the product is made of, slowest first.
     factors: Vec<Factor>,
-    sample: Sample,
+    sample: RSequence,
     runs: usize,
 }
 
@@ -79,7 +79,7 @@ impl Design {
             )));
         };
         let dimensions = random.map_or(0, |at| factors[at].keys.len());
-        Ok(Design { varied, factors, sample: Sample::new(dimensions, seed), runs })
+        Ok(Design { varied, factors, sample: RSequence::new(dimensions, seed), runs })
     }
 
     /// Number of runs.
@@ -115,12 +115,12 @@ impl Design {
 
 /// The shifted R-sequence in the unit cube.
 #[derive(Debug)]
-struct Sample {
+struct RSequence {
     /// α and shift of each dimension.
     dimensions: Vec<[f64; 2]>,
 }
 
-impl Sample {
+impl RSequence {
     fn new(dimensions: usize, seed: u64) -> Self {
         let power = 1.0 / (dimensions as f64 + 1.0);
         // The iteration contracts by at most 1/(2 φ): 60 turns leave nothing but rounding.
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn samples_fill_the_square_evenly() {
         for seed in [1, 2, u64::MAX] {
-            let sample = Sample::new(2, seed);
+            let sample = RSequence::new(2, seed);
             let mut cells = [0; 16];
             for n in 0..1600 {
                 let [x, y] = [0, 1].map(|d| (4.0 * sample.coordinate(n, d)) as usize);
@@ -184,7 +184,7 @@ mod tests {
             // 100 each; independent random points would leave a spread of 10.
             assert!(cells.iter().all(|count| (95..=105).contains(count)), "{cells:?}");
         }
-        assert_ne!(Sample::new(1, 1).coordinate(0, 0), Sample::new(1, 2).coordinate(0, 0));
+        assert_ne!(RSequence::new(1, 1).coordinate(0, 0), RSequence::new(1, 2).coordinate(0, 0));
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use super::inputs::{input_sensor, inputs};
 use super::pose::{Coordinates, Pose};
-use super::shooting::{Fitted, Shooting, Value};
-use super::window::{Shooter, Start, Window, compared, cut};
-use crate::calibrate::sensed::events::{Event, Series, events};
+use super::shooting::{Shooting, SoughtValue, WindowsFitted};
+use super::window::{Shooter, Window, WindowStart, compared, cut};
+use crate::calibrate::sensed::events::{Event, FreedomSeries, events};
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::recorded::estimate::View;
 use crate::calibrate::sensed::recorded::recording::Recording;
@@ -38,7 +38,7 @@ pub struct Bench {
     pub coordinates: Coordinates,
     /// Compared sensors.
     pub sensors: Vec<usize>,
-    origin: Start,
+    origin: WindowStart,
 }
 
 /// Length and step in s of the windows that a run's own zeros are taken from.
@@ -81,7 +81,7 @@ impl Bench {
             runs,
             coordinates,
             sensors,
-            origin: Start { values, near },
+            origin: WindowStart { values, near },
         };
         let zeros = vec![vec![0.0; bench.sensors.len()]; bench.runs.len()];
         let machines = bench.machines(&bench.declared);
@@ -127,7 +127,7 @@ impl Bench {
         machines: &[Mechanism],
         zeros: &[Vec<f64>],
         windows: &[Window],
-    ) -> Option<Vec<Start>> {
+    ) -> Option<Vec<WindowStart>> {
         let mut last = self.origin.clone();
         let mut starts = Vec::with_capacity(windows.len());
         for window in windows {
@@ -141,7 +141,12 @@ impl Bench {
 
     /// Efforts along a run that machines of all runs do not know of, where zeros are what sensors show too much in
     /// each; none where joints are not measured or the machine cannot be as it was.
-    pub fn series(&self, machines: &[Mechanism], zeros: &[Vec<f64>], run: usize) -> Option<Series> {
+    pub fn series(
+        &self,
+        machines: &[Mechanism],
+        zeros: &[Vec<f64>],
+        run: usize,
+    ) -> Option<FreedomSeries> {
         let recording = &self.runs[run];
         let mut machine = machines[run].clone();
         let first = cut(run, recording, &self.sensors, [0.1, 0.1], [0.0, 0.3]);
@@ -156,7 +161,7 @@ impl Bench {
         }
         let basis = Basis::of(&machine, recording)?;
         let view = View::new(recording, machine.sensors.len());
-        Series::of(&recording.name, &view, &machine, &basis)
+        FreedomSeries::of(&recording.name, &view, &machine, &basis)
     }
 
     /// What does not last in the runs; nothing in those of which efforts cannot be told.
@@ -168,7 +173,7 @@ impl Bench {
         let plain = |run: &Vec<[f64; 2]>| run.iter().map(|[zero, _]| *zero).collect();
         let zeros: Vec<Vec<f64>> = zeros.iter().map(plain).collect();
         let series = (0..self.runs.len()).filter_map(|run| self.series(&machines, &zeros, run));
-        events(&series.collect::<Vec<Series>>())
+        events(&series.collect::<Vec<FreedomSeries>>())
     }
 
     /// Root mean square motion of each compared sensor about its mean over all runs.
@@ -226,7 +231,7 @@ impl Bench {
         let priors: Vec<Vec<[f64; 2]>> =
             vec![stds.iter().map(|std| [0.0, *std]).collect(); self.runs.len()];
         let scales: Vec<f64> = self.motion().iter().map(|motion| 1e-3 * motion).collect();
-        let sought: [Value; 0] = [];
+        let sought: [SoughtValue; 0] = [];
         let machines = |_: &[f64]| self.machines(effects);
         let fitted =
             self.fit(&machines, &windows, &sought, Vec::new(), &priors, scales, 20, false)?;
@@ -244,18 +249,18 @@ impl Bench {
         &self,
         machines: &(dyn Fn(&[f64]) -> Option<Vec<Mechanism>> + Sync),
         windows: &[Window],
-        sought: &[Value],
+        sought: &[SoughtValue],
         values: Vec<f64>,
         priors: &[Vec<[f64; 2]>],
         scales: Vec<f64>,
         head: usize,
         predicts: bool,
-    ) -> Option<Fitted> {
+    ) -> Option<WindowsFitted> {
         let zeros: Vec<Vec<f64>> =
             priors.iter().map(|run| run.iter().map(|[centre, _]| *centre).collect()).collect();
         let built = machines(&values)?;
         let guesses = self.starts(&built, &zeros, windows)?;
-        let better = |(window, start): (&Window, Start)| {
+        let better = |(window, start): (&Window, WindowStart)| {
             let shooter = self.shooter(&built[window.run], &zeros[window.run]);
             shooter.fitted(window, head, start.clone(), &scales).unwrap_or(start)
         };
@@ -266,7 +271,15 @@ impl Bench {
             Shooting { machines, shooter, windows, sought, head: predicted, zeros: priors };
         let [covariance, information] = [DMatrix::zeros(0, 0), DMatrix::zeros(0, 0)];
         let squares = f64::INFINITY;
-        shooting.fit(Fitted { values, zeros, starts, scales, squares, covariance, information })
+        shooting.fit(WindowsFitted {
+            values,
+            zeros,
+            starts,
+            scales,
+            squares,
+            covariance,
+            information,
+        })
     }
 }
 

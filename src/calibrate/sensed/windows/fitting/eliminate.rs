@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 /// What an elimination leaves: values that are fixed and where, all values, and effects that went with what their
 /// last term was worth.
 #[derive(Debug)]
-pub struct Kept {
+pub struct KeptValues {
     /// Where fixed ones are.
     pub fixed: Vec<Option<f64>>,
     /// All of them.
@@ -25,7 +25,7 @@ pub fn eliminated(
     values: Vec<f64>,
     mut covariance: DMatrix<f64>,
     information: &DMatrix<f64>,
-) -> Kept {
+) -> KeptValues {
     let mut now = DVector::zeros(covariance.nrows());
     now.rows_mut(0, values.len()).copy_from_slice(&values);
     let mut fixed: Vec<Option<f64>> = vec![None; values.len()];
@@ -61,7 +61,7 @@ pub fn eliminated(
         }
     }
     let gains = lost.iter().enumerate().filter_map(|(i, gain)| Some((i, (*gain)?))).collect();
-    Kept { fixed, values: now.rows(0, values.len()).iter().copied().collect(), gains }
+    KeptValues { fixed, values: now.rows(0, values.len()).iter().copied().collect(), gains }
 }
 
 /// The term whose change from nothing or from what is declared is least certain, where that is, and its gain.

@@ -10,14 +10,14 @@ use nalgebra::{DMatrix, DVector};
 
 /// Fits of one bench.
 #[derive(Clone)]
-pub struct Search<'a> {
+pub struct WindowFits<'a> {
     bench: &'a Bench,
     priors: Vec<Vec<[f64; 2]>>,
     scales: Vec<f64>,
     /// Lengths in s of the windows that were fitted.
     pub lengths: Vec<f64>,
     zeros: Vec<Vec<f64>>,
-    /// As of [`Fitted`](super::shooting::Fitted), of the last fit.
+    /// As of [`Fitted`](super::shooting::WindowsFitted), of the last fit.
     pub covariance: DMatrix<f64>,
     /// See there.
     pub information: DMatrix<f64>,
@@ -27,7 +27,7 @@ pub struct Search<'a> {
     tell: &'a (dyn Fn(&str) + Sync),
 }
 
-impl<'a> Search<'a> {
+impl<'a> WindowFits<'a> {
     /// Nothing found yet; `priors` are those of zeros, run by run.
     pub fn new(
         bench: &'a Bench,

@@ -8,12 +8,12 @@ use std::sync::Arc;
 /// Recorded efforts of drives, on straight lines between rows: a motor's current is held over a control cycle
 /// and known at its rows only.
 #[derive(Debug)]
-struct Given {
+struct RecordedEfforts {
     interval: f64,
     columns: Vec<Vec<f64>>,
 }
 
-impl Commands for Given {
+impl Commands for RecordedEfforts {
     fn at(&self, t: f64, commands: &mut [Command]) {
         let place = (t / self.interval).max(0.0);
         for (command, column) in commands.iter_mut().zip(&self.columns) {
@@ -49,5 +49,5 @@ pub fn inputs(mechanism: &Mechanism, recording: &Recording) -> Option<Arc<dyn Co
         Some(recording.get(sensor)?.iter().map(true_effort).collect())
     };
     let columns = (0..mechanism.actuators.len()).map(column).collect::<Option<Vec<Vec<f64>>>>()?;
-    Some(Arc::new(Given { interval: recording.interval, columns }))
+    Some(Arc::new(RecordedEfforts { interval: recording.interval, columns }))
 }

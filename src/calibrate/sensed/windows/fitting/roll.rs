@@ -15,7 +15,7 @@ const STIFF: f64 = 2.0;
 
 /// When readings are wanted: at `rows + 1` instants from `first` (s) on.
 #[derive(Clone, Copy, Debug)]
-pub struct Rows {
+pub struct ReadingTimes {
     /// Time of the first reading in s, as commands and loads see it.
     pub first: f64,
     /// Time between two readings in s.
@@ -25,10 +25,15 @@ pub struct Rows {
 }
 
 /// Bodies as numbers: positions and angles, then their rates.
-type Numbers = Vec<[Vector3<f64>; 2]>;
+type BodyNumbers = Vec<[Vector3<f64>; 2]>;
 
 /// What the sensors with these indices show, row by row; none where the machine breaks down.
-pub fn roll(mechanism: &Mechanism, pose: &Pose, rows: Rows, sensors: &[usize]) -> Option<Vec<f64>> {
+pub fn roll(
+    mechanism: &Mechanism,
+    pose: &Pose,
+    rows: ReadingTimes,
+    sensors: &[usize],
+) -> Option<Vec<f64>> {
     let mut machine = mechanism.clone();
     for (body, (state, angle)) in
         machine.bodies.iter_mut().zip(pose.states.iter().zip(&pose.angles))
@@ -46,14 +51,14 @@ pub fn roll(mechanism: &Mechanism, pose: &Pose, rows: Rows, sensors: &[usize]) -
         states: pose.states.clone(),
         machine: &machine,
     };
-    let mut at: Numbers = pose
+    let mut at: BodyNumbers = pose
         .states
         .iter()
         .zip(&pose.angles)
         .map(|(state, angle)| [state.position.push(*angle), state.twist])
         .collect();
     let mut shown = Vec::with_capacity((rows.count + 1) * sensors.len());
-    let mut read = |roller: &Roller, at: &Numbers| {
+    let mut read = |roller: &Roller, at: &BodyNumbers| {
         let angles: Vec<f64> = at.iter().map(|[place, _]| place.z).collect();
         for &i in sensors {
             let sensor = &machine.sensors[i];
@@ -86,7 +91,7 @@ pub fn roll(mechanism: &Mechanism, pose: &Pose, rows: Rows, sensors: &[usize]) -
     shown.iter().all(|value| value.is_finite()).then_some(shown)
 }
 
-fn moved(at: &Numbers, rates: &Numbers, h: f64) -> Numbers {
+fn moved(at: &BodyNumbers, rates: &BodyNumbers, h: f64) -> BodyNumbers {
     at.iter().zip(rates).map(|(at, rate)| [at[0] + rate[0] * h, at[1] + rate[1] * h]).collect()
 }
 
@@ -98,14 +103,14 @@ struct Roller<'a> {
 }
 
 impl Roller<'_> {
-    fn place(&mut self, at: &Numbers) {
+    fn place(&mut self, at: &BodyNumbers) {
         for (state, [place, twist]) in self.states.iter_mut().zip(at) {
             let position = Vector2::new(place.x, place.y);
             *state = BodyState { position, rotation: UnitComplex::new(place.z), twist: *twist };
         }
     }
 
-    fn rates(&mut self, t: f64, at: &Numbers) -> Numbers {
+    fn rates(&mut self, t: f64, at: &BodyNumbers) -> BodyNumbers {
         self.place(at);
         self.dynamics.forces(self.machine, t, &self.states, &mut self.now);
         self.dynamics.accelerations(self.machine, &self.states, &mut self.now);

@@ -2,7 +2,7 @@
 //! damping of Levenberg and Marquardt. Each window's start is eliminated first (Schur's complement), so that a
 //! step costs as many rolls as there are values.
 
-use super::window::{Shooter, Start, Window};
+use super::window::{Shooter, Window, WindowStart};
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ const OUTLIER: f64 = 2.0;
 
 /// A value that is sought.
 #[derive(Clone, Debug)]
-pub struct Value {
+pub struct SoughtValue {
     /// Change by which derivatives are taken.
     pub step: f64,
     /// Least and largest value.
@@ -29,13 +29,13 @@ pub struct Value {
 
 /// What is fitted: values, then a zero of each compared sensor of each run.
 #[derive(Clone, Debug)]
-pub struct Fitted {
+pub struct WindowsFitted {
     /// Values.
     pub values: Vec<f64>,
     /// Zeros, run by run.
     pub zeros: Vec<Vec<f64>>,
     /// Starts, window by window.
-    pub starts: Vec<Start>,
+    pub starts: Vec<WindowStart>,
     /// What errors of each compared sensor are counted in.
     pub scales: Vec<f64>,
     /// Σ of squares, priors left out.
@@ -55,7 +55,7 @@ pub struct Shooting<'a> {
     /// The windows.
     pub windows: &'a [Window],
     /// Values sought.
-    pub sought: &'a [Value],
+    pub sought: &'a [SoughtValue],
     /// How many first rows starts are fitted to where what is made least is the error of predictions; none where
     /// starts are fitted to all rows.
     pub head: Option<usize>,
@@ -64,7 +64,7 @@ pub struct Shooting<'a> {
 }
 
 /// A window's part of the normal equations.
-struct Part {
+struct NormalPart {
     squares: f64,
     weight: f64,
     /// Whether B and r are those of a start that follows the values.
@@ -77,7 +77,7 @@ struct Part {
     br: DVector<f64>,
 }
 
-impl Part {
+impl NormalPart {
     /// Equations of the values alone, damped: the start is taken out of them.
     fn reduced(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let bb = damped(&self.bb, damping);
@@ -114,7 +114,7 @@ impl Shooting<'_> {
         machines: &[Mechanism],
         zeros: &[Vec<f64>],
         window: &Window,
-        start: &Start,
+        start: &WindowStart,
         scales: &[f64],
     ) -> Option<DVector<f64>> {
         let shown = self.shooter(machines, zeros, window.run).shot(start, window.rows)?;
@@ -123,7 +123,12 @@ impl Shooting<'_> {
         Some(DVector::from_iterator(shown.len(), left.map(|(k, (s, m))| (m - s) / scales[k % n])))
     }
 
-    fn part(&self, all: &[Vec<Mechanism>], fitted: &Fitted, index: usize) -> Option<Part> {
+    fn part(
+        &self,
+        all: &[Vec<Mechanism>],
+        fitted: &WindowsFitted,
+        index: usize,
+    ) -> Option<NormalPart> {
         let (window, start) = (&self.windows[index], &fitted.starts[index]);
         let n = fitted.scales.len();
         let shooter = self.shooter(&all[0], &fitted.zeros, window.run);
@@ -163,15 +168,15 @@ impl Shooting<'_> {
         };
         let bt = b.transpose();
         let (bb, br) = (&bt * &b, &bt * &r);
-        Some(Part { squares, weight: 1.0, predicts, aa, ab, ar, bb, br })
+        Some(NormalPart { squares, weight: 1.0, predicts, aa, ab, ar, bb, br })
     }
 
-    fn step(&self, fitted: &Fitted, k: usize, value: &Value) -> f64 {
+    fn step(&self, fitted: &WindowsFitted, k: usize, value: &SoughtValue) -> f64 {
         if fitted.values[k] + value.step > value.bounds[1] { -value.step } else { value.step }
     }
 
     /// Priors of all unknowns: distance from them, and their weight; unknowns that are kept have none.
-    fn priors(&self, fitted: &Fitted) -> Vec<Option<[f64; 2]>> {
+    fn priors(&self, fitted: &WindowsFitted) -> Vec<Option<[f64; 2]>> {
         let prior = |value: f64, [centre, std]: [f64; 2]| {
             (std > 0.0).then(|| [value - centre, std.powi(-2)])
         };
@@ -181,7 +186,7 @@ impl Shooting<'_> {
     }
 
     /// Fits, from values, zeros and starts on.
-    pub fn fit(&self, mut fitted: Fitted) -> Option<Fitted> {
+    pub fn fit(&self, mut fitted: WindowsFitted) -> Option<WindowsFitted> {
         let mut damping = 1e-3;
         let mut machines = (self.machines)(&fitted.values)?;
         let mut last = false;
@@ -222,7 +227,7 @@ impl Shooting<'_> {
     }
 
     /// All windows with their derivatives, weighed: those that miss much more than others count less.
-    fn parts(&self, machines: &[Mechanism], fitted: &Fitted) -> Option<Vec<Part>> {
+    fn parts(&self, machines: &[Mechanism], fitted: &WindowsFitted) -> Option<Vec<NormalPart>> {
         let mut all = vec![machines.to_vec()];
         for (k, value) in self.sought.iter().enumerate() {
             let mut beside = fitted.values.clone();
@@ -230,7 +235,7 @@ impl Shooting<'_> {
             all.push((self.machines)(&beside)?);
         }
         let parts = (0..self.windows.len()).into_par_iter().map(|i| self.part(&all, fitted, i));
-        let mut parts = parts.collect::<Option<Vec<Part>>>()?;
+        let mut parts = parts.collect::<Option<Vec<NormalPart>>>()?;
         let mut sizes: Vec<f64> = parts.iter().map(|part| part.squares.sqrt()).collect();
         sizes.sort_by(f64::total_cmp);
         let typical = OUTLIER * sizes[sizes.len() / 2];
@@ -241,7 +246,12 @@ impl Shooting<'_> {
     }
 
     /// Where a change of values and zeros and steps of the starts lead.
-    fn moved(&self, fitted: &Fitted, change: &DVector<f64>, steps: &[DVector<f64>]) -> Fitted {
+    fn moved(
+        &self,
+        fitted: &WindowsFitted,
+        change: &DVector<f64>,
+        steps: &[DVector<f64>],
+    ) -> WindowsFitted {
         let mut there = fitted.clone();
         for (k, value) in there.values.iter_mut().enumerate() {
             let [low, high] = self.sought[k].bounds;
@@ -256,7 +266,12 @@ impl Shooting<'_> {
     }
 
     /// Σ of squares of what is missed, by the weights of these parts.
-    fn squares(&self, machines: &[Mechanism], fitted: &Fitted, parts: &[Part]) -> Option<f64> {
+    fn squares(
+        &self,
+        machines: &[Mechanism],
+        fitted: &WindowsFitted,
+        parts: &[NormalPart],
+    ) -> Option<f64> {
         let squares = (0..self.windows.len()).into_par_iter().map(|i| {
             let (window, start) = (&self.windows[i], &fitted.starts[i]);
             let left = self.residual(machines, &fitted.zeros, window, start, &fitted.scales)?;
@@ -268,7 +283,7 @@ impl Shooting<'_> {
     /// Normal equations of values and zeros alone, damped: matrix and right-hand side.
     fn reduced(
         &self,
-        parts: &[Part],
+        parts: &[NormalPart],
         priors: &[Option<[f64; 2]>],
         damping: f64,
     ) -> Option<(DMatrix<f64>, DVector<f64>)> {
@@ -291,9 +306,9 @@ impl Shooting<'_> {
 
     fn solve(
         &self,
-        parts: &[Part],
+        parts: &[NormalPart],
         priors: &[Option<[f64; 2]>],
-        fitted: &Fitted,
+        fitted: &WindowsFitted,
         damping: f64,
     ) -> Option<(DVector<f64>, Vec<DVector<f64>>)> {
         let (mut matrix, mut right) = self.reduced(parts, priors, damping)?;
@@ -328,9 +343,9 @@ impl Shooting<'_> {
     /// together, those of different windows do not.
     fn covariance(
         &self,
-        parts: &[Part],
+        parts: &[NormalPart],
         priors: &[Option<[f64; 2]>],
-        fitted: &Fitted,
+        fitted: &WindowsFitted,
     ) -> DMatrix<f64> {
         let unknowns = self.unknowns();
         let found = self.reduced(parts, priors, 0.0).and_then(|(mut matrix, _)| {

@@ -1,6 +1,6 @@
 //! Which values are sought of a machine that nothing holds, and how far they may be from what is declared.
 
-use super::shooting::Value;
+use super::shooting::SoughtValue;
 use crate::calibrate::sensed::recorded::estimate::{effort_sensor, position_sensor};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::effects::{Setting, Target, named};
@@ -42,7 +42,7 @@ pub struct Sought {
     /// Effect and value of it of each value that is sought.
     places: Vec<(usize, usize)>,
     /// The values.
-    pub values: Vec<Value>,
+    pub values: Vec<SoughtValue>,
     /// Where they start.
     pub start: Vec<f64>,
 }
@@ -192,7 +192,7 @@ impl Sought {
             let start = effect.values().nth(place).map_or(0.0, |(_, value)| value);
             self.places.push((index, place));
             let prior = [start, *size];
-            self.values.push(Value { step: STEP * size, bounds: parameter.bounds, prior });
+            self.values.push(SoughtValue { step: STEP * size, bounds: parameter.bounds, prior });
             self.start.push(start);
         }
         match declared {
@@ -221,7 +221,7 @@ pub fn sought(
     let mass: f64 = mechanism.bodies.iter().map(|body| body.mass).sum();
     // Without gravity a machine of its size that turns with 3 rad/s sets the scale.
     let weight = mass * mechanism.gravity.norm().max(9.0 * size);
-    let expected = Expected { mechanism, recordings, without, size, mass, weight };
+    let expected = ExpectedSizes { mechanism, recordings, without, size, mass, weight };
     for (name, axes) in &mechanism.names.bodies {
         expected.add_body(&mut sought, name, axes);
     }
@@ -234,7 +234,7 @@ pub fn sought(
 }
 
 /// How large effects on a machine are expected to be.
-struct Expected<'a> {
+struct ExpectedSizes<'a> {
     mechanism: &'a Mechanism,
     recordings: &'a [Recording],
     /// Kinds that are not sought.
@@ -247,7 +247,7 @@ struct Expected<'a> {
     weight: f64,
 }
 
-impl Expected<'_> {
+impl ExpectedSizes<'_> {
     fn allows(&self, kind: &str) -> bool {
         !self.without.contains(&kind)
     }

@@ -5,7 +5,7 @@
 //! that is fitted through the model to the window's first rows (multiple shooting: Bock, *Proc. ICIAM* 1983).
 
 use super::pose::{Coordinates, Pose};
-use super::roll::{Rows, roll};
+use super::roll::{ReadingTimes, roll};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::mechanism::{Mechanism, Reads};
 use nalgebra::{DMatrix, DVector};
@@ -32,7 +32,7 @@ pub struct Window {
     /// Rows of the recording in one that is compared.
     pub stride: usize,
     /// When readings are compared.
-    pub rows: Rows,
+    pub rows: ReadingTimes,
     /// Measured readings, row by row.
     pub measured: Vec<f64>,
 }
@@ -68,7 +68,13 @@ pub fn cut(
         let measured =
             (0..=count).flat_map(|k| sensors.iter().map(move |&i| value(k, i))).collect();
         let first = row as f64 * recording.interval;
-        windows.push(Window { run, row, stride, rows: Rows { first, interval, count }, measured });
+        windows.push(Window {
+            run,
+            row,
+            stride,
+            rows: ReadingTimes { first, interval, count },
+            measured,
+        });
         row += step;
     }
     windows
@@ -76,7 +82,7 @@ pub fn cut(
 
 /// A start: coordinates and rates, and a pose near it.
 #[derive(Clone, Debug)]
-pub struct Start {
+pub struct WindowStart {
     /// Coordinates, then their rates.
     pub values: Vec<f64>,
     /// A pose on the same branch.
@@ -99,7 +105,7 @@ pub struct Shooter<'a> {
 
 impl Shooter<'_> {
     /// Readings from a start on.
-    pub fn shot(&self, start: &Start, rows: Rows) -> Option<Vec<f64>> {
+    pub fn shot(&self, start: &WindowStart, rows: ReadingTimes) -> Option<Vec<f64>> {
         let pose = self.coordinates.pose(self.mechanism, &start.near, &start.values)?;
         let mut shown = roll(self.mechanism, &pose, rows, self.sensors)?;
         for row in shown.chunks_mut(self.sensors.len()) {
@@ -109,7 +115,11 @@ impl Shooter<'_> {
     }
 
     /// Readings, and their derivative by each number of the start.
-    pub fn derivative(&self, start: &Start, rows: Rows) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    pub fn derivative(
+        &self,
+        start: &WindowStart,
+        rows: ReadingTimes,
+    ) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let shown = DVector::from_vec(self.shot(start, rows)?);
         let half = start.values.len() / 2;
         let columns = (0..start.values.len())
@@ -125,14 +135,14 @@ impl Shooter<'_> {
 
     /// A first guess of a window's start from a start before it: readings and their rates by a cubic through the
     /// first rows, and Newton's method on what the sensors show there.
-    pub fn guess(&self, window: &Window, before: &Start) -> Option<Start> {
+    pub fn guess(&self, window: &Window, before: &WindowStart) -> Option<WindowStart> {
         let n = self.sensors.len();
         let rows = ((GUESS / window.rows.interval) as usize + 1).clamp(6, window.rows.count + 1);
         let t: Vec<f64> = (0..rows).map(|k| k as f64 * window.rows.interval).collect();
         let basis = DMatrix::from_fn(rows, 4, |k, power| t[k].powi(power as i32));
         let readings = DMatrix::from_fn(rows, n, |k, i| window.measured[k * n + i]);
         let fit = basis.svd(true, true).solve(&readings, 1e-12).ok()?;
-        let at = Rows { count: 0, ..window.rows };
+        let at = ReadingTimes { count: 0, ..window.rows };
         let half = before.values.len() / 2;
         let mut start = before.clone();
         start.values[half..].fill(0.0);
@@ -164,11 +174,11 @@ impl Shooter<'_> {
         &self,
         window: &Window,
         rows: usize,
-        mut start: Start,
+        mut start: WindowStart,
         scales: &[f64],
-    ) -> Option<Start> {
+    ) -> Option<WindowStart> {
         let n = self.sensors.len();
-        let part = Rows { count: rows.min(window.rows.count), ..window.rows };
+        let part = ReadingTimes { count: rows.min(window.rows.count), ..window.rows };
         for _ in 0..CORRECTIONS {
             let (mut shown, mut jacobian) = self.derivative(&start, part)?;
             for k in 0..shown.len() {
