@@ -1,10 +1,10 @@
 //! A fixed part of the self-test over machines, small enough to run each time: the quick ones of the trials of
 //! `freeplay calibrate --self-test`, by their seeds.
 
-use freeplay::calibrate::sensed::self_test::{Trial, Tried, run};
+use freeplay::calibrate::sensed::self_test::{Trial, TriedTrial, run};
 
 /// A trial whose answer is right.
-fn right(seed: u64) -> Tried {
+fn right(seed: u64) -> TriedTrial {
     let tried = run(&Trial::draw(seed), "this", &|_| {});
     let answer = tried.answer.as_ref().unwrap_or_else(|| panic!("{tried:?}"));
     assert!(answer.right && !answer.wrong_name, "{tried:#?}");

@@ -5,15 +5,15 @@
 
 use freeplay::calibrate::evidence::{as_good, evidence};
 use freeplay::calibrate::left::{is_noise, left};
-use freeplay::calibrate::model::{Case, Segment};
-use freeplay::calibrate::outcome::{MOST, Outcome, Verdict, calibrate};
+use freeplay::calibrate::model::{LegsCase, LegsSegment};
+use freeplay::calibrate::outcome::{LegsOutcome, MOST, Verdict, calibrate};
 use freeplay::calibrate::rattle::Rattle;
 use freeplay::calibrate::recording;
-use freeplay::calibrate::report::{Report, Sources, calibrated};
-use freeplay::calibrate::result::{Prepared, case, prepare};
-use freeplay::calibrate::self_test::{self, Trial, Value as Estimated};
-use freeplay::calibrate::settle::{Question, refined, settle};
-use freeplay::calibrate::start::{Start, as_seen};
+use freeplay::calibrate::report::{LegsReport, Sources, calibrated};
+use freeplay::calibrate::result::{LegsPrepared, case, prepare};
+use freeplay::calibrate::self_test::{self, HiddenValue as Estimated, LegsTrial};
+use freeplay::calibrate::settle::{FitData, refined, settle};
+use freeplay::calibrate::start::{SwingStart, as_seen};
 use freeplay::calibrate::way::name;
 use freeplay::effects::Setting;
 use freeplay::scenario::Scenario;
@@ -22,16 +22,16 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 struct Done {
-    case: Case,
+    case: LegsCase,
     rattle: Rattle,
-    outcome: Outcome,
+    outcome: LegsOutcome,
 }
 
 fn folder(rig: usize) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("assets/rigs/rig-{rig}"))
 }
 
-fn prepared(rig: usize) -> Prepared {
+fn prepared(rig: usize) -> LegsPrepared {
     let [toml, a, b] = ["rig.toml", "run-a.csv", "run-b.csv"].map(|name| folder(rig).join(name));
     let scenario = Scenario::load(Some(&toml), &[]).unwrap();
     prepare(scenario, recording::read(&[&a, &b]).unwrap()).unwrap()
@@ -104,7 +104,7 @@ fn check(rig: usize) {
 /// Keys that are promised to scripts.
 fn schema(rig: usize) {
     let Done { case, rattle, outcome } = done(rig);
-    let report = Report::new(Sources { case, outcome, rattle, without: &[] });
+    let report = LegsReport::new(Sources { case, outcome, rattle, without: &[] });
     let json = serde_json::to_value(&report).unwrap();
     let words = ["explained", "nothing-missing", "unexplained"];
     assert!(words.contains(&json["verdict"].as_str().unwrap()));
@@ -176,7 +176,7 @@ fn rig_5() {
 #[test]
 fn a_payload_that_nearly_unloads_a_leg_is_found() {
     let hidden = vec!["payload".into()];
-    let trial = Trial { hidden, size: 1.0, gravity: true, withheld: false, seed: 2000 };
+    let trial = LegsTrial { hidden, size: 1.0, gravity: true, withheld: false, seed: 2000 };
     let result = self_test::run(&trial).unwrap();
     assert!(result.right, "{:?}: {:?}", result.verdict, result.found);
     assert_eq!(result.values.len(), 3);
@@ -196,11 +196,11 @@ fn a_payload_that_nearly_unloads_a_leg_is_found() {
 #[test]
 fn a_worn_joint_that_rattles_settles_at_its_clearance() {
     let hidden = vec!["joint-wear".into()];
-    let trial = Trial { hidden, size: 3.0, gravity: false, withheld: false, seed: 11_050 };
+    let trial = LegsTrial { hidden, size: 3.0, gravity: false, withheld: false, seed: 11_050 };
     let (case, hidden) = self_test::recorded(&trial).unwrap();
     let truth = hidden[0].value("clearance_m").unwrap();
-    let [on, hold] = [0, 1].map(|run| vec![Segment { run, rows: case.runs[run].rows() }]);
-    let question = Question { on: &on, hold: &hold, without: &[] };
+    let [on, hold] = [0, 1].map(|run| vec![LegsSegment { run, rows: case.runs[run].rows() }]);
+    let question = FitData { on: &on, hold: &hold, without: &[] };
     let start = vec![hidden[0].with(&[1.5e-4])];
     let settled = settle(&case, &question, &start, 3, None).unwrap();
     let found = settled.fit.effects[0].value("clearance_m").unwrap();
@@ -217,10 +217,10 @@ fn a_worn_joint_that_rattles_settles_at_its_clearance() {
 #[test]
 fn a_payload_and_a_worn_joint_settle_from_far_off() {
     let hidden = vec!["payload".into(), "joint-wear".into()];
-    let trial = Trial { hidden, size: 3.0, gravity: true, withheld: false, seed: 16_000 };
+    let trial = LegsTrial { hidden, size: 3.0, gravity: true, withheld: false, seed: 16_000 };
     let (case, hidden) = self_test::recorded(&trial).unwrap();
-    let [on, hold] = [0, 1].map(|run| vec![Segment { run, rows: case.runs[run].rows() }]);
-    let question = Question { on: &on, hold: &hold, without: &[] };
+    let [on, hold] = [0, 1].map(|run| vec![LegsSegment { run, rows: case.runs[run].rows() }]);
+    let question = FitData { on: &on, hold: &hold, without: &[] };
     let start = vec![hidden[0].with(&[0.083, -0.017, -0.049]), hidden[1].with(&[2.36e-4])];
     let payload = settle(&case, &question, &start[..1], 1, None).unwrap();
     let settled = settle(&case, &question, &start, 4, Some(&payload.baseline)).unwrap();
@@ -240,7 +240,7 @@ fn a_payload_and_a_worn_joint_settle_from_far_off() {
 #[test]
 fn of_two_effects_that_do_as_well_the_common_one_is_named_and_the_other_said() {
     let hidden = vec!["anchor-offset".into()];
-    let trial = Trial { hidden, size: 1.0, gravity: false, withheld: false, seed: 12_040 };
+    let trial = LegsTrial { hidden, size: 1.0, gravity: false, withheld: false, seed: 12_040 };
     let (case, hidden) = self_test::recorded(&trial).unwrap();
     let outcome = calibrate(&case, &[], &|_| {}).unwrap();
     assert_eq!(outcome.verdict, Verdict::Explained);
@@ -258,7 +258,7 @@ fn of_two_effects_that_do_as_well_the_common_one_is_named_and_the_other_said() {
 #[test]
 fn a_machine_that_rattles_under_what_it_lacks_is_understood() {
     let hidden = vec!["unbalance".into()];
-    let trial = Trial { hidden, size: 1.0, gravity: true, withheld: false, seed: 40_130 };
+    let trial = LegsTrial { hidden, size: 1.0, gravity: true, withheld: false, seed: 40_130 };
     let result = self_test::run(&trial).unwrap();
     println!("{} floors before, {} after", result.floors, result.worst_ratio);
     assert!(result.right, "{:?}: {:?}", result.verdict, result.found);
@@ -275,10 +275,10 @@ fn a_machine_that_rattles_under_what_it_lacks_is_understood() {
 #[test]
 fn a_complete_model_is_let_go_although_one_like_it_was_kicked() {
     let hidden = vec!["servo-lag".into(), "joint-wear".into()];
-    let trial = Trial { hidden, size: 3.0, gravity: true, withheld: false, seed: 40_701 };
+    let trial = LegsTrial { hidden, size: 3.0, gravity: true, withheld: false, seed: 40_701 };
     let (case, hidden) = self_test::recorded(&trial).unwrap();
     let run = &case.runs[0];
-    let start = |effects: &[Setting], like: Option<&Start>| {
+    let start = |effects: &[Setting], like: Option<&SwingStart>| {
         let machine = run.released(&case.rig, effects).unwrap();
         as_seen(&case.simulator, machine, &run.log, like, false).unwrap()
     };
@@ -294,7 +294,7 @@ fn a_complete_model_is_let_go_although_one_like_it_was_kicked() {
 #[test]
 fn what_simulations_miss_is_not_explained() {
     let hidden = vec!["joint-wear".into()];
-    let trial = Trial { hidden, size: 3.0, gravity: true, withheld: true, seed: 40_055 };
+    let trial = LegsTrial { hidden, size: 3.0, gravity: true, withheld: true, seed: 40_055 };
     let result = self_test::run(&trial).unwrap();
     println!("{} floors before, {} after", result.floors, result.worst_ratio);
     assert_eq!(result.verdict, Verdict::Unexplained, "{:?}", result.found);
@@ -307,7 +307,7 @@ fn what_simulations_miss_is_not_explained() {
 #[test]
 fn what_calms_joints_is_found_where_nothing_stands_above_noise() {
     let hidden = vec!["drag".into(), "journal-friction".into()];
-    let trial = Trial { hidden, size: 3.0, gravity: false, withheld: false, seed: 40_701 };
+    let trial = LegsTrial { hidden, size: 3.0, gravity: false, withheld: false, seed: 40_701 };
     let (case, hidden) = self_test::recorded(&trial).unwrap();
     let outcome = calibrate(&case, &[], &|_| {}).unwrap();
     assert_eq!(outcome.verdict, Verdict::Explained);

@@ -3,7 +3,7 @@
 //! Simulated recordings of the six rigs with a hidden blow or load; the rigs' own ones, in which there is none.
 
 use freeplay::calibrate::sensed::events::{Event, events, search::beside};
-use freeplay::calibrate::sensed::problem::Problem;
+use freeplay::calibrate::sensed::problem::RigProblem;
 use freeplay::calibrate::sensed::recording::Recording;
 use freeplay::calibrate::sensed::released::released;
 use freeplay::calibrate::sensed::simulate::{record, with_noise};
@@ -218,7 +218,7 @@ const CONTROL: StepControl = StepControl::Tolerance(1e-5);
 
 /// What is found in recordings of a rig by its declared model.
 fn found(rig: Scenario, runs: Vec<Recording>) -> Vec<Event> {
-    let problem = Problem::new(rig, runs, CONTROL).expect("a problem");
+    let problem = RigProblem::new(rig, runs, CONTROL).expect("a problem");
     let starts = problem.let_go(&[]).expect("starts");
     let simulated = problem.simulated(&starts, 2).expect("simulations");
     beside(&problem, &[], &simulated).expect("a look")

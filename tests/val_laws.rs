@@ -4,7 +4,7 @@
 //! `h (1 + e) = ln((1 + h)/(1 − h e))`, whatever the spring S: `m v dv = −F dδ`, and the way there and back is
 //! the same (Y. Gonthier et al., Multibody Syst. Dyn. 11 (2004), eq. 22, with d = h e).
 
-use freeplay::contact::laws::{ALL, Given, Kind, Losses, named};
+use freeplay::contact::laws::{ALL, Given, LawKind, Losses, named};
 use freeplay::contact::{Clearance, ForceLaw, impact};
 use freeplay::engine::{
     ClearanceJoint, ClearanceJoints, Schedule, StepControl, physics_world, run,
@@ -26,15 +26,15 @@ const ASKED: [f64; 10] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
 
 /// A law that is asked to return the share `e` of the speed [`SPEED`]: Hunt and Crossley's by their
 /// `e = 1 − α v`.
-fn asked(kind: &Kind, e: f64) -> Arc<dyn ForceLaw> {
+fn asked(kind: &LawKind, e: f64) -> Arc<dyn ForceLaw> {
     let by_damping = Given { damping: Some((1.0 - e) / SPEED), ..Given::default() };
     let by_restitution = Given { restitution: Some(e), ..Given::default() };
     (kind.build)(if kind.losses == Losses::Damping { &by_damping } else { &by_restitution })
 }
 
 /// The laws with a hysteresis that grows with the elastic force.
-fn hysteretic() -> impl Iterator<Item = &'static Kind> {
-    let by_e = |kind: &&Kind| kind.losses == Losses::Restitution || kind.name == "hunt-crossley";
+fn hysteretic() -> impl Iterator<Item = &'static LawKind> {
+    let by_e = |kind: &&LawKind| kind.losses == Losses::Restitution || kind.name == "hunt-crossley";
     ALL.into_iter().filter(by_e)
 }
 
@@ -220,7 +220,7 @@ struct Errors {
 const TOLERANCES: [f64; 3] = [1e-4, 1e-5, 1e-6];
 
 impl Errors {
-    fn of(kind: &Kind) -> Self {
+    fn of(kind: &LawKind) -> Self {
         let law = (kind.build)(&Given::default());
         let exact = impact(&*law, MASS, SPEED).rebound / SPEED;
         let longest = law.longest_step(MASS, SPEED);
@@ -273,7 +273,7 @@ fn the_table_of_steps_is_what_runs_give() {
     let written = document.split(begin).nth(1).and_then(|rest| rest.split("<!-- end -->").next());
     let rows: Vec<&str> = written.expect("a table").lines().skip(2).collect();
     let lacks =
-        |kind: &&Kind| !rows.iter().any(|row| row.starts_with(&format!("| {} |", kind.name)));
+        |kind: &&LawKind| !rows.iter().any(|row| row.starts_with(&format!("| {} |", kind.name)));
     let lacking: Vec<String> =
         ALL.into_iter().filter(lacks).map(|kind| Errors::of(kind).row(kind.name)).collect();
     assert!(lacking.is_empty(), "the table lacks these rows:\n{}", lacking.join("\n"));

@@ -2,7 +2,7 @@
 //! takes them, and what follows a line of dashes is the report of a calibration.
 #![no_main]
 
-use freeplay::calibrate::plan::{Request, prepare};
+use freeplay::calibrate::plan::{PlanRequest, prepare};
 use libfuzzer_sys::{fuzz_mutator, fuzz_target};
 
 fuzz_target!(|input: &[u8]| {
@@ -11,7 +11,7 @@ fuzz_target!(|input: &[u8]| {
         Some((options, report)) => (options, Some(report)),
         None => (text, None),
     };
-    let mut request = Request { candidates: 8, ..Request::default() };
+    let mut request = PlanRequest { candidates: 8, ..PlanRequest::default() };
     for line in options.lines() {
         let (flag, value) = line.split_once(' ').unwrap_or((line, ""));
         let value = value.to_owned();

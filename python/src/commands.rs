@@ -5,7 +5,7 @@ use crate::scenario::Scenario;
 use crate::work::{detached, end_if};
 use freeplay::calibrate::result::{CalibrateError, REPORT_FILE};
 use freeplay::calibrate::sensed::predict as along;
-use freeplay::calibrate::sensed::windows::predict::{self as windows, Asked};
+use freeplay::calibrate::sensed::windows::predict::{self as windows, AskedWindows};
 use freeplay::calibrate::{self as calibration, answer, recording};
 use freeplay::cli::{compare_steps, effect_described, law_described, laws_to_compare};
 use freeplay::measure::spelling::nearest;
@@ -122,7 +122,7 @@ fn predict(
         let model = &model.scenario;
         let tell = |_: &str| end_if(&stop);
         let prepare = || Folder::prepare(&out, calibration::predict::ERRORS_FILE, force);
-        let asked_of = Asked { window, fit, from };
+        let asked_of = AskedWindows { window, fit, from };
         if model.mechanism.has_sensors()
             && let Some(prepared) = windows::prepare(model, &data, asked_of)?
         {

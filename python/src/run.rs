@@ -5,7 +5,7 @@ use crate::law::{Trouble, give};
 use crate::scenario::Scenario;
 use crate::table::Table;
 use crate::work::detached;
-use freeplay::simulate::{Columns, Machine, assemble, findings};
+use freeplay::simulate::{RowColumns, Machine, assemble, findings};
 use freeplay::study::{self, Folder, Recorded, SUMMARY_FILE, Terms, evaluate as single};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
@@ -81,8 +81,8 @@ struct Gathered {
 }
 
 impl Gathered {
-    fn new(machine: &Machine) -> (Columns, Self) {
-        let columns = Columns::new(&machine.layout);
+    fn new(machine: &Machine) -> (RowColumns, Self) {
+        let columns = RowColumns::new(&machine.layout);
         let names = columns.names(&machine.mechanism);
         let rows = machine.schedule.intervals() + 1;
         let columns_of = names.iter().map(|_| Vec::with_capacity(rows)).collect();

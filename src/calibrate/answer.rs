@@ -4,12 +4,13 @@
 //! twelve columns are all there is tried by the method that was made for it first, which follows rattling joints and pairs of
 //! effects further, but holds its instruments for right: what it finds missing is found by both.
 
-use super::errors::{ChannelError, worst};
-use super::outcome::Verdict;
-use super::report::{EffectReport, Report};
-use super::result::{self, CalibrateError, refuse};
+use super::measured::recording;
+use super::results::outcome::Verdict;
+use super::results::report::{EffectReport, LegsReport};
+use super::results::result::{self, CalibrateError, refuse};
 use super::sensed::ways::by_residuals;
-use super::{plausibility, recording, sensed};
+use super::values::errors::{ChannelError, worst};
+use super::{plausibility, sensed};
 use crate::effects::{Kind, named};
 use crate::scenario::Scenario;
 use crate::study::Folder;
@@ -17,29 +18,29 @@ use std::path::{Path, PathBuf};
 
 /// A rig and recordings that nothing speaks against, before anything is simulated.
 #[derive(Debug)]
-pub struct Prepared {
-    way: Way,
+pub struct PreparedRig {
+    way: Method,
     /// Files and their columns that no sensor has.
     pub ignored: Vec<(String, Vec<String>)>,
 }
 
 /// By which method.
 #[derive(Debug)]
-enum Way {
+enum Method {
     /// By the sensors that there are.
     Sensed(Box<sensed::prepare::Prepared>),
     /// By that of a 3-RPR, and by its sensors, if these can be read so.
-    Both(Box<result::Prepared>, Option<Box<sensed::prepare::Prepared>>),
+    Both(Box<result::LegsPrepared>, Option<Box<sensed::prepare::Prepared>>),
 }
 
 /// Reads recordings of a rig, the first `fits` to calibrate on, the others to validate on.
 ///
 /// # Errors
 /// Everything that is wrong with them.
-pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, CalibrateError> {
+pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<PreparedRig, CalibrateError> {
     let by_sensors = |rig| {
-        let way = Way::Sensed(Box::new(sensed::prepare(rig, paths, fits)?));
-        Ok(Prepared { way, ignored: Vec::new() })
+        let way = Method::Sensed(Box::new(sensed::prepare(rig, paths, fits)?));
+        Ok(PreparedRig { way, ignored: Vec::new() })
     };
     if rig.mechanism.has_sensors() {
         return by_sensors(rig);
@@ -58,8 +59,8 @@ pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, 
     let ignored = ignored.filter(|(_, columns)| !columns.is_empty()).collect();
     let own = result::prepare(rig.clone(), recordings)?;
     // The first method has looked at more than this one does.
-    let way = Way::Both(Box::new(own), sensed::prepare(rig, paths, fits).ok().map(Box::new));
-    Ok(Prepared { way, ignored })
+    let way = Method::Both(Box::new(own), sensed::prepare(rig, paths, fits).ok().map(Box::new));
+    Ok(PreparedRig { way, ignored })
 }
 
 /// What a calibration came to, and where it is written.
@@ -88,16 +89,16 @@ pub struct Calibrated {
 /// # Errors
 /// A rig that cannot be simulated, files that cannot be written; the folder is left as it was.
 pub fn into_folder(
-    prepared: Prepared,
+    prepared: PreparedRig,
     without: &[&str],
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Calibrated, CalibrateError> {
     let (own, by_sensors) = match prepared.way {
-        Way::Sensed(prepared) => {
+        Method::Sensed(prepared) => {
             return Ok(sensed::into_folder(*prepared, without, folder, tell)?.into());
         }
-        Way::Both(own, by_sensors) => (own, by_sensors),
+        Method::Both(own, by_sensors) => (own, by_sensors),
     };
     let mut own = result::made(*own, without, tell)?;
     let complete = own.report.verdict == Verdict::NothingMissing;
@@ -114,7 +115,7 @@ pub fn into_folder(
     own.report.simulations += other.report.simulations;
     other.report.wall_s += seconds;
     other.report.simulations += runs;
-    let Report { verdict, effects, errors, .. } = &own.report;
+    let LegsReport { verdict, effects, errors, .. } = &own.report;
     let first = Weighed::new(*verdict, effects, errors, 0);
     let sensed::report::Report { verdict, effects, errors, noises, .. } = &other.report;
     match Weighed::new(*verdict, effects, errors, noises.len()).goes_before(&first) {
@@ -163,9 +164,9 @@ impl Weighed {
     }
 }
 
-impl From<result::Calibrated<sensed::report::Report>> for Calibrated {
-    fn from(done: result::Calibrated<sensed::report::Report>) -> Self {
-        let result::Calibrated { report, json, folder } = done;
+impl From<result::FinishedCalibration<sensed::report::Report>> for Calibrated {
+    fn from(done: result::FinishedCalibration<sensed::report::Report>) -> Self {
+        let result::FinishedCalibration { report, json, folder } = done;
         Self {
             name: report.provenance.scenario_name,
             summary: report.summary,
@@ -179,9 +180,9 @@ impl From<result::Calibrated<sensed::report::Report>> for Calibrated {
     }
 }
 
-impl From<result::Calibrated<Report>> for Calibrated {
-    fn from(done: result::Calibrated<Report>) -> Self {
-        let result::Calibrated { report, json, folder } = done;
+impl From<result::FinishedCalibration<LegsReport>> for Calibrated {
+    fn from(done: result::FinishedCalibration<LegsReport>) -> Self {
+        let result::FinishedCalibration { report, json, folder } = done;
         Self {
             name: report.provenance.scenario_name,
             summary: report.summary,

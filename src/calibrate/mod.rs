@@ -3,69 +3,31 @@
 //! * [`answer`]: the one way in, for any machine.
 //! * [`sensed`]: any mechanism with the sensors that it has; [`record`]: the recordings that a rig would show;
 //!   [`plan`]: what to record next; [`hardware`]: the studies of measured machines.
-//! * The files beside them are for a 3-RPR whose twelve columns are all there, beside [`sensed`]; [`outcome::calibrate`] is the
-//!   whole way, and data pass in this order:
-//!   * [`recording`], [`plausibility`], `mistaken`: files in, and everything that speaks against them; nothing is repaired.
-//!   * [`rattle`]: two simulations a hair apart say whether the machine is chaotic, and how many replicas are averaged.
-//!   * [`commands`], [`replica`]: the commands of a recording drive a model, and its sensors look at it.
-//!   * [`lens`], `measured_dynamics`: the residuals (servo, closure, dynamics) of measured data under a model; [`model`] and [`baseline`]
-//!     measure their bias on simulated recordings, [`spectrum`] and `draws` their noise by frequency.
-//!   * [`start`]: the swing with which a recording begins.
-//!   * [`candidates`], [`screen`], [`fit`], [`least_squares`], [`instrument`]: every effect at every joint, fitted to one
-//!     run's residuals and judged on another's.
-//!   * [`settle`], [`whole`], [`axes`]: values that agree with whole simulations.
-//!   * [`search`], [`way`], [`beside`], [`left`]: one effect after another, several hypotheses at once, until the
-//!     residuals are white.
-//!   * [`needed`], [`evidence`], [`unnamed`]: effects that the model can do without, rivals that explain as much, and a table
-//!     of forces for what no effect explains.
-//!   * [`errors`], `summary`, [`report`], `charts`, `page`, [`result`]: the folder of results; [`predict`], [`predicted`]: that of a prediction.
+//! * The other folders are for a 3-RPR whose twelve columns are all there, beside [`sensed`]; [`outcome::calibrate`] is the
+//!   whole way, and data pass through them in this order:
+//!   * [`plausibility`] and `measured`: files in, what speaks against them, and what they say by themselves; nothing is repaired.
+//!   * `values`: a [`model`] and its runs, where to start looking for values, and how these are found.
+//!   * `rounds`: one effect after another, several hypotheses at once, until the residuals are white.
+//!   * `results`: the whole way, its folder of results, and that of a prediction.
 //!   * [`self_test`]: how often all of it is right.
 
 pub mod answer;
-pub mod axes;
-pub mod baseline;
-pub mod beside;
-pub mod candidates;
-mod charts;
-pub mod commands;
-mod draws;
-pub mod errors;
-pub mod evidence;
-pub mod fit;
 pub mod hardware;
-pub mod instrument;
-pub mod least_squares;
-pub mod left;
-pub mod lens;
-mod measured_dynamics;
-mod mistaken;
-pub mod model;
-pub mod needed;
-pub mod outcome;
-mod page;
+mod measured;
 pub mod plan;
 pub mod plausibility;
-pub mod predict;
-mod predict_page;
-pub mod predicted;
-pub mod rattle;
 pub mod record;
-pub mod recording;
-pub mod replica;
-pub mod report;
-pub mod result;
-pub mod screen;
-pub mod search;
+mod results;
+mod rounds;
 pub mod self_test;
 pub mod sensed;
-pub mod settle;
-pub mod spectrum;
-pub mod start;
-mod summary;
-pub mod unnamed;
-mod unnamed_picture;
-pub mod way;
-pub mod whole;
+mod values;
 
-pub use commands::LoggedCommands;
-pub use page::quantity;
+pub use measured::commands::LoggedCommands;
+pub use measured::{commands, lens, rattle, recording, replica, spectrum, start};
+pub use results::page::quantity;
+pub use results::{evidence, outcome, predict, predicted, report, result};
+pub use rounds::{beside, left, needed, screen, search, unnamed, way};
+pub use values::{
+    axes, baseline, candidates, errors, fit, instrument, least_squares, model, settle, whole,
+};

@@ -1,49 +1,23 @@
 //! The command line: one file per command. Commands parse, call and print; what they call is in the
 //! rooms below.
 //!
+//! * `files`: commands that simulate nothing; `runs`: those that simulate scenarios; `recordings`: those on recorded machines.
+//! * `shared`: options, failures, printing, tables, progress, signals.
+//!
 //! Exit codes: 0 done, 2 wrong input (what, where, what would be right), 129, 130 and 143 ended by SIGHUP,
 //! Ctrl-C and SIGTERM, or 75 where the same command goes on from there, 1 anything else. Results go
 //! to standard output, everything else to standard error.
 
-mod calibrate;
-mod catalogue;
-mod check;
-mod check_text;
-mod compare;
-mod compare_laws;
-mod compare_options;
-mod completions;
-mod diff;
-mod effects;
-mod evaluate;
-mod expand;
-mod failure;
-mod init;
-mod laws;
-mod man;
-mod merge;
-mod options;
-mod output;
-mod paper;
-mod parts;
-mod plan;
-mod predict;
-mod progress;
-mod record;
-mod run;
-mod schema;
-mod self_test;
-mod signals;
-mod study;
-mod sweep;
-mod table;
-mod wear;
+mod files;
+mod recordings;
+mod runs;
+mod shared;
 
-pub use compare::steps as compare_steps;
-pub use compare_laws::kinds as laws_to_compare;
-pub use effects::described as effect_described;
-pub use laws::described as law_described;
-pub use parts::threads_of_queue;
+pub use files::effects::described as effect_described;
+pub use files::laws::described as law_described;
+pub use runs::compare::steps as compare_steps;
+pub use runs::compare_laws::kinds as laws_to_compare;
+pub use shared::parts::threads_of_queue;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -58,7 +32,7 @@ use std::process::ExitCode;
 #[command(name = "freeplay", version, arg_required_else_help = true, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: CliCommand,
 }
 
 const EXAMPLES: &str = "\
@@ -85,56 +59,56 @@ and SIGTERM (75 where the same command goes on from there: sweep, calibrate
 --self-test), 1 anything else.";
 
 #[derive(Debug, Subcommand)]
-enum Command {
-    Run(run::Arguments),
-    Evaluate(evaluate::Arguments),
-    Study(study::Arguments),
-    Compare(compare_options::Arguments),
-    Paper(paper::Arguments),
-    Diff(diff::Arguments),
-    Calibrate(calibrate::Arguments),
-    Predict(predict::Arguments),
-    Record(record::Arguments),
-    Plan(plan::Arguments),
-    Check(check::Arguments),
-    Sweep(sweep::Arguments),
-    Merge(merge::Arguments),
-    Effects(effects::Arguments),
-    Laws(laws::Arguments),
-    Wear(wear::Arguments),
-    Expand(expand::Arguments),
-    Init(init::Arguments),
-    Schema(schema::Arguments),
-    Man(man::Arguments),
-    Completions(completions::Arguments),
+enum CliCommand {
+    Run(runs::run::Arguments),
+    Evaluate(runs::evaluate::Arguments),
+    Study(recordings::study::Arguments),
+    Compare(runs::compare_options::Arguments),
+    Paper(runs::paper::Arguments),
+    Diff(runs::diff::Arguments),
+    Calibrate(recordings::calibrate::Arguments),
+    Predict(recordings::predict::Arguments),
+    Record(recordings::record::Arguments),
+    Plan(recordings::plan::Arguments),
+    Check(files::check::Arguments),
+    Sweep(runs::sweep::Arguments),
+    Merge(runs::merge::Arguments),
+    Effects(files::effects::Arguments),
+    Laws(files::laws::Arguments),
+    Wear(runs::wear::Arguments),
+    Expand(files::expand::Arguments),
+    Init(files::init::Arguments),
+    Schema(files::schema::Arguments),
+    Man(files::man::Arguments),
+    Completions(files::completions::Arguments),
 }
 
 /// Runs the command that the process was called with.
 pub fn main() -> ExitCode {
     let command = Cli::parse().command;
-    signals::watch();
+    shared::signals::watch();
     let done = match command {
-        Command::Run(arguments) => run::main(&arguments),
-        Command::Evaluate(arguments) => evaluate::main(&arguments),
-        Command::Study(arguments) => study::main(&arguments),
-        Command::Compare(arguments) => compare::main(&arguments),
-        Command::Paper(arguments) => paper::main(&arguments),
-        Command::Diff(arguments) => diff::main(&arguments),
-        Command::Calibrate(arguments) => calibrate::main(&arguments),
-        Command::Predict(arguments) => predict::main(&arguments),
-        Command::Record(arguments) => record::main(&arguments),
-        Command::Plan(arguments) => plan::main(&arguments),
-        Command::Check(arguments) => check::main(&arguments),
-        Command::Sweep(arguments) => sweep::main(&arguments),
-        Command::Merge(arguments) => merge::main(&arguments),
-        Command::Effects(arguments) => effects::main(&arguments),
-        Command::Laws(arguments) => laws::main(&arguments),
-        Command::Wear(arguments) => wear::main(&arguments),
-        Command::Expand(arguments) => expand::main(&arguments),
-        Command::Init(arguments) => init::main(&arguments),
-        Command::Schema(arguments) => schema::main(&arguments),
-        Command::Man(arguments) => man::main(&arguments),
-        Command::Completions(arguments) => completions::main(&arguments),
+        CliCommand::Run(arguments) => runs::run::main(&arguments),
+        CliCommand::Evaluate(arguments) => runs::evaluate::main(&arguments),
+        CliCommand::Study(arguments) => recordings::study::main(&arguments),
+        CliCommand::Compare(arguments) => runs::compare::main(&arguments),
+        CliCommand::Paper(arguments) => runs::paper::main(&arguments),
+        CliCommand::Diff(arguments) => runs::diff::main(&arguments),
+        CliCommand::Calibrate(arguments) => recordings::calibrate::main(&arguments),
+        CliCommand::Predict(arguments) => recordings::predict::main(&arguments),
+        CliCommand::Record(arguments) => recordings::record::main(&arguments),
+        CliCommand::Plan(arguments) => recordings::plan::main(&arguments),
+        CliCommand::Check(arguments) => files::check::main(&arguments),
+        CliCommand::Sweep(arguments) => runs::sweep::main(&arguments),
+        CliCommand::Merge(arguments) => runs::merge::main(&arguments),
+        CliCommand::Effects(arguments) => files::effects::main(&arguments),
+        CliCommand::Laws(arguments) => files::laws::main(&arguments),
+        CliCommand::Wear(arguments) => runs::wear::main(&arguments),
+        CliCommand::Expand(arguments) => files::expand::main(&arguments),
+        CliCommand::Init(arguments) => files::init::main(&arguments),
+        CliCommand::Schema(arguments) => files::schema::main(&arguments),
+        CliCommand::Man(arguments) => files::man::main(&arguments),
+        CliCommand::Completions(arguments) => files::completions::main(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

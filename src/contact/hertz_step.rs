@@ -1,6 +1,6 @@
 //! The Hertz spring with STEP damping: ADAMS' IMPACT function, equations 4–6 of the source paper.
 
-use super::laws::{Damped, Loss, Power};
+use super::laws::{Damped, Loss, PowerSpring};
 use super::{ForceLaw, power_force, step};
 use std::sync::Arc;
 
@@ -75,7 +75,7 @@ impl ForceLaw for HertzStep {
     }
 
     fn losing(&self, loss: Loss) -> Option<Arc<dyn ForceLaw>> {
-        let spring = Power { stiffness: self.stiffness, exponent: self.exponent };
+        let spring = PowerSpring { stiffness: self.stiffness, exponent: self.exponent };
         Some(Arc::new(Damped { spring, loss }))
     }
 }

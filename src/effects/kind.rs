@@ -71,9 +71,9 @@ pub enum Targets {
     /// The commands of all drives together.
     Commands,
     /// One joint, or several with a common cause (key `joint`).
-    Joint(Joints),
+    Joint(JointKinds),
     /// The same, or all of them where none is named.
-    JointOrAll(Joints),
+    JointOrAll(JointKinds),
     /// One moving body (key `body`); the output body where none is named.
     Body,
     /// One named point of a body or of the ground (key `point`).
@@ -86,7 +86,7 @@ pub enum Targets {
 
 /// Joints that an effect can be given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Joints {
+pub enum JointKinds {
     /// Prismatic ones.
     Prismatic,
     /// Prismatic ones with a drive.
@@ -140,7 +140,7 @@ impl Targets {
     }
 
     /// Which joints it takes, if it takes any.
-    pub fn joints(self) -> Option<Joints> {
+    pub fn joints(self) -> Option<JointKinds> {
         match self {
             Targets::Joint(joints) | Targets::JointOrAll(joints) => Some(joints),
             _ => None,
@@ -148,22 +148,24 @@ impl Targets {
     }
 }
 
-impl Joints {
+impl JointKinds {
     /// Whether a joint of `mechanism` is one of them.
     pub fn include(self, mechanism: &Mechanism, joint: JointIndex) -> bool {
         let driven = || mechanism.actuators.iter().any(|drive| drive.joint == joint);
         match (self, joint) {
-            (Joints::Any, _)
-            | (Joints::Prismatic, JointIndex::Prismatic(_))
-            | (Joints::Revolute | Joints::Bearing, JointIndex::Revolute(_)) => true,
-            (Joints::Sampled, _) => mechanism
+            (JointKinds::Any, _)
+            | (JointKinds::Prismatic, JointIndex::Prismatic(_))
+            | (JointKinds::Revolute | JointKinds::Bearing, JointIndex::Revolute(_)) => true,
+            (JointKinds::Sampled, _) => mechanism
                 .actuators
                 .iter()
                 .any(|drive| drive.joint == joint && matches!(drive.drive, Drive::Sampled(_))),
-            (Joints::Driven, _)
-            | (Joints::DrivenPrismatic, JointIndex::Prismatic(_))
-            | (Joints::DrivenRevolute, JointIndex::Revolute(_)) => driven(),
-            (Joints::Anchor, JointIndex::Revolute(i)) => mechanism.revolutes[i].ring.body.is_none(),
+            (JointKinds::Driven, _)
+            | (JointKinds::DrivenPrismatic, JointIndex::Prismatic(_))
+            | (JointKinds::DrivenRevolute, JointIndex::Revolute(_)) => driven(),
+            (JointKinds::Anchor, JointIndex::Revolute(i)) => {
+                mechanism.revolutes[i].ring.body.is_none()
+            }
             _ => false,
         }
     }
@@ -191,12 +193,12 @@ pub struct Scan {
     /// The parameter that is a phase in rad.
     pub phase: &'static str,
     /// What is tried.
-    pub range: Range,
+    pub range: ScanRange,
 }
 
 /// Values that a [`Scan`] tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Range {
+pub enum ScanRange {
     /// Frequencies in Hz.
     Frequencies,
     /// Periods `1/k` for wave numbers k from the first to the second by steps of the third.
@@ -278,7 +280,7 @@ impl Kind {
             }
             Targets::Joint(joints) | Targets::JointOrAll(joints) => {
                 let mut names = self.joints_of(mechanism);
-                names.retain(|name| joints != Joints::Bearing || worn(name));
+                names.retain(|name| joints != JointKinds::Bearing || worn(name));
                 let all = matches!(self.targets, Targets::JointOrAll(_)) && names.len() > 1;
                 let groups = if all || !self.has_common_causes() {
                     Vec::new()
@@ -312,7 +314,7 @@ impl Kind {
     /// wave or the place of a point is, nor clearances, which are declared joint by joint.
     fn has_common_causes(&self) -> bool {
         let placed = |parameter: &Parameter| parameter.name.contains("phase");
-        !matches!(self.targets.joints(), Some(Joints::Anchor | Joints::Bearing))
+        !matches!(self.targets.joints(), Some(JointKinds::Anchor | JointKinds::Bearing))
             && self.scan.is_none()
             && !self.parameters.iter().any(placed)
     }
@@ -334,7 +336,7 @@ impl Kind {
         };
         let fits = |name: &&str| {
             let sort = self.parameter(name).and_then(Parameter::of_prismatic);
-            self.targets.joints() != Some(Joints::Driven) || sort.is_none_or(of)
+            self.targets.joints() != Some(JointKinds::Driven) || sort.is_none_or(of)
         };
         self.variants.iter().copied().filter(|variant| variant.iter().all(fits)).collect()
     }

@@ -1,143 +1,101 @@
 //! Physical effects that a declared machine may lack: a payload nobody mentioned, a worn joint, a
-//! servo that lags. One file each, all of them in [`ALL`]; a [`Kind`] says what it can act on and lists
+//! servo that lags. One file each, in a folder by what it acts on, all of them in [`ALL`]; a [`Kind`] says what it can act on and lists
 //! its targets on a machine ([`Kind::targets_of`], [`Kind::candidates`]); an effect changes a
 //! [`Mechanism`](crate::mechanism::Mechanism) after it was built, so that whatever simulates or
 //! inverts mechanisms knows it already.
 
-mod actuator_friction;
-mod actuator_scale;
-mod air_drag;
-mod anchor_offset;
-mod base_vibration;
-mod bristle_friction;
-mod command_delay;
-mod contact_damping;
-mod contact_law;
-mod drag;
-mod drive_backlash;
-mod drive_compliance;
-mod drive_lag;
-mod encoder;
-mod encoder_eccentricity;
-mod encoder_scale;
-mod encoder_zero;
-mod film_friction;
-mod force_offset;
-mod force_scale;
-mod gravity;
-mod impulse;
-mod joint_friction;
-mod joint_wear;
-mod journal_friction;
+mod bodies;
+mod drives;
+mod joints;
 mod kind;
-mod leg_density;
-mod load_change;
-mod lubricant_film;
-mod mass_properties;
-mod out_of_round;
-mod payload;
-mod pivot_friction;
-mod point_offset;
 mod reading;
 #[cfg(test)]
 mod rigs;
-mod rotor_inertia;
-mod screw_ripple;
-mod sensor_latency;
-mod sensor_offset;
-mod servo_gain;
-mod servo_lag;
+mod sensors;
 mod setting;
-mod stribeck_friction;
 mod target;
-mod tether;
-mod torque_ripple;
-mod tracker_frame;
 mod twins;
-mod unbalance;
 mod unnamed;
-mod unnamed_efforts;
-mod unnamed_history;
 
-pub use kind::{Joints, Kind, Parameter, Range, Scan, Senses, Targets};
+pub use kind::{JointKinds, Kind, Parameter, Scan, ScanRange, Senses, Targets};
 pub use setting::{Setting, Wrong};
 pub use target::Target;
-pub use unnamed::{DependsOn, Map, Motion, UNNAMED};
-pub use unnamed_efforts::{Efforts, Over};
-pub use unnamed_history::{History, OverTime};
+pub use unnamed::efforts::{Efforts, Over};
+pub use unnamed::history::{History, OverTime};
+pub use unnamed::{DependsOn, Map, MapMotion, UNNAMED};
 
 /// Every effect there is, in the order in which they are listed.
 pub const ALL: &[&Kind] = &[
-    &payload::KIND,
-    &leg_density::KIND,
-    &gravity::KIND,
-    &actuator_friction::KIND,
-    &stribeck_friction::KIND,
-    &journal_friction::KIND,
-    &anchor_offset::KIND,
-    &joint_wear::KIND,
-    &out_of_round::KIND,
-    &lubricant_film::KIND,
-    &contact_damping::KIND,
-    &command_delay::KIND,
-    &servo_lag::KIND,
-    &servo_gain::KIND,
-    &drive_backlash::KIND,
-    &drive_compliance::KIND,
-    &sensor_offset::KIND,
-    &actuator_scale::KIND,
-    &screw_ripple::KIND,
-    &tether::KIND,
-    &drag::KIND,
-    &base_vibration::KIND,
-    &unbalance::KIND,
+    &bodies::payload::KIND,
+    &bodies::leg_density::KIND,
+    &bodies::gravity::KIND,
+    &drives::actuator_friction::KIND,
+    &drives::stribeck_friction::KIND,
+    &joints::journal_friction::KIND,
+    &joints::anchor_offset::KIND,
+    &joints::joint_wear::KIND,
+    &joints::out_of_round::KIND,
+    &joints::lubricant_film::KIND,
+    &joints::contact_damping::KIND,
+    &drives::command_delay::KIND,
+    &drives::servo_lag::KIND,
+    &drives::servo_gain::KIND,
+    &drives::drive_backlash::KIND,
+    &drives::drive_compliance::KIND,
+    &sensors::sensor_offset::KIND,
+    &sensors::actuator_scale::KIND,
+    &drives::screw_ripple::KIND,
+    &bodies::tether::KIND,
+    &bodies::drag::KIND,
+    &bodies::base_vibration::KIND,
+    &bodies::unbalance::KIND,
     &unnamed::KIND,
-    &film_friction::KIND,
-    &pivot_friction::KIND,
-    &bristle_friction::KIND,
-    &air_drag::KIND,
-    &point_offset::KIND,
-    &joint_friction::KIND,
-    &torque_ripple::KIND,
-    &encoder_zero::KIND,
-    &encoder_scale::KIND,
-    &encoder_eccentricity::KIND,
-    &sensor_latency::KIND,
-    &force_scale::KIND,
-    &force_offset::KIND,
-    &tracker_frame::KIND,
-    &impulse::KIND,
-    &load_change::KIND,
-    &mass_properties::KIND,
-    &rotor_inertia::KIND,
-    &drive_lag::KIND,
-    &contact_law::KIND,
+    &drives::film_friction::KIND,
+    &joints::pivot_friction::KIND,
+    &joints::bristle_friction::KIND,
+    &bodies::air_drag::KIND,
+    &bodies::point_offset::KIND,
+    &joints::joint_friction::KIND,
+    &drives::torque_ripple::KIND,
+    &sensors::encoder_zero::KIND,
+    &sensors::encoder_scale::KIND,
+    &sensors::encoder_eccentricity::KIND,
+    &sensors::sensor_latency::KIND,
+    &sensors::force_scale::KIND,
+    &sensors::force_offset::KIND,
+    &sensors::tracker_frame::KIND,
+    &bodies::impulse::KIND,
+    &bodies::load_change::KIND,
+    &bodies::mass_properties::KIND,
+    &drives::rotor_inertia::KIND,
+    &drives::drive_lag::KIND,
+    &joints::contact_law::KIND,
 ];
 
 /// Effects of machines that a search is for which imitate a commoner one: an encoder's wrong zero looks
 /// like an anchor moved along its leg. They are named only where they do clearly better.
 pub const SELDOM: &[&Kind] = &[
-    &leg_density::KIND,
-    &stribeck_friction::KIND,
-    &out_of_round::KIND,
-    &lubricant_film::KIND,
-    &contact_damping::KIND,
-    &contact_law::KIND,
-    &servo_gain::KIND,
-    &drive_backlash::KIND,
-    &drive_compliance::KIND,
-    &sensor_offset::KIND,
+    &bodies::leg_density::KIND,
+    &drives::stribeck_friction::KIND,
+    &joints::out_of_round::KIND,
+    &joints::lubricant_film::KIND,
+    &joints::contact_damping::KIND,
+    &joints::contact_law::KIND,
+    &drives::servo_gain::KIND,
+    &drives::drive_backlash::KIND,
+    &drives::drive_compliance::KIND,
+    &sensors::sensor_offset::KIND,
 ];
 
 /// Effects that take energy out of a rattle, which may be all that shows of them: a residual is noise without
 /// them, only less noise than joints make that rattle on.
-pub const CALMING: &[&Kind] = &[&journal_friction::KIND, &drag::KIND];
+pub const CALMING: &[&Kind] = &[&joints::journal_friction::KIND, &bodies::drag::KIND];
 
 /// Effects that contain another, which they become at some of their values: who rules that out rules them
 /// out too.
 pub const CONTAINS: &[(&Kind, &Kind)] =
     // With as much friction near rest as in motion.
-    &[(&stribeck_friction::KIND, &actuator_friction::KIND)];
+    &[(&drives::stribeck_friction::KIND, &drives::actuator_friction::KIND)];
 
 /// The effect called `name`.
 pub fn named(name: &str) -> Option<&'static Kind> {

@@ -1,6 +1,6 @@
 //! When sampled controllers take their samples.
 
-use super::stepper::meant;
+use super::stepping::stepper::meant;
 use crate::mechanism::{Actuator, Drive, Mechanism};
 
 /// When controllers take samples: each at multiples of its own interval.

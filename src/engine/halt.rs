@@ -1,7 +1,7 @@
 //! Why a run cannot go on: impossible states, and steps without end.
 
+use super::account::work::Work;
 use super::control::{StepControl, TYPICAL_IMPACT_SPEED};
-use super::work::Work;
 use crate::contact::{Contact, valid_penetration};
 use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
 

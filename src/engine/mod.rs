@@ -1,59 +1,41 @@
 //! The engine room: the only place that knows rapier and parry.
 //!
-//! * `ring`, `dispatcher`: [`BearingRing`], the inside of a bearing as a parry shape, and [`RingDispatcher`], its
-//!   circle-in-ring queries in closed form, so that rapier's contacts and the laws see one geometry.
-//! * `colliders`: rings and journals as colliders, and the physics hook that takes their pairs away from rapier's
-//!   solver where a law computes the force.
-//! * `clearance_joints`: [`ClearanceJoints`] for anybody's rapier world. `leapfrog` reads that world's velocities: rapier's
-//!   velocity after a step is that of the half step.
-//! * `world`: a [`Mechanism`](crate::mechanism::Mechanism) as rapier bodies, joints, motors.
-//! * `run`: the driver of a whole run: rows, account of impacts and peaks (`watch`), wear (`wear`). It knows a `Stepper` by its
-//!   functions:
+//! * `physics`: [`BearingRing`], the inside of a bearing as a parry shape, and [`RingDispatcher`], its circle-in-ring queries
+//!   in closed form, so that rapier's contacts and the laws see one geometry; rings and journals as colliders, and the hook that
+//!   takes their pairs away from rapier's solver where a law computes the force; [`ClearanceJoints`] for anybody's rapier world;
+//!   a [`Mechanism`](crate::mechanism::Mechanism) as rapier bodies, joints, motors, whose velocities after a step are those of
+//!   the half step.
+//! * `run`: the driver of a whole run. It knows a `Stepper` by its functions (`stepping`):
 //!   * `fixed`: fixed steps, second order (velocity Verlet), on a grid of its own;
 //!   * `adaptive`: error control, fourth order where forces are smooth: rapier is handed the average of the forces
 //!     along a path predicted by the equations of motion;
 //!   * `direct`: no engine, the equations of motion integrated under error control;
 //!   * `native`: rapier's own contacts, as rapier steps them.
-//! * `between`: rows between the ends of steps. `energy`: the balance of a run. `halt`: what ends one.
-//!   `control`: how the step is chosen. `work`: what it took.
+//! * `account`: impacts and peaks, wear, what a run took. `control`: how the step is chosen. `clock`: when sampled controllers
+//!   take their samples. `halt`: what ends a run.
 
-mod adaptive;
-mod between;
-mod clearance_joints;
+mod account;
 mod clock;
-mod colliders;
 mod control;
-mod direct;
-mod dispatcher;
-mod energy;
-mod fixed;
 mod halt;
-mod inserter;
-mod leapfrog;
-mod looks;
-mod native;
-mod ring;
+mod physics;
 mod run;
-mod stepper;
+mod stepping;
 #[cfg(test)]
 mod tests;
-mod watch;
-mod wear;
-mod work;
-mod world;
 
-pub use adaptive::LONGEST_STEP;
-pub use clearance_joints::{ClearanceJoint, ClearanceJoints};
-pub use colliders::{JointColliders, Solver};
+pub use account::watch::{Peaks, Tally};
+pub use account::wear::WEAR_DIRECTIONS;
+pub use account::work::Work;
 pub use control::{Engine, StepControl, TYPICAL_IMPACT_SPEED};
-pub use dispatcher::RingDispatcher;
-pub use energy::Energy;
 pub use halt::{Halt, MOST_STEPS_PER_S};
-pub use ring::BearingRing;
+pub use physics::clearance_joints::{ClearanceJoint, ClearanceJoints};
+pub use physics::colliders::{JointColliders, Solver};
+pub use physics::dispatcher::RingDispatcher;
+pub use physics::ring::BearingRing;
 pub use run::{Instant, Schedule, run, run_balanced, run_while};
-pub use watch::{Peaks, Tally};
-pub use wear::WEAR_DIRECTIONS;
-pub use work::Work;
+pub use stepping::adaptive::LONGEST_STEP;
+pub use stepping::energy::Energy;
 
 use nalgebra::Vector2;
 use rapier2d_f64::dynamics::IntegrationParameters;

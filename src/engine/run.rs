@@ -1,17 +1,17 @@
 //! A mechanism from start to end: what a run is asked for, and what it hands out.
 
-use super::adaptive::Adaptive;
+use super::account::watch::{Peaks, RunWatch, Tally};
+use super::account::wear::Rubbing;
+use super::account::work::Work;
 use super::clock::Clock;
 use super::control::StepControl;
-use super::direct::Direct;
-use super::energy::{Books, Ledger, drift};
-use super::fixed::Fixed;
 use super::halt::{Halt, Pace, TOO_MANY_STEPS, impossible, likely_cause};
-use super::native::Native;
-use super::stepper::{Stepper, meant};
-use super::watch::{Peaks, Tally, Watch};
-use super::wear::Rubbing;
-use super::work::Work;
+use super::stepping::adaptive::Adaptive;
+use super::stepping::direct::Direct;
+use super::stepping::energy::{Books, Ledger, drift};
+use super::stepping::fixed::FixedSteps;
+use super::stepping::native::NativeSteps;
+use super::stepping::stepper::{Stepper, meant};
 use crate::mechanism::{Bearing, BodyState, Evaluation, Mechanism};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -114,8 +114,8 @@ pub fn run_balanced(
 fn stepper(mechanism: &Mechanism, control: StepControl, books: Option<Books>) -> Box<dyn Stepper> {
     let native = mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Native { .. }));
     match control {
-        StepControl::Fixed(step) if native => Box::new(Native::new(mechanism, step)),
-        StepControl::Fixed(step) => Box::new(Fixed::new(mechanism, step, books)),
+        StepControl::Fixed(step) if native => Box::new(NativeSteps::new(mechanism, step)),
+        StepControl::Fixed(step) => Box::new(FixedSteps::new(mechanism, step, books)),
         StepControl::Tolerance(tolerance) => Box::new(Adaptive::new(mechanism, tolerance, books)),
         StepControl::Direct(tolerance) => {
             Box::new(Direct::new(mechanism, tolerance, books.is_some()))
@@ -133,9 +133,9 @@ fn drive(
     observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
     stepper.synchronise(mechanism, 0.0);
-    let mut drive = Drive {
+    let mut drive = OngoingRun {
         work: Work { smallest_step: f64::INFINITY, ..Work::default() },
-        watch: Watch::new(mechanism, rubbing),
+        watch: RunWatch::new(mechanism, rubbing),
         t: 0.0,
         clock: Clock::new(mechanism),
         pace: Pace::new(control),
@@ -165,7 +165,7 @@ fn drive(
 }
 
 /// A run on its way.
-struct Drive<'a> {
+struct OngoingRun<'a> {
     stepper: &'a mut dyn Stepper,
     mechanism: &'a Mechanism,
     control: StepControl,
@@ -174,12 +174,12 @@ struct Drive<'a> {
     t: f64,
     clock: Clock,
     work: Work,
-    watch: Watch,
+    watch: RunWatch,
     pace: Pace,
     ledger: Ledger,
 }
 
-impl Drive<'_> {
+impl OngoingRun<'_> {
     /// One step towards the row at `at` s, or beyond; never beyond the last row, where nothing may be commanded.
     fn step(&mut self, at: f64) -> Result<(), Halt> {
         self.settle();
@@ -235,7 +235,7 @@ impl Drive<'_> {
         let (states, evaluation) = (stepper.states(), stepper.evaluation());
         seen.look_at_angles(states, |_, _| true);
         self.work.drift = self.work.drift.max(drift(mechanism, states));
-        let Watch { tallies, peaks, angles, .. } = &seen;
+        let RunWatch { tallies, peaks, angles, .. } = &seen;
         let rubbed = seen.rubbed();
         self.watch.new_row(mechanism, at, stepper);
         let peaks = *peaks;

@@ -1,9 +1,9 @@
 //! What ways of stepping have in common.
 
-use super::adaptive::Adaptive;
-use super::fixed::Fixed;
-use super::stepper::Stepper;
-use super::world::World;
+use super::physics::world::World;
+use super::stepping::adaptive::Adaptive;
+use super::stepping::fixed::FixedSteps;
+use super::stepping::stepper::Stepper;
 use crate::mechanism::{BodyState, Mechanism};
 use crate::model::assemble;
 use crate::scenario::Scenario;
@@ -36,7 +36,7 @@ fn colliders_do_not_show_in_the_trajectory() {
         let crowded = || World::new(&mechanism, true);
         assert!((0..6).all(|joint| crowded().colliders.pair(joint).is_some()));
 
-        let mut fixed = [(); 2].map(|()| Fixed::new(&mechanism, 1e-5, None));
+        let mut fixed = [(); 2].map(|()| FixedSteps::new(&mechanism, 1e-5, None));
         fixed[1].world = crowded();
         let [without, with] = fixed.each_mut().map(|stepper| go(stepper, &mechanism));
         assert!(without.2 > 1000, "{drive:?}: contact in {} steps only", without.2);

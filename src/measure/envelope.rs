@@ -5,12 +5,12 @@
 //! plane has no "highest" point; there every n-th point is enough ([`Trace`]).
 
 /// A sample of a signal: (time, value), in whatever units the caller uses.
-type Sample = (f64, f64);
+type TimedValue = (f64, f64);
 
 /// The two extreme samples of a stretch of the signal, the one that occurred first in front.
 /// A stretch of a single sample holds it twice.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Bucket(Sample, Sample);
+struct Bucket(TimedValue, TimedValue);
 
 impl Bucket {
     /// The stretch that covers `self` and then `next`.

@@ -2,7 +2,7 @@
 
 /// One picture of a film.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Frame {
+pub struct FilmFrame {
     /// When, in s.
     pub t: f64,
     /// What is so at that instant, in whatever units the caller uses.
@@ -11,9 +11,9 @@ pub struct Frame {
     pub extremes: Vec<[f32; 2]>,
 }
 
-impl Frame {
+impl FilmFrame {
     /// Makes the extremes cover those of the frame before too.
-    fn include(&mut self, earlier: &Frame) {
+    fn include(&mut self, earlier: &FilmFrame) {
         for (mine, other) in self.extremes.iter_mut().zip(&earlier.extremes) {
             *mine = [mine[0].min(other[0]), mine[1].max(other[1])];
         }
@@ -24,13 +24,13 @@ impl Frame {
 /// a signal did at the instants left out goes into the extremes of the next frame, so no peak is lost.
 #[derive(Debug, Clone)]
 pub struct Frames {
-    kept: Vec<Frame>,
+    kept: Vec<FilmFrame>,
     capacity: usize,
     /// One snapshot in so many is kept.
     stride: usize,
     seen: usize,
     /// The last snapshot, while it is not kept; its extremes cover all since the last frame kept.
-    waiting: Option<Frame>,
+    waiting: Option<FilmFrame>,
 }
 
 impl Frames {
@@ -40,7 +40,7 @@ impl Frames {
     }
 
     /// Takes the next snapshot.
-    pub fn push(&mut self, mut frame: Frame) {
+    pub fn push(&mut self, mut frame: FilmFrame) {
         if let Some(earlier) = self.waiting.take() {
             frame.include(&earlier);
         }
@@ -60,7 +60,7 @@ impl Frames {
 
     /// Lets every second frame go; the first one stays. Returns the last one if it went and no frame
     /// that stays follows it.
-    fn halve(&mut self) -> Option<Frame> {
+    fn halve(&mut self) -> Option<FilmFrame> {
         self.stride *= 2;
         let mut last = None;
         for mut frame in std::mem::take(&mut self.kept) {
@@ -77,7 +77,7 @@ impl Frames {
     }
 
     /// All frames in order of time, the last snapshot taken among them.
-    pub fn all(&self) -> impl Iterator<Item = &Frame> {
+    pub fn all(&self) -> impl Iterator<Item = &FilmFrame> {
         self.kept.iter().chain(&self.waiting)
     }
 
@@ -95,7 +95,7 @@ mod tests {
         let mut frames = Frames::new(capacity);
         for i in 0..count {
             let extremes = vec![[signal(i); 2]];
-            frames.push(Frame { t: i as f64, values: vec![i as f32], extremes });
+            frames.push(FilmFrame { t: i as f64, values: vec![i as f32], extremes });
         }
         frames
     }

@@ -67,7 +67,7 @@ impl fmt::Display for Channel {
 /// Where a quantity stands in somebody's file, and how it gets the unit of its channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Source {
+pub struct ColumnSource {
     /// Head of the column.
     pub column: String,
     /// What its numbers are multiplied by: 1 where they are in SI units.
@@ -79,7 +79,7 @@ fn one() -> f64 {
     1.0
 }
 
-impl Source {
+impl ColumnSource {
     /// A column whose numbers are multiplied by `scale`.
     pub fn new(column: &str, scale: f64) -> Self {
         Self { column: column.to_owned(), scale }
@@ -237,7 +237,7 @@ impl Log {
 }
 
 /// Places of columns: that of time, and those of channels.
-type Chosen = (usize, Vec<(usize, Channel)>);
+type ColumnPlaces = (usize, Vec<(usize, Channel)>);
 
 /// Most columns of a log, and most bytes of their heads: what has more was never a header.
 const WIDEST: [usize; 2] = [1000, 65_536];
@@ -260,7 +260,7 @@ pub(crate) fn no_header(heads: &csv::StringRecord) -> Option<(String, String)> {
 fn load(
     path: &Path,
     expected: &str,
-    choose: impl FnOnce(&csv::StringRecord) -> Result<Chosen, (String, String)>,
+    choose: impl FnOnce(&csv::StringRecord) -> Result<ColumnPlaces, (String, String)>,
 ) -> Result<Log, LogError> {
     let file = path.display().to_string();
     let wrong = |line: Option<u64>, message: String, help: &str| LogError {

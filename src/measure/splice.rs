@@ -9,7 +9,7 @@ const JUMP: f64 = 20.0;
 
 /// Samples of a position, and what messages call them.
 #[derive(Clone, Copy, Debug)]
-pub struct Samples<'a> {
+pub struct PositionSamples<'a> {
     /// The file.
     pub place: &'a str,
     /// Its column.
@@ -29,8 +29,8 @@ pub struct Samples<'a> {
 ///
 /// # Errors
 /// The first such place.
-pub fn one_run(samples: Samples) -> Result<(), LogError> {
-    let Samples { place, column, unit, start, interval, values } = samples;
+pub fn one_run(samples: PositionSamples) -> Result<(), LogError> {
+    let PositionSamples { place, column, unit, start, interval, values } = samples;
     let bend = |i: usize| (values[i + 1] - 2.0 * values[i] + values[i - 1]).abs();
     let bends: Vec<f64> = (1..values.len().saturating_sub(1)).map(bend).collect();
     let mut sorted = bends.clone();
@@ -64,7 +64,14 @@ mod tests {
         let check = |values: Vec<f64>| {
             let (start, interval) = (0.0, 1e-3);
             let values = &values;
-            one_run(Samples { place: "a.csv", column: "q_m", unit: "m", start, interval, values })
+            one_run(PositionSamples {
+                place: "a.csv",
+                column: "q_m",
+                unit: "m",
+                start,
+                interval,
+                values,
+            })
         };
         assert_eq!(check((0..4000).map(smooth).collect()), Ok(()));
         let rounded = |i: i32| (smooth(i) / 5e-8).round() * 5e-8;

@@ -4,64 +4,46 @@
 //! Planar vectors with three components hold a linear part (x, y) and an angular part: velocities
 //! (m/s, m/s, rad/s), accelerations (m/s², m/s², rad/s²), wrenches (N, N, N·m about the centre of
 //! mass).
+//!
+//! `parts` and `drives` are what a mechanism has; `equations`: what rigid joints ask of it, from its assembly to the forces that a
+//! motion takes; `dynamics`: the accelerations of a state; [`motion`]: commanded paths, `legs` what drives do along them.
 
+mod drives;
+mod dynamics;
+mod equations;
+mod evaluation;
+mod legs;
 pub mod motion;
+mod parts;
 pub mod pendulum;
+mod reading;
+mod rotor;
+mod sensor;
 pub mod three_rpr;
 
-mod actuator;
-mod assembly;
-mod body;
-mod cascade;
-mod closing;
-mod command;
-mod constraints;
-mod dynamics;
-mod evaluation;
-mod factors;
-mod freedoms;
-mod inverse;
-mod joint;
-mod legs;
-mod limits;
-mod load;
-mod loops;
-mod mark;
-mod names;
-mod oil;
-mod reading;
-mod reading_error;
-mod rotor;
-mod rows;
-mod sensor;
-mod spring;
-mod telescope;
-mod tracker;
-mod transmission;
-
-pub use actuator::{Actuator, Drive};
-pub use assembly::OpenJoint;
-pub use body::{Attachment, Body, BodyState, turn};
-pub use cascade::{Cascade, Held};
-pub use closing::ClosingLength;
-pub use command::{Command, Commands, Idle};
+pub use drives::actuator::{Actuator, Drive};
+pub use drives::cascade::{Cascade, Held};
+pub use drives::command::{Command, Commands, Idle};
+pub use drives::reading_error::ReadingError;
+pub use drives::transmission::Transmission;
 pub use dynamics::Dynamics;
+pub use equations::assembly::OpenJoint;
+pub use equations::closing::ClosingLength;
+pub use equations::freedoms::{Freedoms, Hold};
+pub use equations::inverse::{Posed, Taken};
+pub use equations::loops::Loop;
+pub use equations::tracker::{Imposed, Stuck, Tracker};
 pub use evaluation::Evaluation;
-pub use freedoms::{Freedoms, Hold};
-pub use inverse::{Posed, Taken};
-pub use joint::{Bearing, JointIndex, NativeContacts, Prismatic, Revolute, angle_near};
 pub use legs::TelescopicLegs;
-pub use load::{Load, Memory, Situation};
-pub use loops::Loop;
-pub use mark::Mark;
-pub use names::{Axes, NamedPoint, Names, Use};
-pub use oil::OilFilm;
-pub use reading_error::ReadingError;
+pub use parts::body::{Attachment, Body, BodyState, turn};
+pub use parts::joint::{Bearing, JointIndex, NativeContacts, Prismatic, Revolute, angle_near};
+pub use parts::load::{Load, Memory, Situation};
+pub use parts::mark::Mark;
+pub use parts::names::{Axes, NamedPoint, Names, Use};
+pub use parts::oil::OilFilm;
+pub use parts::spring::{JointSpring, PointSpring, Stop};
 pub use rotor::Rotor;
 pub use sensor::{Reads, Sensor, TrackerFrame};
-pub use spring::{JointSpring, PointSpring, Stop};
-pub use tracker::{Imposed, Stuck, Tracker};
-pub use transmission::Transmission;
 
 use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! Rotors of motors that a joint spins through a gear.
 
 use super::Revolute;
-use super::rows::Row;
+use super::equations::rows::Row;
 use nalgebra::Vector3;
 
 /// A rotor on the ring's body that the joint spins through a gear. With ω_r and ω_j, the rates of the bodies of

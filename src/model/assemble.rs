@@ -1,11 +1,11 @@
 //! The only way from a scenario to a machine.
 
-use super::build::{Built, build};
-use super::declared_drives::kind_of_drives;
+use super::built::build::{Built, build};
+use super::built::declared_drives::kind_of_drives;
+use super::built::layout::Layout;
+use super::built::parts::Parts;
 use super::drives::{Followed, command, follow};
 use super::ideal::{Ideal, States};
-use super::layout::Layout;
-use super::parts::Parts;
 use super::path::DrivenPath;
 use super::templates::expand;
 use super::{motion, native};

@@ -6,7 +6,7 @@ use crate::mechanism::{Command, Commands};
 
 /// A number over time, and its first and second derivative.
 #[derive(Clone, Debug)]
-pub(super) enum Source {
+pub(super) enum NumberSource {
     /// It holds.
     Hold(f64),
     /// start + velocity · t.
@@ -18,21 +18,21 @@ pub(super) enum Source {
     /// Through the samples of a table.
     Spline(CubicSpline),
     /// The sum of two.
-    Sum(Box<[Source; 2]>),
+    Sum(Box<[NumberSource; 2]>),
 }
 
-impl Source {
+impl NumberSource {
     /// Value, first and second derivative at time `t` (s).
     pub fn at(&self, t: f64) -> [f64; 3] {
         match self {
-            Source::Hold(value) => [*value, 0.0, 0.0],
-            Source::Line { start, velocity } => [start + velocity * t, *velocity, 0.0],
-            Source::Quintic { from, to, time } => {
+            NumberSource::Hold(value) => [*value, 0.0, 0.0],
+            NumberSource::Line { start, velocity } => [start + velocity * t, *velocity, 0.0],
+            NumberSource::Quintic { from, to, time } => {
                 let way = to - from;
                 let [s, ds, dds] = rest_to_rest(t, *time);
                 [from + way * s, way * ds, way * dds]
             }
-            Source::Sines { center, terms } => {
+            NumberSource::Sines { center, terms } => {
                 let mut sum = [*center, 0.0, 0.0];
                 for [amplitude, frequency, phase] in terms {
                     for (sum, term) in sum.iter_mut().zip(sine(t, *frequency, *phase)) {
@@ -41,8 +41,8 @@ impl Source {
                 }
                 sum
             }
-            Source::Spline(spline) => spline.at(t),
-            Source::Sum(parts) => {
+            NumberSource::Spline(spline) => spline.at(t),
+            NumberSource::Sum(parts) => {
                 let [a, b] = parts.each_ref().map(|part| part.at(t));
                 [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
             }
@@ -52,8 +52,8 @@ impl Source {
     /// Time in s up to which somebody has said what to do.
     pub fn known_until(&self) -> f64 {
         match self {
-            Source::Spline(spline) => spline.end(),
-            Source::Sum(parts) => parts[0].known_until().min(parts[1].known_until()),
+            NumberSource::Spline(spline) => spline.end(),
+            NumberSource::Sum(parts) => parts[0].known_until().min(parts[1].known_until()),
             _ => f64::INFINITY,
         }
     }
@@ -61,7 +61,7 @@ impl Source {
 
 /// Commands with a source for each drive.
 #[derive(Clone, Debug)]
-pub(super) struct Each(pub Vec<Source>);
+pub(super) struct Each(pub Vec<NumberSource>);
 
 impl Commands for Each {
     fn at(&self, t: f64, commands: &mut [Command]) {
@@ -157,10 +157,10 @@ mod tests {
             assert!((command[0].rate - 3.0 * cos).abs() < 3e-7, "{t}");
             assert!((command[0].acceleration + 9.0 * sin).abs() < 1e-4, "{t}");
         }
-        let line = Source::Line { start: 1.0, velocity: 2.0 };
-        let sines = Source::Sines { center: 0.1, terms: vec![[0.3, 2.0, 0.4]] };
-        let quintic = Source::Quintic { from: 0.2, to: 1.0, time: 1.1 };
-        let sum = Source::Sum(Box::new([sines.clone(), line.clone()]));
+        let line = NumberSource::Line { start: 1.0, velocity: 2.0 };
+        let sines = NumberSource::Sines { center: 0.1, terms: vec![[0.3, 2.0, 0.4]] };
+        let quintic = NumberSource::Quintic { from: 0.2, to: 1.0, time: 1.1 };
+        let sum = NumberSource::Sum(Box::new([sines.clone(), line.clone()]));
         for source in [line, sines, quintic, sum] {
             let h = 1e-5;
             let [before, now, after] = [0.3 - h, 0.3, 0.3 + h].map(|t| source.at(t));

@@ -1,13 +1,13 @@
 //! What the drives of a machine are told: to carry a body or a point along a path, or joint by joint.
 
-use super::build::{Built, located};
-use super::commands::{Each, Source};
+use super::built::build::{Built, located};
+use super::built::names::joint_named;
+use super::commands::{Each, NumberSource};
 use super::motion;
-use super::names::joint_named;
 use super::path::{self, NoTable};
 use crate::mechanism::motion::Motion;
 use crate::mechanism::{Attachment, Drive, Imposed, Mechanism, TelescopicLegs, angle_near};
-use crate::scenario::{self, JointDrive, Problem, Scenario, Target};
+use crate::scenario::{self, JointDrive, MotionTarget, Problem, Scenario};
 use std::sync::Arc;
 
 /// Where the commands of drives come from that carry a body or a point.
@@ -24,11 +24,11 @@ pub(super) struct Followed {
 pub(super) fn follow(
     scenario: &Scenario,
     built: &mut Built,
-    target: &Target,
+    target: &MotionTarget,
     path: &Arc<dyn Motion>,
 ) -> Result<Followed, Problem> {
-    let (Target::Body(name) | Target::Point(name)) = target;
-    let whole = matches!(target, Target::Body(_));
+    let (MotionTarget::Body(name) | MotionTarget::Point(name)) = target;
+    let whole = matches!(target, MotionTarget::Body(_));
     let (point, angle) = located(&built.parts, name);
     let mechanism = &mut built.mechanism;
     let forces = mechanism.actuators.iter().filter(|a| a.drive == Drive::Effort).count();
@@ -99,7 +99,7 @@ pub(super) fn command(
     described: &scenario::Described,
 ) -> Result<f64, Problem> {
     let mechanism = &mut built.mechanism;
-    let said: Vec<Option<Source>> = mechanism
+    let said: Vec<Option<NumberSource>> = mechanism
         .actuators
         .iter()
         .map(|actuator| source(scenario, mechanism, described, &actuator.name))
@@ -117,12 +117,12 @@ pub(super) fn command(
         }
     }
     let start = |i: usize| mechanism.start_coordinate(mechanism.actuators[i].joint);
-    let sources: Vec<Source> = said
+    let sources: Vec<NumberSource> = said
         .into_iter()
         .enumerate()
-        .map(|(i, source)| source.unwrap_or_else(|| Source::Hold(start(i))))
+        .map(|(i, source)| source.unwrap_or_else(|| NumberSource::Hold(start(i))))
         .collect();
-    let known = sources.iter().map(Source::known_until).fold(f64::INFINITY, f64::min);
+    let known = sources.iter().map(NumberSource::known_until).fold(f64::INFINITY, f64::min);
     mechanism.commands = Arc::new(Each(sources));
     Ok(known)
 }
@@ -133,7 +133,7 @@ fn source(
     mechanism: &Mechanism,
     described: &scenario::Described,
     name: &str,
-) -> Result<Option<Source>, Problem> {
+) -> Result<Option<NumberSource>, Problem> {
     let drives = described.drives.iter().enumerate();
     for (i, drive) in drives {
         if let JointDrive::Force(force) = drive
@@ -159,7 +159,7 @@ fn source(
         scenario::Motion::Table(table) => {
             let column = format!("q_{name}");
             let spline = motion::column_of(scenario, "motion.file", &table.file, &column)?;
-            Ok(Some(Source::Spline(spline)))
+            Ok(Some(NumberSource::Spline(spline)))
         }
         _ => Ok(None),
     }

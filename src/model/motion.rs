@@ -1,17 +1,17 @@
 //! The motion that a scenario asks for.
 
-use super::commands::Source;
+use super::commands::NumberSource;
 use crate::measure::spline::CubicSpline;
 use crate::mechanism::motion::{
     Circle, Line, Motion, MultiSine, Quintic, SineTerm, Table, read_columns,
 };
-use crate::scenario::{self, JointPath, Problem, Scenario, Target, Term1};
+use crate::scenario::{self, JointPath, MotionTarget, Problem, Scenario, Term1};
 use nalgebra::Vector2;
 use std::sync::Arc;
 
 /// Makes the path of a body or point that a scenario asks for; a table is read from its file.
 pub(super) fn path(scenario: &Scenario) -> Result<Arc<dyn Motion>, Problem> {
-    let of_point = matches!(scenario.target, Some(Target::Point(_)));
+    let of_point = matches!(scenario.target, Some(MotionTarget::Point(_)));
     let rest = || Line { start: Vector2::zeros(), velocity: Vector2::zeros(), phi: 0.0 };
     if scenario.mechanism.described().is_some() && scenario.target.is_none() {
         return Ok(Arc::new(rest()));
@@ -68,23 +68,23 @@ pub(super) fn joint(
     joint: &str,
     path: &JointPath,
     start: f64,
-) -> Result<Source, Problem> {
+) -> Result<NumberSource, Problem> {
     Ok(match path {
         JointPath::Line(line) => {
-            Source::Line { start: line.start.unwrap_or(start), velocity: line.velocity }
+            NumberSource::Line { start: line.start.unwrap_or(start), velocity: line.velocity }
         }
-        JointPath::Quintic(quintic) => Source::Quintic {
+        JointPath::Quintic(quintic) => NumberSource::Quintic {
             from: quintic.from.unwrap_or(start),
             to: quintic.to,
             time: quintic.time,
         },
-        JointPath::Multisine(multisine) => Source::Sines {
+        JointPath::Multisine(multisine) => NumberSource::Sines {
             center: multisine.center.unwrap_or(start),
             terms: sines(&multisine.terms),
         },
         JointPath::Table(table) => {
             let column = table.column.clone().unwrap_or_else(|| format!("q_{joint}"));
-            Source::Spline(column_of(scenario, &format!("{key}.file"), &table.file, &column)?)
+            NumberSource::Spline(column_of(scenario, &format!("{key}.file"), &table.file, &column)?)
         }
     })
 }
@@ -94,15 +94,15 @@ pub(super) fn force(
     scenario: &Scenario,
     key: &str,
     force: &scenario::Force,
-) -> Result<Source, Problem> {
+) -> Result<NumberSource, Problem> {
     let constant = match force.terms.as_slice() {
-        [] => Source::Hold(force.value),
-        terms => Source::Sines { center: force.value, terms: sines(terms) },
+        [] => NumberSource::Hold(force.value),
+        terms => NumberSource::Sines { center: force.value, terms: sines(terms) },
     };
     let Some(file) = &force.file else { return Ok(constant) };
     let column = force.column.clone().unwrap_or_else(|| format!("F_{}", force.joint));
     let table = column_of(scenario, &format!("{key}.file"), file, &column)?;
-    Ok(Source::Sum(Box::new([constant, Source::Spline(table)])))
+    Ok(NumberSource::Sum(Box::new([constant, NumberSource::Spline(table)])))
 }
 
 /// The spline through one column of a file over its column `t`.

@@ -96,7 +96,7 @@ impl DrivenPath {
         let mut before: Option<Hold> = None;
         let mut worst: Vec<Option<(f64, f64, f64)>> = vec![None; drives];
         let mut last = Vec::new();
-        let mut reads = Reads::new(&mechanism, duration);
+        let mut reads = CommandReads::new(&mechanism, duration);
         let most = (MOST_A_SECOND * duration).clamp(ANY, MOST) * share(&mechanism);
         let most = (most as usize).max(2 * FEWEST);
         'path: while reads.advance() {
@@ -179,7 +179,7 @@ fn commands_at(mechanism: &Mechanism, t: f64) -> Vec<Command> {
 
 /// Commands read at equal intervals from 0 to the end, which choose poses between which no drive goes farther
 /// than a stride, however long and uneven the motion is.
-struct Reads<'a> {
+struct CommandReads<'a> {
     mechanism: &'a Mechanism,
     size: f64,
     /// Time of the last read and time between two, s.
@@ -197,7 +197,7 @@ struct Reads<'a> {
     step: f64,
 }
 
-impl<'a> Reads<'a> {
+impl<'a> CommandReads<'a> {
     fn new(mechanism: &'a Mechanism, duration: f64) -> Self {
         let last = (READS * duration).ceil().clamp(10.0 * FEWEST as f64, MOST_READS);
         Self {

@@ -23,7 +23,7 @@ pub use animation::animation_svg;
 pub use chart::panels_svg;
 pub use label::Label;
 pub use orbits::orbits_svg;
-pub use page::{Part, Table, document, page};
+pub use page::{PagePart, PageTable, document, page};
 pub use path::path_svg;
 pub use player::player_html;
 pub use quantity::{known_to, length, number};

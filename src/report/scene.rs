@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// A moving mechanism. [`Frame`](crate::measure::frames::Frame)s go with it: their `values` are x, y
+/// A moving mechanism. [`Frame`](crate::measure::frames::FilmFrame)s go with it: their `values` are x, y
 /// (m) and angle (rad) of each body in turn; then for each joint the journal's centre minus the
 /// bearing's, x and y (m, world directions); then the tracked point minus where it should be, x and y
 /// (m). Their `extremes` are first the contact force of each joint (N), then what `charts` names.

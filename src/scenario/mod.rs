@@ -6,28 +6,17 @@
 //! `--set`), and what would be right. What needs the mechanism to judge (reach, singularities,
 //! step against stiffness) is judged later, by way of [`Scenario::problem`].
 //!
-//! SI units throughout: m, kg, s, N, rad.
+//! `reading` makes sections of a text, `sections` says what they are, `validate` what is wrong with them; `write`, `annotate` and
+//! `schema` are texts of them again. SI units throughout: m, kg, s, N, rad.
 
 mod annotate;
-mod connected;
-mod document;
-mod lists;
 mod problem;
-mod read;
-mod read_motion;
-mod reader;
+mod reading;
 mod schema;
 mod sections;
 #[cfg(test)]
 mod tests;
-mod unusable;
 mod validate;
-mod validate_described;
-mod validate_guides;
-mod validate_laws;
-mod validate_names;
-mod validate_revolute;
-mod validate_shape;
 mod write;
 
 use std::path::{Path, PathBuf};
@@ -41,7 +30,7 @@ pub use sections::*;
 
 use crate::effects::Setting;
 use crate::measure::bounded;
-use document::{Document, Origins};
+use reading::document::{Document, Origins};
 
 /// The text of the scenario that is used when no file is given.
 pub const DEFAULT_TOML: &str = include_str!("../../assets/default.toml");
@@ -139,7 +128,7 @@ pub struct Scenario {
     /// `[joints]`
     pub joints: Joints,
     /// `[contact]`
-    pub contact: Contact,
+    pub contact: ContactKeys,
     /// `[native]`
     pub native: Native,
     /// `[drive]`: all drives, or those that a described machine's `[[drive]]`s leave out.
@@ -153,7 +142,7 @@ pub struct Scenario {
     /// `[motion]`
     pub motion: Motion,
     /// What a described machine's `[motion]` moves.
-    pub target: Option<Target>,
+    pub target: Option<MotionTarget>,
     /// `[simulation]`
     pub simulation: Simulation,
     /// `[[effect]]`, any number of them: what acts on the machine beside what is declared above.
@@ -205,7 +194,7 @@ impl Scenario {
         if !refused.is_empty() {
             return Err(Problems(refused));
         }
-        let scenario = read::scenario(document)?;
+        let scenario = reading::read::scenario(document)?;
         scenario.validate()?;
         Ok(scenario)
     }
@@ -227,7 +216,7 @@ impl Scenario {
     }
 
     /// Where `[columns]` says that the time of recordings stands; none where nothing is said.
-    pub fn time_column(&self) -> Option<crate::measure::log::Source> {
+    pub fn time_column(&self) -> Option<crate::measure::log::ColumnSource> {
         self.columns.as_ref()?.source("t")
     }
 
@@ -288,7 +277,7 @@ impl Scenario {
         &self,
         described: Described,
         motion: Motion,
-        target: Option<Target>,
+        target: Option<MotionTarget>,
     ) -> Scenario {
         let mechanism = Mechanism::Described(Box::new(described));
         Scenario { mechanism, motion, target, ..self.clone() }

@@ -2,8 +2,8 @@
 //! into; effects and contact laws come from their own lists.
 
 use super::sections::{
-    Body, Columns, Contact, Drive, Environment, Ground, Joint, JointDrive, JointPath, Joints, Legs,
-    Mechanism, Motion, Native, Output, Sensor, Sensors, Simulation, Spring, Stop,
+    Body, Columns, ContactKeys, Drive, Environment, Ground, Joint, JointDrive, JointPath, Joints,
+    Legs, Mechanism, Motion, Native, Output, Sensor, Sensors, Simulation, Spring, Stop,
 };
 use crate::effects::{self, Kind, Targets};
 use schemars::generate::SchemaSettings;
@@ -34,7 +34,7 @@ pub fn schema() -> Value {
     section("mechanism", "", of::<Mechanism>(g));
     section("legs", "", of::<Legs>(g));
     section("joints", "", of::<Joints>(g));
-    section("contact", "", of::<Contact>(g));
+    section("contact", "", of::<ContactKeys>(g));
     section("native", "", of::<Native>(g));
     section("drive", "", either(of::<Drive>(g), list(of::<JointDrive>(g))));
     section("environment", "", of::<Environment>(g));
@@ -114,14 +114,14 @@ fn variants(schema: &mut Value) -> impl Iterator<Item = &mut Object> {
 }
 
 /// What is changed of a table's schema.
-trait Variant {
+trait SchemaChange {
     fn insert_property(&mut self, key: &str, schema: Value);
     fn is_kind(&self, kind: &str) -> bool;
     fn need(&mut self, key: &str);
     fn need_not(&mut self, key: &str);
 }
 
-impl Variant for Object {
+impl SchemaChange for Object {
     fn insert_property(&mut self, key: &str, schema: Value) {
         if let Some(properties) = self.get_mut("properties").and_then(Value::as_object_mut) {
             properties.insert(key.to_owned(), schema);

@@ -1,10 +1,10 @@
 //! A scenario as TOML with every default filled in.
 
-use super::validate_laws::used;
+use super::validate::laws::used;
 use super::{
-    Body, Contact, Described, Drive, DriveMode, Environment, Ground, Joint, JointDrive, Joints,
-    Legs, Mechanism, Motion, Native, Output, PerJoint, Scenario, Sensor, Sensors, Simulation,
-    Spring, Stop, Target, is_law_key,
+    Body, ContactKeys, Described, Drive, DriveMode, Environment, Ground, Joint, JointDrive, Joints,
+    Legs, Mechanism, Motion, MotionTarget, Native, Output, PerJoint, Scenario, Sensor, Sensors,
+    Simulation, Spring, Stop, is_law_key,
 };
 use crate::effects::Setting;
 use crate::scenario::Columns;
@@ -13,7 +13,7 @@ use toml::{Table, Value};
 
 /// The sections in the order of the text.
 #[derive(Serialize)]
-struct Written<'a> {
+struct WrittenSections<'a> {
     name: &'a str,
     seed: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -63,7 +63,7 @@ enum Drives<'a> {
 #[derive(Serialize)]
 #[serde(untagged)]
 enum LawKeys<'a> {
-    All(&'a Contact),
+    All(&'a ContactKeys),
     Some(Table),
 }
 
@@ -108,7 +108,7 @@ fn text_of(full: &Scenario) -> String {
         Some(described) if !described.drives.is_empty() => Some(Drives::Each(&described.drives)),
         _ => full.mechanism.uses("drive").then_some(Drives::All(&full.drive)),
     };
-    let written = Written {
+    let written = WrittenSections {
         name: &full.name,
         seed: full.seed,
         mechanism: described.is_none().then_some(&full.mechanism),
@@ -176,11 +176,15 @@ fn motion(scenario: &Scenario) -> Option<Value> {
         path => {
             let mut table = table(path);
             match &scenario.target {
-                Some(Target::Body(name)) => table.insert("body".to_owned(), name.clone().into()),
-                Some(Target::Point(name)) => table.insert("point".to_owned(), name.clone().into()),
+                Some(MotionTarget::Body(name)) => {
+                    table.insert("body".to_owned(), name.clone().into())
+                }
+                Some(MotionTarget::Point(name)) => {
+                    table.insert("point".to_owned(), name.clone().into())
+                }
                 None => None,
             };
-            if let Some(Target::Point(_)) = scenario.target {
+            if let Some(MotionTarget::Point(_)) = scenario.target {
                 table.remove("phi");
             }
             Some(Value::Table(table))

@@ -10,14 +10,14 @@ use std::io::{self, Write};
 /// drive, and for each joint with a declared clearance the eccentricity |e|, the normal force, and its peak
 /// since the previous row.
 #[derive(Clone, Debug)]
-pub struct Columns {
+pub struct RowColumns {
     layout: Layout,
 }
 
 /// Pose of an output and its derivatives, each followed by the output's label.
 const OUTPUT: [&str; 9] = ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
 
-impl Columns {
+impl RowColumns {
     /// The columns of a machine with this layout.
     pub fn new(layout: &Layout) -> Self {
         Self { layout: layout.clone() }
@@ -73,7 +73,7 @@ pub struct TimeSeries<W> {
     line: String,
     row: Vec<f64>,
     bytes: u64,
-    columns: Columns,
+    columns: RowColumns,
 }
 
 impl<W: Write> TimeSeries<W> {
@@ -82,7 +82,7 @@ impl<W: Write> TimeSeries<W> {
     /// # Errors
     /// If `out` refuses.
     pub fn new(mut out: W, mechanism: &Mechanism, layout: &Layout) -> io::Result<Self> {
-        let columns = Columns::new(layout);
+        let columns = RowColumns::new(layout);
         let names: Vec<String> = columns.names(mechanism).iter().map(|name| quoted(name)).collect();
         let line = names.join(",") + "\n";
         out.write_all(line.as_bytes())?;

@@ -49,7 +49,7 @@ pub type Distances = Vec<(f64, f64)>;
 
 /// What is compared of a row of two runs.
 #[derive(Clone, Debug)]
-pub struct Look {
+pub struct ComparedRow {
     t: f64,
     /// Of the output body, in m.
     position: Vector2<f64>,
@@ -59,7 +59,7 @@ pub struct Look {
     hits: u64,
 }
 
-impl Look {
+impl ComparedRow {
     /// At a row.
     pub fn at(mechanism: &Mechanism, instant: &Instant) -> Self {
         Self {
@@ -76,7 +76,7 @@ impl Look {
 }
 
 /// Largest normal force in each joint over some rows, in N.
-fn peaks<'a>(rows: impl Iterator<Item = &'a Look>) -> Vec<f64> {
+fn peaks<'a>(rows: impl Iterator<Item = &'a ComparedRow>) -> Vec<f64> {
     rows.fold(Vec::new(), |mut peaks, row| {
         peaks.resize(row.peaks.len(), 0.0);
         for (peak, now) in peaks.iter_mut().zip(&row.peaks) {
@@ -92,10 +92,10 @@ fn track(
     control: StepControl,
     schedule: Schedule,
     stop: &AtomicBool,
-) -> Option<Vec<Look>> {
+) -> Option<Vec<ComparedRow>> {
     let mut track = Vec::with_capacity(schedule.intervals() + 1);
     let done = engine::run_while(mechanism, control, schedule, stop, &mut |instant| {
-        track.push(Look::at(mechanism, instant));
+        track.push(ComparedRow::at(mechanism, instant));
         ControlFlow::Continue(())
     });
     done.ok().filter(|work| !work.stopped).map(|_| track)
@@ -172,7 +172,7 @@ pub fn own_error(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
-    rows: &[Look],
+    rows: &[ComparedRow],
     stop: &AtomicBool,
 ) -> Option<OwnError> {
     if !has_law(mechanism) {
@@ -203,7 +203,7 @@ pub fn engines_apart(
 }
 
 /// How far `rows` of a run are from those of another, as long as that is less than [`HORIZON_ERROR`].
-fn apart(track: &[Look], rows: &[Look], schedule: Schedule) -> OwnError {
+fn apart(track: &[ComparedRow], rows: &[ComparedRow], schedule: Schedule) -> OwnError {
     // A window that ends between two rows of the run has a row of its own there, which is left out.
     let pairs: Vec<_> = track.iter().zip(rows).take(schedule.intervals()).collect();
     let apart = pairs.iter().position(|(p, q)| p.distance(q) > HORIZON_ERROR);
@@ -265,7 +265,7 @@ pub fn look(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,
-    rows: &[Look],
+    rows: &[ComparedRow],
     direction: f64,
 ) -> Option<Chaos> {
     let never = AtomicBool::new(false);

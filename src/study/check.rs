@@ -6,9 +6,10 @@ use crate::mechanism::motion::looks;
 use crate::mechanism::{Actuator, Body, BodyState, Drive, JointIndex, Loop, Mechanism, Revolute};
 use crate::model::DrivenPath;
 use crate::scenario::{self, Law, Problem, Scenario};
+use crate::simulate::unacting;
 use crate::simulate::{
     Finding, Machine, OwnError, Severity, driven_path, findings_along, leg_use, neutral,
-    radial_clearance, unacting,
+    radial_clearance,
 };
 use serde::Serialize;
 
@@ -24,7 +25,7 @@ pub struct Check {
     /// Whether a run would start.
     pub ok: bool,
     /// Errors and warnings.
-    pub findings: Vec<Found>,
+    pub findings: Vec<FindingText>,
     /// What the rest says; absent if the scenario could not be read.
     #[serde(flatten)]
     pub machine: Option<CheckedMachine>,
@@ -32,7 +33,7 @@ pub struct Check {
 
 /// A finding as plain text.
 #[derive(Clone, Debug, Serialize)]
-pub struct Found {
+pub struct FindingText {
     /// Error or warning.
     pub severity: Severity,
     /// Dotted path of the key; empty if the file as a whole is meant.
@@ -110,7 +111,7 @@ pub struct CheckedMachine {
     #[serde(rename = "servo_damping_Ns_m")]
     pub servo_damping: Option<f64>,
     /// What the machine without clearance needs; none at a singularity.
-    pub ideal: Option<Ideal>,
+    pub ideal: Option<IdealNeeds>,
     /// How far the physics engine and the equations of motion integrated directly are apart; absent where nobody
     /// asked.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -215,7 +216,7 @@ pub struct CheckedJoint {
 
 /// What the machine without clearance needs for the motion.
 #[derive(Clone, Debug, Serialize)]
-pub struct Ideal {
+pub struct IdealNeeds {
     /// Smallest and largest effort of each drive in N or N·m.
     #[serde(rename = "actuator_forces_N")]
     pub actuator_forces: Vec<[f64; 2]>,
@@ -231,9 +232,9 @@ impl Check {
     }
 }
 
-fn found(finding: Finding) -> Found {
+fn found(finding: Finding) -> FindingText {
     let problem = finding.problem;
-    Found {
+    FindingText {
         text: problem.to_string(),
         severity: finding.severity,
         key: problem.path,
@@ -369,7 +370,7 @@ fn loops(mechanism: &Mechanism) -> Vec<CheckedLoop> {
 }
 
 /// Extremes of the ideal machine over the motion, at the poses of its path where these are more.
-fn ideal(machine: &mut Machine, path: Option<&DrivenPath>) -> Ideal {
+fn ideal(machine: &mut Machine, path: Option<&DrivenPath>) -> IdealNeeds {
     let drives = machine.mechanism.actuators.len();
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; drives];
     let mut peak = 0.0f64;
@@ -385,5 +386,5 @@ fn ideal(machine: &mut Machine, path: Option<&DrivenPath>) -> Ideal {
         }
         peak = peak.max(ideal.acceleration.xy().norm());
     }
-    Ideal { actuator_forces: ranges, peak_platform_acceleration_m_s2: peak }
+    IdealNeeds { actuator_forces: ranges, peak_platform_acceleration_m_s2: peak }
 }

@@ -1,7 +1,7 @@
 //! The moving pictures of a run: frames gathered row by row in constant memory, drawn at the end.
 
 use crate::engine::Instant;
-use crate::measure::frames::{Frame, Frames};
+use crate::measure::frames::{FilmFrame, Frames};
 use crate::mechanism::{Actuator, Attachment, Bearing, JointIndex, Mechanism};
 use crate::model::Layout;
 use crate::report::{
@@ -30,13 +30,13 @@ const EDGE: f64 = 0.0045;
 
 /// What the moving pictures show.
 #[derive(Debug)]
-pub(super) struct Film {
+pub(super) struct RunFilm {
     scene: Scene,
     player: Frames,
     animation: Frames,
 }
 
-impl Film {
+impl RunFilm {
     /// Nothing gathered yet.
     pub fn new(name: &str, mechanism: &Mechanism, layout: &Layout) -> Self {
         Self {
@@ -66,7 +66,7 @@ impl Film {
             [instant.peaks.acceleration, ideal.acceleration.xy().norm(), 1e3 * deviation.norm()];
         let signals = forces.chain(drives).chain(output);
         let extremes = signals.map(|value| [value as f32; 2]).collect();
-        let frame = Frame { t: instant.t, values, extremes };
+        let frame = FilmFrame { t: instant.t, values, extremes };
         if instant.t <= ANIMATED {
             self.animation.push(frame.clone());
         }

@@ -3,7 +3,7 @@
 use super::files::to_json;
 use super::folder::Folder;
 use super::run_error::{RunError, refused};
-use crate::contact::laws::{Kind, Losses};
+use crate::contact::laws::{LawKind, Losses};
 use crate::contact::{ForceLaw, hit, impact};
 use crate::mechanism::Bearing;
 use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
@@ -38,7 +38,7 @@ const LOOP_POINTS: usize = 400;
 pub struct LawFigures {
     /// The law.
     #[serde(rename = "law", serialize_with = "by_name")]
-    pub kind: &'static Kind,
+    pub kind: &'static LawKind,
     /// Mass of the journal, kg.
     pub mass_kg: f64,
     /// Speed of the hit of the loop, m/s.
@@ -51,13 +51,13 @@ pub struct LawFigures {
     pub returned: Vec<(f64, f64)>,
 }
 
-fn by_name<S: Serializer>(kind: &Kind, serializer: S) -> Result<S::Ok, S::Error> {
+fn by_name<S: Serializer>(kind: &LawKind, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(kind.name)
 }
 
 /// What [`LAWS_FILE`] says.
 #[derive(Serialize)]
-struct Written<'a> {
+struct WrittenLaws<'a> {
     program: &'a str,
     version: &'a str,
     laws: &'a [LawFigures],
@@ -66,7 +66,7 @@ struct Written<'a> {
 
 /// Figures and their files.
 #[derive(Debug)]
-pub struct Drawn {
+pub struct DrawnLaws {
     /// The text of [`LAWS_FILE`].
     pub json: String,
     /// Where the files are.
@@ -79,7 +79,7 @@ pub struct Drawn {
 ///
 /// # Errors
 /// Values that the law cannot take.
-pub fn law_of(kind: &'static Kind, sets: &[String]) -> Result<Arc<dyn ForceLaw>, Problems> {
+pub fn law_of(kind: &'static LawKind, sets: &[String]) -> Result<Arc<dyn ForceLaw>, Problems> {
     let named = format!("contact.law={}", kind.name);
     let sets: Vec<String> = [named].into_iter().chain(sets.iter().cloned()).collect();
     let scenario = Scenario::load(None, &sets)?;
@@ -97,7 +97,7 @@ pub fn law_of(kind: &'static Kind, sets: &[String]) -> Result<Arc<dyn ForceLaw>,
 }
 
 /// What a law does in hits of [`MASS`].
-pub fn figures(kind: &'static Kind, law: &dyn ForceLaw) -> LawFigures {
+pub fn figures(kind: &'static LawKind, law: &dyn ForceLaw) -> LawFigures {
     let mut all = vec![(0.0, law.normal_force_after(f64::MIN_POSITIVE, SPEED, SPEED))];
     hit(law, MASS, SPEED, &mut |state| all.push((state.depth, state.force)));
     let stride = all.len().div_ceil(LOOP_POINTS);
@@ -116,23 +116,23 @@ pub fn figures(kind: &'static Kind, law: &dyn ForceLaw) -> LawFigures {
 ///
 /// # Errors
 /// A file that cannot be written; the folder is left as it was.
-pub fn write_laws(all: &[LawFigures], folder: Folder) -> Result<Drawn, RunError> {
+pub fn write_laws(all: &[LawFigures], folder: Folder) -> Result<DrawnLaws, RunError> {
     let pictures = pictures(all)?;
     let files = pictures.iter().map(|picture| picture.file.clone());
     let files: Vec<String> = [LAWS_FILE.to_owned()].into_iter().chain(files).collect();
     let [program, version] = [env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION")];
-    let json = to_json(&Written { program, version, laws: all, files: &files });
+    let json = to_json(&WrittenLaws { program, version, laws: all, files: &files });
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
     write(LAWS_FILE, &json)?;
     for picture in &pictures {
         write(&picture.file, &picture.svg)?;
     }
-    Ok(Drawn { json, folder: folder.finish()?, files })
+    Ok(DrawnLaws { json, folder: folder.finish()?, files })
 }
 
 /// A group of laws that is drawn in one panel: line contacts are far stiffer than points, and too many curves hide
 /// each other.
-fn family(kind: &Kind) -> &'static str {
+fn family(kind: &LawKind) -> &'static str {
     match kind.losses {
         _ if kind.takes("length") => "of line contact",
         Losses::Restitution => "by restitution",

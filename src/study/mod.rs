@@ -22,12 +22,13 @@ mod watch;
 pub mod wear;
 
 pub use check::{
-    Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Engines, Found, Ideal, check,
+    Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Engines, FindingText, IdealNeeds,
+    check,
 };
 pub(crate) use files::PAGE_FILE;
 pub use folder::{Folder, FolderError, abandon, default_name};
 pub use forecast::Forecast;
-pub use run::{Outcome, Recorded, SUMMARY_FILE, Terms, recorded, run};
+pub use run::{Recorded, RunOutcome, SUMMARY_FILE, Terms, recorded, run};
 pub use run_error::RunError;
 pub(crate) use run_error::refused;
 pub use watch::Watch;

@@ -38,12 +38,12 @@ pub(super) struct Gallery {
     /// Of the row; what a machine without clearance does has no peaks between rows.
     ideal_acceleration: Envelope,
     ideal_accelerations: [Envelope; 3],
-    drives: Vec<Drive>,
-    joints: Vec<Joint>,
+    drives: Vec<DriveCurves>,
+    joints: Vec<JointCurves>,
 }
 
 #[derive(Debug)]
-struct Drive {
+struct DriveCurves {
     name: String,
     /// Title of the panel and label of its axis.
     title: String,
@@ -53,7 +53,7 @@ struct Drive {
 }
 
 #[derive(Debug)]
-struct Joint {
+struct JointCurves {
     name: String,
     clearance: Option<f64>,
     /// Peak since the row before.
@@ -66,7 +66,7 @@ impl Gallery {
     pub fn new(mechanism: &Mechanism, schedule: Schedule) -> Self {
         let envelope = || Envelope::new(STRETCHES);
         let path = || Recent::new(PATH_ROWS);
-        let drives = mechanism.actuators.iter().map(|joint| Drive {
+        let drives = mechanism.actuators.iter().map(|joint| DriveCurves {
             name: joint.name.clone(),
             title: format!("Actuator {}", joint.name),
             label: match joint.joint {
@@ -76,7 +76,7 @@ impl Gallery {
             force: envelope(),
             ideal: envelope(),
         });
-        let joints = mechanism.revolutes.iter().map(|joint| Joint {
+        let joints = mechanism.revolutes.iter().map(|joint| JointCurves {
             name: joint.name.clone(),
             clearance: radial_clearance(&joint.bearing),
             force: envelope(),

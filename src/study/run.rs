@@ -1,8 +1,8 @@
 //! One run into a folder.
 
-use super::chaos::{self, Chaos, Look};
+use super::chaos::{self, Chaos, ComparedRow};
 use super::files::{PAGE_FILE, PLAYER_FILE, keep_scenario, scenario_files, to_json};
-use super::film::Film;
+use super::film::RunFilm;
 use super::folder::Folder;
 use super::forecast::Beginning;
 use super::pictures::Gallery;
@@ -29,7 +29,7 @@ const ANIMATION_FILE: &str = "animation.svg";
 
 /// What a run came to.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct RunOutcome {
     /// The main figures, and what the pictures show.
     pub recorded: Recorded,
     /// The text of `summary.json`.
@@ -57,7 +57,7 @@ pub struct Recorded {
     /// Normal force times sliding distance in J round the ring of each joint, where journals rub.
     pub rubbed: Option<Vec<Vec<f64>>>,
     gallery: Gallery,
-    film: Film,
+    film: RunFilm,
 }
 
 impl Recorded {
@@ -92,7 +92,7 @@ pub fn recorded(
     let mechanism = &machine.mechanism;
     let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
     let mut gallery = Gallery::new(mechanism, machine.schedule);
-    let mut film = Film::new(&scenario.name, mechanism, &machine.layout);
+    let mut film = RunFilm::new(&scenario.name, mechanism, &machine.layout);
     let mut looks = Vec::new();
     let mut left = false;
     let ideal = &mut machine.ideal;
@@ -103,7 +103,7 @@ pub fn recorded(
         gallery.row(mechanism, instant, &ideal);
         film.row(mechanism, instant, &ideal);
         if instant.t <= chaos::WINDOW {
-            looks.push(Look::at(mechanism, instant));
+            looks.push(ComparedRow::at(mechanism, instant));
         }
         let go_on = observe(mechanism, instant);
         left = go_on.is_break();
@@ -138,14 +138,14 @@ pub fn run(
     folder: Folder,
     terms: Terms,
     observe: &mut dyn FnMut(&Mechanism, &Instant),
-) -> Result<Outcome, RunError> {
+) -> Result<RunOutcome, RunError> {
     let recorded = run_into(scenario, machine, &folder, terms, observe)?;
     if recorded.summary.interrupted && folder.replaces() {
         return Err(RunError::Dropped);
     }
     let json = to_json(&recorded.summary);
     let duration = scenario.simulation.duration;
-    Ok(Outcome { recorded, json, folder: folder.finish()?, duration })
+    Ok(RunOutcome { recorded, json, folder: folder.finish()?, duration })
 }
 
 /// The run, all of its files written.
@@ -205,7 +205,7 @@ fn run_into(
 }
 
 /// Adds what shorter runs beside a finished one say of it: its own error, and chaos.
-fn look_back(summary: &mut Summary, machine: &Machine, looks: &[Look], stop: &AtomicBool) {
+fn look_back(summary: &mut Summary, machine: &Machine, looks: &[ComparedRow], stop: &AtomicBool) {
     let (mechanism, control, schedule) = (&machine.mechanism, machine.control, machine.schedule);
     let Some(own) = chaos::own_error(mechanism, control, schedule, looks, stop) else { return };
     summary.watched.compared(own);

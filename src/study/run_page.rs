@@ -2,7 +2,7 @@
 
 use super::chaos;
 use super::files::{PLAYER_FILE, SCENARIO_FILE};
-use crate::report::{self, Fact, Part, Picture, length, number};
+use crate::report::{self, Fact, PagePart, Picture, length, number};
 use crate::scenario::Law;
 use crate::simulate::Summary;
 
@@ -12,9 +12,13 @@ pub(super) fn page(summary: &Summary, body: &str, pictures: &[Picture]) -> Strin
     let title = format!("Run: {}", summary.provenance.scenario_name);
     let (facts, provenance) = (facts(summary, body), provenance(summary));
     let player =
-        Part::Link { file: PLAYER_FILE, text: "▶ Watch the machine and its joints move" };
-    let parts =
-        [player, Part::Facts(&facts), Part::Pictures(pictures), Part::Provenance(&provenance)];
+        PagePart::Link { file: PLAYER_FILE, text: "▶ Watch the machine and its joints move" };
+    let parts = [
+        player,
+        PagePart::Facts(&facts),
+        PagePart::Pictures(pictures),
+        PagePart::Provenance(&provenance),
+    ];
     let doubts = summary.watched.doubts.iter().map(|doubt| format!(" Doubtful: {doubt}."));
     let lead = lead(summary, body) + &doubts.collect::<String>();
     report::document(&title, &lead, &parts)

@@ -2,7 +2,7 @@
 
 use super::cli_common::Place;
 use super::common::{INSTANTS, LIVELY, effect, ideal};
-use freeplay::effects::{ALL, Joints, Kind, Targets};
+use freeplay::effects::{ALL, JointKinds, Kind, Targets};
 
 /// The `[[effect]]` that `freeplay effects NAME` shows.
 fn example(place: &Place, kind: &Kind) -> String {
@@ -17,7 +17,7 @@ fn every_example_runs_and_repeats() {
     // What has no name is written by a calibration, not by hand; sensors, drives of revolute joints and sampled
     // drives are those of other machines (`cli_mechanism`, `golden`).
     let of_this_machine = |kind: &Kind| {
-        let others = [Some(Joints::DrivenRevolute), Some(Joints::Sampled)];
+        let others = [Some(JointKinds::DrivenRevolute), Some(JointKinds::Sampled)];
         let driven = !others.contains(&kind.targets.joints());
         driven && !matches!(kind.targets, Targets::Sensor(_) | Targets::Tracker)
     };

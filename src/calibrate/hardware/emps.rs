@@ -2,13 +2,13 @@
 //! recording and judged on another, by the way of every machine that sampled controllers hold
 //! ([`held`](crate::calibrate::sensed::held)).
 
-use super::{Missing, Table};
-use crate::calibrate::result::control;
-use crate::calibrate::sensed::held::bench::Bench;
+use super::{Missing, ResultsTable};
+use crate::calibrate::results::result::control;
+use crate::calibrate::sensed::held::bench::HeldBench;
 use crate::calibrate::sensed::held::candidates::of_declared;
-use crate::calibrate::sensed::held::model::{Model, share};
+use crate::calibrate::sensed::held::model::{HeldModel, share};
 use crate::calibrate::sensed::held::plausible;
-use crate::calibrate::sensed::held::terms::{Term, WAYS};
+use crate::calibrate::sensed::held::terms::{HeldTerm, WAYS};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::BUILDS_UP;
 use crate::model::parts_of;
@@ -50,13 +50,13 @@ fn wrong(error: impl std::fmt::Display) -> Missing {
 
 /// A model and how far off it is: shares of the norm of the recorded force.
 #[derive(Clone, Debug)]
-pub struct Step {
+pub struct StageModel {
     /// What was added.
     pub name: &'static str,
     /// Where its trace was seen.
     pub trace: &'static str,
     /// The model with everything so far, fitted to the training recording.
-    pub model: Model,
+    pub model: HeldModel,
     /// Inverse model on the training recording, and each half of it by the model of the other half.
     pub train: f64,
     /// See `train`; none of a declared model.
@@ -69,7 +69,7 @@ pub struct Step {
     pub left: Vec<(f64, f64)>,
 }
 
-impl Step {
+impl StageModel {
     /// A value of the model by its name; none where it has none.
     pub fn value(&self, name: &str) -> Option<f64> {
         self.model.terms.iter().find(|(term, _)| term.sought == name).map(|(_, value)| *value)
@@ -80,7 +80,7 @@ impl Step {
 #[derive(Clone, Debug)]
 pub struct Carried {
     /// That model.
-    pub model: Model,
+    pub model: HeldModel,
     /// Error on the second half, before and after; inverse model.
     pub inverse: [f64; 2],
     /// The same, closed loop.
@@ -89,9 +89,9 @@ pub struct Carried {
 
 /// What the study comes to.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct StageOutcome {
     /// Step by step.
-    pub steps: Vec<Step>,
+    pub steps: Vec<StageModel>,
     /// The pulses.
     pub carried: Carried,
 }
@@ -102,23 +102,23 @@ fn unfit() -> Missing {
 
 /// The stage with both recordings: as published, the force acting at once; and as the drive gives it, held from sample
 /// to sample.
-struct Stage {
-    at_once: Bench,
-    held: Bench,
+struct RecordedStage {
+    at_once: HeldBench,
+    held: HeldBench,
     joint: String,
 }
 
 /// A model's terms, and whether the drive gives its force at once.
-type Plan = (&'static str, &'static str, Vec<Term>, bool);
+type StagePlan = (&'static str, &'static str, Vec<HeldTerm>, bool);
 
-impl Stage {
+impl RecordedStage {
     /// A term that every machine has, by the name of its value.
-    fn common(&self, name: &str) -> Vec<Term> {
+    fn common(&self, name: &str) -> Vec<HeldTerm> {
         self.held.common().into_iter().filter(|term| term.sought == name).collect()
     }
 
     /// Terms of each step, friction building up over some speed in m/s.
-    fn plan(&self, film: f64) -> [Plan; 5] {
+    fn plan(&self, film: f64) -> [StagePlan; 5] {
         let mass = self.common("mass_kg");
         let friction = |names: &[&'static str]| self.held.friction(&self.joint, names);
         let symmetric =
@@ -146,12 +146,17 @@ impl Stage {
         ]
     }
 
-    fn bench(&self, at_once: bool) -> &Bench {
+    fn bench(&self, at_once: bool) -> &HeldBench {
         if at_once { &self.at_once } else { &self.held }
     }
 
     /// A step, judged.
-    fn step(&self, plan: &Plan, model: Model, halves: Option<[f64; 2]>) -> Result<Step, Missing> {
+    fn step(
+        &self,
+        plan: &StagePlan,
+        model: HeldModel,
+        halves: Option<[f64; 2]>,
+    ) -> Result<StageModel, Missing> {
         let (name, trace, _, at_once) = *plan;
         let bench = self.bench(at_once);
         let error = |run| model.error(bench, run, bench.rows(run));
@@ -163,7 +168,7 @@ impl Stage {
         let (_, size) = bench.first_output();
         let left = model.left(bench, TRAIN).into_iter().enumerate();
         let left = left.map(|(place, left)| (bench.time(TRAIN, place), left * size)).collect();
-        Ok(Step {
+        Ok(StageModel {
             name,
             trace,
             train: error(TRAIN),
@@ -184,18 +189,18 @@ pub fn study(
     rig: &Scenario,
     recordings: &[Recording; 2],
     tell: &dyn Fn(&str),
-) -> Result<Outcome, Missing> {
+) -> Result<StageOutcome, Missing> {
     let bench =
-        |at_once| Bench::new(rig, recordings.to_vec(), control(rig), at_once).map_err(wrong);
+        |at_once| HeldBench::new(rig, recordings.to_vec(), control(rig), at_once).map_err(wrong);
     let (at_once, held) = (bench(true)?, bench(false)?);
     let joint = held.machine.actuators.first().ok_or_else(unfit)?.name.clone();
-    let stage = Stage { at_once, held, joint };
-    let fit = |bench: &Bench, rows: Range<usize>, terms: &[Term]| {
-        Model::fit(bench, TRAIN, rows, terms, &[]).ok_or_else(unfit)
+    let stage = RecordedStage { at_once, held, joint };
+    let fit = |bench: &HeldBench, rows: Range<usize>, terms: &[HeldTerm]| {
+        HeldModel::fit(bench, TRAIN, rows, terms, &[]).ok_or_else(unfit)
     };
     tell("as declared");
     let declared = stage.at_once.declared.iter().flat_map(|e| of_declared(&stage.at_once, e));
-    let declared = Model { terms: declared.collect() };
+    let declared = HeldModel { terms: declared.collect() };
     let plain = ("declared: mass and viscous friction", "", Vec::new(), true);
     let mut steps = vec![stage.step(&plain, declared, None)?];
 
@@ -222,18 +227,18 @@ pub fn study(
     tell("what carries over to the pulses");
     let last = steps.last().map(|step| step.model.clone()).ok_or_else(unfit)?;
     let carried = carry(&last, &stage.held)?;
-    Ok(Outcome { steps, carried })
+    Ok(StageOutcome { steps, carried })
 }
 
 /// Identifies anew on the first half of the pulses what need not be the same on another day: the phase
 /// of the screw (where the encoder's zero is) and the lag (felt more by pulses).
-fn carry(model: &Model, bench: &Bench) -> Result<Carried, Missing> {
-    let anew = |term: &Term| ["drive-lag", "screw-ripple"].contains(&term.kind().name);
+fn carry(model: &HeldModel, bench: &HeldBench) -> Result<Carried, Missing> {
+    let anew = |term: &HeldTerm| ["drive-lag", "screw-ripple"].contains(&term.kind().name);
     let (free, fixed): (Vec<_>, Vec<_>) =
         model.terms.iter().cloned().partition(|(term, _)| anew(term));
-    let free: Vec<Term> = free.into_iter().map(|(term, _)| term).collect();
+    let free: Vec<HeldTerm> = free.into_iter().map(|(term, _)| term).collect();
     let [first, second] = bench.halves(PULSES);
-    let again = Model::fit(bench, PULSES, first, &free, &fixed).ok_or_else(unfit)?;
+    let again = HeldModel::fit(bench, PULSES, first, &free, &fixed).ok_or_else(unfit)?;
     let mut carried = Carried { model: again.clone(), inverse: [0.0; 2], simulated: [0.0; 2] };
     for (k, model) in [model, &again].into_iter().enumerate() {
         carried.inverse[k] = model.error(bench, PULSES, second.clone());
@@ -252,7 +257,7 @@ fn percent(share: f64) -> String {
 /// Published relative errors of the force: symmetric on both recordings, asymmetric on the first.
 const PUBLISHED: [(&str, &str); 2] = [("4.083 %", "5.982 %"), ("3.112 %", "")];
 
-impl Outcome {
+impl StageOutcome {
     /// The result in words.
     pub fn lead(&self) -> String {
         let [_, symmetric, .., last] = &self.steps[..] else { return String::new() };
@@ -269,25 +274,28 @@ impl Outcome {
     }
 
     /// What pointed to each effect.
-    pub fn traces(&self) -> Table {
+    pub fn traces(&self) -> ResultsTable {
         let rows = self.steps[1..].iter().map(|s| vec![s.name.to_owned(), s.trace.to_owned()]);
-        Table { header: ["effect", "trace"].map(str::to_owned).to_vec(), rows: rows.collect() }
+        ResultsTable {
+            header: ["effect", "trace"].map(str::to_owned).to_vec(),
+            rows: rows.collect(),
+        }
     }
 
     /// Errors on the second half of the pulses.
-    pub fn second_half(&self) -> Table {
+    pub fn second_half(&self) -> ResultsTable {
         let Carried { inverse, simulated, .. } = &self.carried;
         let row = |name: &str, k: usize| {
             vec![name.to_owned(), percent(inverse[k]), percent(simulated[k])]
         };
-        Table {
+        ResultsTable {
             header: ["model", "inverse model", "simulated"].map(str::to_owned).to_vec(),
             rows: vec![row("carried over as it is", 0), row("phase of the screw and lag anew", 1)],
         }
     }
 
     /// Errors step by step.
-    pub fn table(&self) -> Table {
+    pub fn table(&self) -> ResultsTable {
         let header = [
             "model",
             "training recording, inverse model",
@@ -314,13 +322,13 @@ impl Outcome {
                 percent(step.simulated[1]),
             ]
         });
-        Table { header: header.map(str::to_owned).to_vec(), rows: rows.collect() }
+        ResultsTable { header: header.map(str::to_owned).to_vec(), rows: rows.collect() }
     }
 
     /// Parameters of the last model, and of the pulses.
-    pub fn parameters(&self) -> Table {
+    pub fn parameters(&self) -> ResultsTable {
         let Some(last) = self.steps.last() else {
-            return Table { header: Vec::new(), rows: Vec::new() };
+            return ResultsTable { header: Vec::new(), rows: Vec::new() };
         };
         let rows = last.model.terms.iter().map(|(term, value)| {
             let there = self.carried.model.value(term);
@@ -329,7 +337,7 @@ impl Outcome {
             let cell = |value: f64| format!("{} {unit}", number(value));
             vec![in_words(term), cell(*value), cell(there), how.to_owned()]
         });
-        Table {
+        ResultsTable {
             header: ["parameter", "training recording", "pulses", ""].map(str::to_owned).to_vec(),
             rows: rows.collect(),
         }
@@ -337,7 +345,7 @@ impl Outcome {
 }
 
 /// A term in words; waves have a sine and a cosine.
-fn in_words(term: &Term) -> String {
+fn in_words(term: &HeldTerm) -> String {
     let phase =
         term.kind().scan.and_then(|scan| term.fixed().find(|(name, _)| *name == scan.phase));
     let part = match phase {

@@ -50,7 +50,7 @@ pub fn skipped(what: &str, missing: &Path) -> String {
 
 /// A table of results.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct ResultsTable {
     /// Heads of the columns.
     pub header: Vec<String>,
     /// Cells, row by row.

@@ -1,9 +1,9 @@
 //! The pages of the hardware studies.
 
-use super::{Missing, Table, emps, pendulum};
-use crate::calibrate::charts::{POINTS, thinned};
-use crate::calibrate::result::to_json;
-use crate::report::{self, Curve, Panel, Part, Picture, Style, panels_svg};
+use super::{Missing, ResultsTable, emps, pendulum};
+use crate::calibrate::results::charts::{POINTS, thinned};
+use crate::calibrate::results::result::to_json;
+use crate::report::{self, Curve, PagePart, Panel, Picture, Style, panels_svg};
 use crate::study::{Folder, PAGE_FILE, RunError, refused};
 use serde_json::json;
 use std::fs;
@@ -27,7 +27,7 @@ pub enum StudyError {
 struct Page<'a> {
     title: &'a str,
     lead: String,
-    tables: Vec<report::Table>,
+    tables: Vec<report::PageTable>,
     picture: Picture,
     limits: &'a [String],
 }
@@ -35,10 +35,10 @@ struct Page<'a> {
 impl Page<'_> {
     fn write(&self, folder: Folder) -> Result<PathBuf, RunError> {
         let picture = std::slice::from_ref(&self.picture);
-        let mut parts: Vec<Part> = self.tables.iter().cloned().map(Part::Table).collect();
-        parts.push(Part::Pictures(picture));
+        let mut parts: Vec<PagePart> = self.tables.iter().cloned().map(PagePart::Table).collect();
+        parts.push(PagePart::Pictures(picture));
         let title = "What this does not prove";
-        parts.push(Part::Text { id: "limits", title, paragraphs: self.limits });
+        parts.push(PagePart::Text { id: "limits", title, paragraphs: self.limits });
         let html = report::document(self.title, &self.lead, &parts);
         let tables: serde_json::Map<String, serde_json::Value> = (self.tables.iter())
             .map(|table| {
@@ -64,8 +64,8 @@ impl Page<'_> {
     }
 }
 
-fn table(id: &'static str, title: &str, table: Table, note: &str) -> report::Table {
-    report::Table {
+fn table(id: &'static str, title: &str, table: ResultsTable, note: &str) -> report::PageTable {
+    report::PageTable {
         id,
         title: title.to_owned(),
         header: table.header,
@@ -100,8 +100,11 @@ const DRAWN: std::ops::Range<f64> = 2.0..6.0;
 ///
 /// # Errors
 /// Files that cannot be written.
-pub fn emps_page(found: &emps::Outcome, folder: Folder) -> Result<(String, PathBuf), RunError> {
-    let residual = |step: &emps::Step| -> Vec<(f64, f64)> {
+pub fn emps_page(
+    found: &emps::StageOutcome,
+    folder: Folder,
+) -> Result<(String, PathBuf), RunError> {
+    let residual = |step: &emps::StageModel| -> Vec<(f64, f64)> {
         step.left.iter().copied().filter(|(t, _)| DRAWN.contains(t)).collect()
     };
     let panels: Vec<Panel> = (found.steps[1..].iter())
@@ -160,11 +163,11 @@ pub fn emps_page(found: &emps::Outcome, folder: Folder) -> Result<(String, PathB
 /// # Errors
 /// Files that cannot be written.
 pub fn pendulum_page(
-    found: &pendulum::Outcome,
+    found: &pendulum::PendulumOutcome,
     folder: Folder,
 ) -> Result<(String, PathBuf), RunError> {
     let lead = found.lead();
-    let mrad = |step: &pendulum::Step| -> Vec<(f64, f64)> {
+    let mrad = |step: &pendulum::PendulumModel| -> Vec<(f64, f64)> {
         let points: Vec<_> = step.missed.iter().map(|(t, off)| (*t, 1e3 * off)).collect();
         thinned(&points, POINTS)
     };

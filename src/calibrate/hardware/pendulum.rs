@@ -1,9 +1,9 @@
 //! The free swings of one arm: what its authors' viscous model lacks, by the way of every machine that nothing
 //! holds ([`windows`](crate::calibrate::sensed::windows)).
 
-use super::{Missing, Table};
+use super::{Missing, ResultsTable};
 use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::windows::outcome::{Certain, Judged, calibrate};
+use crate::calibrate::sensed::windows::outcome::{Certain, JudgedRun, calibrate};
 use crate::calibrate::sensed::windows::{bench::Bench, plausible, score::Score};
 use crate::model::parts_of;
 use crate::scenario::Scenario;
@@ -50,7 +50,7 @@ pub fn read(path: &Path, rig: &Scenario) -> Result<[Recording; 2], Missing> {
 
 /// A model, fitted to the larger swings.
 #[derive(Clone, Debug)]
-pub struct Step {
+pub struct PendulumModel {
     /// What was sought.
     pub name: &'static str,
     /// What was found.
@@ -65,11 +65,11 @@ pub struct Step {
 
 /// What the study comes to.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct PendulumOutcome {
     /// The authors' numbers as they are.
-    pub declared: Step,
+    pub declared: PendulumModel,
     /// Model by model; the last one may have everything.
-    pub steps: Vec<Step>,
+    pub steps: Vec<PendulumModel>,
 }
 
 /// With a capital.
@@ -86,7 +86,7 @@ pub fn study(
     rig: &Scenario,
     [id, val]: &[Recording; 2],
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Outcome, Missing> {
+) -> Result<PendulumOutcome, Missing> {
     let short = || Missing::Wrong(format!("{}: expected {WINDOW} s of swings at least", id.path));
     let (mut declared, mut steps) = (None, Vec::new());
     for (name, without) in MODELS {
@@ -95,11 +95,11 @@ pub fn study(
         let (_, outcome) = calibrate(rig, runs, 1, without, tell)
             .map_err(|problem| Missing::Wrong(problem.to_string()))?;
         let judged = |run| {
-            let of = |j: &&Judged| j.run == run && j.horizon.window_s == WINDOW;
+            let of = |j: &&JudgedRun| j.run == run && j.horizon.window_s == WINDOW;
             outcome.judged.iter().find(of).ok_or_else(short)
         };
         let (on_id, on_val) = (judged(0)?, judged(1)?);
-        let step = |name, effects, [id, other]: [&Score; 2]| Step {
+        let step = |name, effects, [id, other]: [&Score; 2]| PendulumModel {
             name,
             effects,
             id: id.errors[0],
@@ -111,7 +111,7 @@ pub fn study(
         });
         steps.push(step(name, outcome.effects.clone(), [&on_id.after, &on_val.after]));
     }
-    Ok(Outcome { declared: declared.ok_or_else(short)?, steps })
+    Ok(PendulumOutcome { declared: declared.ok_or_else(short)?, steps })
 }
 
 /// Predicted less recorded values, where something was predicted.
@@ -124,9 +124,9 @@ fn missed(recording: &Recording, predicted: &[f64]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-impl Outcome {
+impl PendulumOutcome {
     /// The model that may have everything.
-    fn last(&self) -> &Step {
+    fn last(&self) -> &PendulumModel {
         self.steps.last().unwrap_or(&self.declared)
     }
 
@@ -144,7 +144,7 @@ impl Outcome {
     }
 
     /// What the last model was given.
-    pub fn numbers(&self) -> Table {
+    pub fn numbers(&self) -> ResultsTable {
         let rows = self.last().effects.iter().flat_map(|certain| {
             certain.params.iter().map(|(name, fitted)| {
                 let [low, high] = fitted.ci95.map(|end| format!("{end:.4e}"));
@@ -158,11 +158,11 @@ impl Outcome {
             })
         });
         let header = ["effect", "parameter", "value", "95 % interval"];
-        Table { header: header.map(str::to_owned).to_vec(), rows: rows.collect() }
+        ResultsTable { header: header.map(str::to_owned).to_vec(), rows: rows.collect() }
     }
 
     /// Errors model by model.
-    pub fn table(&self) -> Table {
+    pub fn table(&self) -> ResultsTable {
         let mrad = |x: f64| format!("{:.2} mrad", 1e3 * x);
         let rows = [&self.declared].into_iter().chain(&self.steps).map(|step| {
             let found: Vec<String> = step.effects.iter().map(|c| c.effect.to_string()).collect();
@@ -175,6 +175,6 @@ impl Outcome {
             ]
         });
         let header = ["sought", "found", "id", "val", "of the declared model's"];
-        Table { header: header.map(str::to_owned).to_vec(), rows: rows.collect() }
+        ResultsTable { header: header.map(str::to_owned).to_vec(), rows: rows.collect() }
     }
 }

@@ -1,16 +1,16 @@
 //! From questions with numbers to the motion that answers them best: searches without clearance, then the best
 //! candidates with clearance, noise of their own and rivals fitted.
 
-use super::answer::{Answer, answered};
-use super::instruments::worth;
-use super::limits::measured;
-use super::motion::{Maker, Motion};
-use super::path::Way;
-use super::prepare::Prepared;
-use super::search::{Effort, best};
-use super::separation::{Posed, apart};
-use super::sight::{Seen, Sight};
-use crate::calibrate::result::CalibrateError;
+use super::motions::limits::measured;
+use super::motions::motion::{DrivesMotion, Maker};
+use super::motions::path::TriedMachine;
+use super::motions::search::{SearchEffort, best};
+use super::prepare::PreparedPlan;
+use super::questions::answer::{MotionAnswer, answered};
+use super::questions::instruments::worth;
+use super::questions::separation::{PosedQuestion, apart};
+use super::questions::sight::{Seen, Sight};
+use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 
 /// Share of what a linearised rival leaves that its full fit may leave for the search to have been right about it.
@@ -21,17 +21,20 @@ const GENTLER: [f64; 4] = [1.0, 0.9, 0.75, 0.5];
 
 /// Searches the motion that tells most, once more where rivals turn out nearer; with how many candidates were tried.
 pub fn search_twice(
-    ground: &Ground,
-    mut posed: Vec<Posed>,
+    ground: &SearchGround,
+    mut posed: Vec<PosedQuestion>,
 ) -> Result<(Chosen, usize), CalibrateError> {
-    let Prepared { effort: all, seed, .. } = ground.prepared;
+    let PreparedPlan { effort: all, seed, .. } = ground.prepared;
     let mut candidates = 0;
     let mut chosen: Option<Chosen> = None;
     for round in 0..2 {
         // The second one refines what the first one found out about rivals.
-        let effort =
-            if round == 0 { *all } else { Effort { generations: all.generations / 2, ..*all } };
-        let search = Search { ground, posed: &posed, effort, before: candidates };
+        let effort = if round == 0 {
+            *all
+        } else {
+            SearchEffort { generations: all.generations / 2, ..*all }
+        };
+        let search = MotionSearch { ground, posed: &posed, effort, before: candidates };
         let found = search.run(seed + round)?;
         candidates += effort.candidates();
         let Some(found) = found else { break };
@@ -53,7 +56,7 @@ pub fn search_twice(
 }
 
 /// What to say where the machine can follow nothing.
-pub fn no_motion(maker: &Maker, way: &Way) -> CalibrateError {
+pub fn no_motion(maker: &Maker, way: &TriedMachine) -> CalibrateError {
     // At rest, and in a small motion about home.
     let tried = [0.0, 0.1].map(|share| maker.motion(&vec![1.0; maker.numbers()], share));
     let blocked =
@@ -69,9 +72,9 @@ pub fn no_motion(maker: &Maker, way: &Way) -> CalibrateError {
 }
 
 /// What all searches work with.
-pub struct Ground<'a> {
-    pub prepared: &'a Prepared,
-    pub way: &'a Way<'a>,
+pub struct SearchGround<'a> {
+    pub prepared: &'a PreparedPlan,
+    pub way: &'a TriedMachine<'a>,
     pub maker: &'a Maker,
     /// Noise that stays as it is while motions are searched.
     pub frozen: &'a Sight,
@@ -79,28 +82,28 @@ pub struct Ground<'a> {
 }
 
 /// One search.
-struct Search<'a> {
-    ground: &'a Ground<'a>,
-    posed: &'a [Posed],
-    effort: Effort,
+struct MotionSearch<'a> {
+    ground: &'a SearchGround<'a>,
+    posed: &'a [PosedQuestion],
+    effort: SearchEffort,
     /// Candidates of searches before it.
     before: usize,
 }
 
 /// A motion that was chosen.
 pub struct Chosen {
-    pub motion: Motion,
+    pub motion: DrivesMotion,
     pub like: Recording,
     pub sight: Sight,
-    pub answers: Vec<Answer>,
-    pub posed: Vec<Posed>,
+    pub answers: Vec<MotionAnswer>,
+    pub posed: Vec<PosedQuestion>,
     pub forces: Vec<Option<f64>>,
     /// The least separation over what is wanted, with rivals fitted and noise of this motion; and as the search saw it.
     worth: f64,
     linear: f64,
 }
 
-impl Search<'_> {
+impl MotionSearch<'_> {
     /// The best motion; none where the machine can follow none that was tried.
     fn run(&self, seed: u64) -> Result<Option<Chosen>, CalibrateError> {
         let worth = |numbers: &[f64]| {
@@ -139,8 +142,9 @@ impl Search<'_> {
 
     /// A candidate with clearances, noise of its own, and rivals fitted with all their values; so much smaller that its
     /// drives are strong enough. None where that cannot be.
-    fn finished(&self, largest: &Motion) -> Result<Option<Chosen>, CalibrateError> {
-        let Prepared { described: rig, control, seed, limits, present, .. } = self.ground.prepared;
+    fn finished(&self, largest: &DrivesMotion) -> Result<Option<Chosen>, CalibrateError> {
+        let PreparedPlan { described: rig, control, seed, limits, present, .. } =
+            self.ground.prepared;
         for share in GENTLER {
             let motion = self.ground.maker.gentler(largest, share);
             let like = self.ground.way.like(&motion);
@@ -164,9 +168,10 @@ impl Search<'_> {
                 continue;
             }
             let linear = self.worth(&sight, &sight.own()).unwrap_or(0.0);
-            let answers: Vec<(Posed, Answer)> =
+            let answers: Vec<(PosedQuestion, MotionAnswer)> =
                 self.posed.iter().map(|posed| answered(&sight, posed)).collect();
-            let (posed, answers): (Vec<Posed>, Vec<Answer>) = answers.into_iter().unzip();
+            let (posed, answers): (Vec<PosedQuestion>, Vec<MotionAnswer>) =
+                answers.into_iter().unzip();
             let sigma: Vec<f64> = answers.iter().map(|answer| answer.sigma).collect();
             let worth = worth(&posed, &sigma);
             return Ok(Some(Chosen { motion, like, sight, answers, posed, forces, worth, linear }));

@@ -1,16 +1,16 @@
 //! The whole way: from what is asked to a motion, and to how far apart it brings the models.
 
-use super::answer::{Answer, answered};
-use super::chosen::{Chosen, Ground, no_motion, search_twice};
-use super::instruments::{Ranked, missing, ranked};
-use super::motion::{Maker, Motion};
-use super::path::Way;
+use super::chosen::{Chosen, SearchGround, no_motion, search_twice};
+use super::motions::motion::{DrivesMotion, Maker};
+use super::motions::path::TriedMachine;
+use super::motions::present::present;
 use super::posing::pose_all;
-use super::prepare::Prepared;
-use super::present::present;
-use super::separation::{Posed, named};
-use super::sight::Sight;
-use crate::calibrate::result::CalibrateError;
+use super::prepare::PreparedPlan;
+use super::questions::answer::{MotionAnswer, answered};
+use super::questions::instruments::{RankedInstrument, missing, ranked};
+use super::questions::separation::{PosedQuestion, named};
+use super::questions::sight::Sight;
+use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::thresholds::SURE;
 use rayon::prelude::*;
@@ -22,18 +22,18 @@ const RANDOM: usize = 8;
 #[derive(Clone, Debug)]
 pub struct Answered {
     /// The question.
-    pub posed: Posed,
+    pub posed: PosedQuestion,
     /// On the present motion, if there is one.
-    pub before: Option<Answer>,
+    pub before: Option<MotionAnswer>,
     /// On the planned one.
-    pub after: Answer,
+    pub after: MotionAnswer,
 }
 
 /// A planned motion.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct PlanOutcome {
     /// The motion.
-    pub motion: Motion,
+    pub motion: DrivesMotion,
     /// What the machine is recorded like along it.
     pub like: Recording,
     /// Noise along it.
@@ -41,7 +41,7 @@ pub struct Outcome {
     /// Questions and answers.
     pub answers: Vec<Answered>,
     /// Further instruments, the best first.
-    pub instruments: Vec<Ranked>,
+    pub instruments: Vec<RankedInstrument>,
     /// Largest force or torque of each drive along it, clearances included, of the present motion as recorded; none where
     /// nobody measures it.
     pub forces: Vec<Option<f64>>,
@@ -53,9 +53,12 @@ pub struct Outcome {
 ///
 /// # Errors
 /// Limits within which the machine can follow no motion, effects that no sensor can see, runs that break down.
-pub fn plan(prepared: &Prepared, tell: &(dyn Fn(&str) + Sync)) -> Result<Outcome, CalibrateError> {
-    let Prepared { described: rig, declared, control, interval, samples, seed, .. } = prepared;
-    let way = Way {
+pub fn plan(
+    prepared: &PreparedPlan,
+    tell: &(dyn Fn(&str) + Sync),
+) -> Result<PlanOutcome, CalibrateError> {
+    let PreparedPlan { described: rig, declared, control, interval, samples, seed, .. } = prepared;
+    let way = TriedMachine {
         rig,
         declared,
         gain: prepared.gain,
@@ -93,9 +96,9 @@ pub fn plan(prepared: &Prepared, tell: &(dyn Fn(&str) + Sync)) -> Result<Outcome
     tell("posing the questions");
     let reference = present.as_ref().unwrap_or(frozen);
     let posed = pose_all(prepared, reference, frozen, &random)?;
-    let before: Option<Vec<Answer>> =
+    let before: Option<Vec<MotionAnswer>> =
         present.as_ref().map(|sight| posed.iter().map(|posed| answered(sight, posed).1).collect());
-    let ground = Ground { prepared, way: &way, maker: &maker, frozen, tell };
+    let ground = SearchGround { prepared, way: &way, maker: &maker, frozen, tell };
     let (chosen, candidates) = search_twice(&ground, posed)?;
     let Chosen { motion, like, sight, answers, forces, posed, .. } = chosen;
     tell("trying one more sensor");
@@ -110,11 +113,11 @@ pub fn plan(prepared: &Prepared, tell: &(dyn Fn(&str) + Sync)) -> Result<Outcome
         Answered { posed, before, after }
     });
     let answers = answers.collect();
-    Ok(Outcome { answers, motion, like, sight, instruments, forces, candidates })
+    Ok(PlanOutcome { answers, motion, like, sight, instruments, forces, candidates })
 }
 
 /// Some motions of random numbers that the machine can follow.
-fn random(maker: &Maker, way: &Way, seed: u64) -> Vec<(Motion, Recording)> {
+fn random(maker: &Maker, way: &TriedMachine, seed: u64) -> Vec<(DrivesMotion, Recording)> {
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
@@ -126,10 +129,10 @@ fn random(maker: &Maker, way: &Way, seed: u64) -> Vec<(Motion, Recording)> {
 
 /// Chance that an answer is right: of two rivals a likelihood ratio chooses the right one with `Φ(σ/2)`, and an effect of
 /// this size is named with `Φ(σ − √gain)` (Kay 1998, section 4.3).
-pub fn chance(posed: &Posed, sigma: f64) -> f64 {
+pub fn chance(posed: &PosedQuestion, sigma: f64) -> f64 {
     match posed {
-        Posed::Between { .. } => normal(0.5 * sigma),
-        Posed::Detect { .. } => normal(sigma - (named() - SURE)),
+        PosedQuestion::Between { .. } => normal(0.5 * sigma),
+        PosedQuestion::Detect { .. } => normal(sigma - (named() - SURE)),
     }
 }
 

@@ -1,21 +1,24 @@
 //! The page of a plan and its pictures.
 
-use super::outcome::Outcome;
-use super::prepare::Prepared;
+use super::outcome::PlanOutcome;
+use super::prepare::PreparedPlan;
+use super::questions::separation::PosedQuestion;
 use super::report::{MOTION_FILE, PLANNED_FILE, Planned};
-use super::separation::Posed;
-use crate::calibrate::charts::{POINTS, panel, thinned};
 use crate::calibrate::record::clean;
-use crate::calibrate::result::CalibrateError;
+use crate::calibrate::results::charts::{POINTS, panel, thinned};
+use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 use crate::effects::Setting;
-use crate::report::{Curve, Part, Picture, Style, Table, document, number, panels_svg};
+use crate::report::{Curve, PagePart, PageTable, Picture, Style, document, number, panels_svg};
 
 /// Questions whose models are drawn: more would hide what matters.
 const DRAWN: usize = 3;
 
 /// The motion of each drive, and what each sensor would show of the models of each question.
-pub fn pictures(prepared: &Prepared, outcome: &Outcome) -> Result<Vec<Picture>, CalibrateError> {
+pub fn pictures(
+    prepared: &PreparedPlan,
+    outcome: &PlanOutcome,
+) -> Result<Vec<Picture>, CalibrateError> {
     let mut pictures = vec![motion(prepared, outcome)?];
     for (place, answered) in outcome.answers.iter().take(DRAWN).enumerate() {
         // What cannot be simulated is not drawn.
@@ -32,8 +35,8 @@ fn curve(name: &str, interval: f64, values: impl Iterator<Item = f64>, style: St
     Curve { name: name.to_owned(), points: thinned(&points, POINTS), style }
 }
 
-fn motion(prepared: &Prepared, outcome: &Outcome) -> Result<Picture, CalibrateError> {
-    let Prepared { interval, samples, present, declared, .. } = prepared;
+fn motion(prepared: &PreparedPlan, outcome: &PlanOutcome) -> Result<Picture, CalibrateError> {
+    let PreparedPlan { interval, samples, present, declared, .. } = prepared;
     let mut panels = Vec::new();
     for (drive, (series, limit)) in outcome.motion.drives.iter().zip(&prepared.limits).enumerate() {
         let planned = |k: usize| (0..*samples).map(move |row| series.at(row as f64 * interval)[k]);
@@ -71,22 +74,22 @@ fn motion(prepared: &Prepared, outcome: &Outcome) -> Result<Picture, CalibrateEr
 /// Each sensor's reading under the first model of a question less that under the second, without noise, in units of the
 /// sensor's noise.
 fn sensors(
-    prepared: &Prepared,
-    outcome: &Outcome,
-    posed: &Posed,
+    prepared: &PreparedPlan,
+    outcome: &PlanOutcome,
+    posed: &PosedQuestion,
     place: usize,
 ) -> Result<Option<Picture>, CalibrateError> {
-    let Prepared { described: rig, control, declared, interval, .. } = prepared;
+    let PreparedPlan { described: rig, control, declared, interval, .. } = prepared;
     let recorded = |effects: &[Setting]| -> Option<Recording> {
         let all = clean((rig, effects), &outcome.like, &outcome.like, *control, 1).ok()?;
         all.into_iter().next()
     };
     let (first, second) = match posed {
-        Posed::Between { pairs, .. } => {
+        PosedQuestion::Between { pairs, .. } => {
             let Some([a, b]) = pairs.first() else { return Ok(None) };
             (recorded(std::slice::from_ref(a)), recorded(std::slice::from_ref(b)))
         }
-        Posed::Detect { ways, .. } => {
+        PosedQuestion::Detect { ways, .. } => {
             (ways.first().and_then(|way| recorded(std::slice::from_ref(way))), recorded(&[]))
         }
     };
@@ -102,8 +105,8 @@ fn sensors(
         panels.push(panel(sensor.column.clone(), "standard deviations", std::iter::once(one)));
     }
     let what = match posed {
-        Posed::Between { rivals: [a, b], .. } => format!("with {a}, against {b}"),
-        Posed::Detect { effect, .. } => format!("with {effect}, less without"),
+        PosedQuestion::Between { rivals: [a, b], .. } => format!("with {a}, against {b}"),
+        PosedQuestion::Detect { effect, .. } => format!("with {effect}, less without"),
     };
     Ok(Some(Picture {
         file: format!("sensors-{place}.svg"),
@@ -127,13 +130,13 @@ pub fn page(planned: &Planned, pictures: &[Picture]) -> String {
             ("Time of computing", format!("{} s", number(planned.wall_s))),
         ],
     );
-    let mut parts = vec![Part::Table(separations(planned)), Part::Table(carried(planned))];
+    let mut parts = vec![PagePart::Table(separations(planned)), PagePart::Table(carried(planned))];
     if !planned.sensors.is_empty() {
-        parts.push(Part::Table(instruments(planned)));
+        parts.push(PagePart::Table(instruments(planned)));
     }
-    parts.push(Part::Table(limits(planned)));
-    parts.push(Part::Pictures(pictures));
-    parts.push(Part::Provenance(&provenance));
+    parts.push(PagePart::Table(limits(planned)));
+    parts.push(PagePart::Pictures(pictures));
+    parts.push(PagePart::Provenance(&provenance));
     let title = format!("What to record next: {}", planned.provenance.scenario_name);
     document(&title, &planned.summary, &parts)
 }
@@ -142,7 +145,7 @@ fn head(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 
-fn separations(planned: &Planned) -> Table {
+fn separations(planned: &Planned) -> PageTable {
     let dash = || "–".to_owned();
     let percent = |chance: f64| format!("{:.0} %", 100.0 * chance);
     let rows = planned.questions.iter().map(|question| {
@@ -169,7 +172,7 @@ fn separations(planned: &Planned) -> Table {
             percent(question.after.chance),
         ]
     });
-    Table {
+    PageTable {
         id: "separation",
         title: "How far apart, in standard deviations".into(),
         header: head(&["question", "held against each other", "present", "planned", "answers it", "right by chance, present", "planned"]),
@@ -180,14 +183,14 @@ fn separations(planned: &Planned) -> Table {
     }
 }
 
-fn carried(planned: &Planned) -> Table {
+fn carried(planned: &Planned) -> PageTable {
     let rows = planned.questions.iter().flat_map(|question| {
         question.after.carried_by.iter().map(|carried| {
             let share = format!("{:.0} %", 100.0 * carried.share);
             vec![question.question.clone(), carried.residual.clone(), share]
         })
     });
-    Table {
+    PageTable {
         id: "carried",
         title: "What carries it on the planned motion".into(),
         header: head(&["question", "residual", "share"]),
@@ -198,12 +201,12 @@ fn carried(planned: &Planned) -> Table {
     }
 }
 
-fn instruments(planned: &Planned) -> Table {
+fn instruments(planned: &Planned) -> PageTable {
     let rows = planned.sensors.iter().map(|sensor| {
         let sigma: Vec<String> = sensor.sigma.iter().map(|sigma| number(*sigma)).collect();
         vec![sensor.sensor.clone(), sigma.join("; "), format!("{} times", number(sensor.gain))]
     });
-    Table {
+    PageTable {
         id: "sensors",
         title: "One more sensor, on the planned motion".into(),
         header: head(&["sensor", "standard deviations, question by question", "the least grows"]),
@@ -214,7 +217,7 @@ fn instruments(planned: &Planned) -> Table {
     }
 }
 
-fn limits(planned: &Planned) -> Table {
+fn limits(planned: &Planned) -> PageTable {
     let rows = planned.drives.iter().map(|drive| {
         let limit = &drive.limit;
         let used = |used: f64, most: f64| format!("{} of {}", number(used), number(most));
@@ -240,7 +243,7 @@ fn limits(planned: &Planned) -> Table {
             format!("{}; {}", limit.stroke_from, limit.from),
         ]
     });
-    Table {
+    PageTable {
         id: "limits",
         title: "Limits, and what the motion takes of them".into(),
         header: head(&["drive", "stroke", "speed", "acceleration", "force", "from"]),

@@ -1,11 +1,11 @@
 //! Questions with numbers: how large an effect has to be, and which values make rivals alike.
 
-use super::asked::Question;
-use super::motion::Motion;
-use super::prepare::Prepared;
-use super::separation::{Posed, detectable, nearest, shows, sized};
-use super::sight::{Seen, Sight};
-use crate::calibrate::result::CalibrateError;
+use super::motions::motion::DrivesMotion;
+use super::prepare::PreparedPlan;
+use super::questions::asked::Question;
+use super::questions::separation::{PosedQuestion, detectable, nearest, shows, sized};
+use super::questions::sight::{Seen, Sight};
+use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::recording::Recording;
 use crate::effects::Setting;
 use rayon::prelude::*;
@@ -16,13 +16,13 @@ const LARGE: f64 = 2.0;
 
 /// Questions with numbers. What the present motion does not show is looked for along random ones.
 pub fn pose_all(
-    prepared: &Prepared,
+    prepared: &PreparedPlan,
     reference: &Sight,
     frozen: &Sight,
-    random: &[(Motion, Recording)],
-) -> Result<Vec<Posed>, CalibrateError> {
+    random: &[(DrivesMotion, Recording)],
+) -> Result<Vec<PosedQuestion>, CalibrateError> {
     let seen = reference.own();
-    let recorded = |(_, like): &(Motion, Recording)| {
+    let recorded = |(_, like): &(DrivesMotion, Recording)| {
         Seen::ideal(&prepared.described, like, prepared.control).ok()
     };
     let others: Vec<Seen> = random.par_iter().filter_map(recorded).collect();
@@ -34,7 +34,7 @@ pub fn pose_all(
             Err(message) => wrong.push(message),
         }
     }
-    crate::calibrate::result::refuse(wrong)?;
+    crate::calibrate::results::result::refuse(wrong)?;
     Ok(posed)
 }
 
@@ -67,7 +67,7 @@ fn pose(
     seen: &Seen,
     frozen: &Sight,
     others: &[Seen],
-) -> Result<Posed, String> {
+) -> Result<PosedQuestion, String> {
     match question {
         Question::Detect(effect, size) => {
             let found = size_of(effect, (reference, seen), frozen, others)?;
@@ -75,7 +75,7 @@ fn pose(
             ways.retain(|way| {
                 shows(reference, seen, way) || others.iter().any(|seen| shows(frozen, seen, way))
             });
-            Ok(Posed::Detect { effect: effect.clone(), ways })
+            Ok(PosedQuestion::Detect { effect: effect.clone(), ways })
         }
         Question::Between(a, b) => {
             // An effect of a report comes with its values.
@@ -100,7 +100,10 @@ fn pose(
             } else {
                 [second.clone(), by(&second, a)?]
             };
-            Ok(Posed::Between { rivals: [a.clone(), b.clone()], pairs: vec![[first, rival], back] })
+            Ok(PosedQuestion::Between {
+                rivals: [a.clone(), b.clone()],
+                pairs: vec![[first, rival], back],
+            })
         }
     }
 }

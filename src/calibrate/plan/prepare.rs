@@ -1,12 +1,12 @@
 //! A rig, its present motion, what is asked, and within which limits: everything that can be wrong is said here.
 
-use super::asked::{Question, between, detect, left_open};
-use super::limits::{self, GAIN, Given, Limit};
-use super::path::held;
-use super::search::Effort;
-use crate::calibrate::record::{Made, like};
-use crate::calibrate::result::{CalibrateError, control, refuse};
-use crate::calibrate::sensed::prepare::{Way, against_rig};
+use super::motions::limits::{self, DriveLimits, GAIN, GivenLimits};
+use super::motions::path::held;
+use super::motions::search::SearchEffort;
+use super::questions::asked::{Question, between, detect, left_open};
+use crate::calibrate::record::{RecordingSetup, like};
+use crate::calibrate::results::result::{CalibrateError, control, refuse};
+use crate::calibrate::sensed::prepare::{CalibratedAs, against_rig};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::start::{commands, machine};
 use crate::engine::StepControl;
@@ -24,7 +24,7 @@ const LONGEST: f64 = 30.0;
 
 /// What a user asks for, as texts.
 #[derive(Clone, Debug, Default)]
-pub struct Request {
+pub struct PlanRequest {
     /// Present recordings.
     pub data: Vec<PathBuf>,
     /// Effects to be told apart, with commas between them.
@@ -53,7 +53,7 @@ pub struct Request {
 
 /// What nothing speaks against.
 #[derive(Debug)]
-pub struct Prepared {
+pub struct PreparedPlan {
     /// The rig as its file has it.
     pub rig: Scenario,
     /// The same, body by body.
@@ -64,7 +64,7 @@ pub struct Prepared {
     /// The present motion, if there is one.
     pub(super) present: Option<Recording>,
     pub(super) questions: Vec<Question>,
-    pub(super) limits: Vec<Limit>,
+    pub(super) limits: Vec<DriveLimits>,
     pub(super) gain: f64,
     pub(super) sign: f64,
     /// Coordinates in m or rad where motions are made about.
@@ -72,7 +72,7 @@ pub struct Prepared {
     /// Time in s between two rows, and rows.
     pub(super) interval: f64,
     pub(super) samples: usize,
-    pub(super) effort: Effort,
+    pub(super) effort: SearchEffort,
     pub(super) seed: u64,
 }
 
@@ -80,10 +80,10 @@ pub struct Prepared {
 ///
 /// # Errors
 /// Everything that is wrong with the rig, its recordings, what is asked, and the limits.
-pub fn prepare(rig: Scenario, request: &Request) -> Result<Prepared, CalibrateError> {
+pub fn prepare(rig: Scenario, request: &PlanRequest) -> Result<PreparedPlan, CalibrateError> {
     let described = crate::model::expand(&rig)?;
     let declared: Mechanism = crate::model::parts_of(&described)?;
-    let way = Way::of(&declared);
+    let way = CalibratedAs::of(&declared);
     refuse(against_rig(&described, &declared, way, 1))?;
     refuse(not_driven(&rig, &declared, way).into_iter().collect())?;
     refuse(without_noise(&rig, &declared).into_iter().collect())?;
@@ -116,9 +116,9 @@ pub fn prepare(rig: Scenario, request: &Request) -> Result<Prepared, CalibrateEr
         return Err(CalibrateError::Input(vec![message]));
     }
     let control = directly(control(&described));
-    let effort = Effort::of(request.candidates);
+    let effort = SearchEffort::of(request.candidates);
     let (present, seed) = (recordings.into_iter().next(), request.seed);
-    Ok(Prepared {
+    Ok(PreparedPlan {
         rig,
         described,
         declared,
@@ -146,7 +146,7 @@ fn directly(control: StepControl) -> StepControl {
 }
 
 /// Why no motion of commands moves a machine.
-fn not_driven(rig: &Scenario, declared: &Mechanism, way: Way) -> Option<String> {
+fn not_driven(rig: &Scenario, declared: &Mechanism, way: CalibratedAs) -> Option<String> {
     let forced = |drive: &&crate::mechanism::Actuator| drive.drive == Drive::Effort;
     if rig.contact.law == Law::Native {
         let help = "write law = \"hertz-step\": residuals are simulated with a contact law whose error is known";
@@ -166,7 +166,7 @@ fn not_driven(rig: &Scenario, declared: &Mechanism, way: Way) -> Option<String> 
                 drive.name
             ),
         )
-    } else if way != Way::Residuals {
+    } else if way != CalibratedAs::Residuals {
         let message = "has a sampled controller and no clearance: such a machine is calibrated by what its controllers \
                        ask for, and plan looks at residuals";
         ("drive", message.to_owned())
@@ -207,12 +207,16 @@ fn own_motion(rig: &Scenario) -> Result<Option<Recording>, CalibrateError> {
         return Ok(None);
     }
     let mechanism = crate::model::assemble(rig)?.mechanism;
-    let made =
-        Made { name: "the rig's own motion", interval: 1.0 / RATE, duration: DURATION, pace: 1.0 };
+    let made = RecordingSetup {
+        name: "the rig's own motion",
+        interval: 1.0 / RATE,
+        duration: DURATION,
+        pace: 1.0,
+    };
     Ok(Some(like(&mechanism, made)))
 }
 
-fn questions(request: &Request, declared: &Mechanism) -> Result<Vec<Question>, CalibrateError> {
+fn questions(request: &PlanRequest, declared: &Mechanism) -> Result<Vec<Question>, CalibrateError> {
     let (mut found, mut wrong) = (Vec::new(), Vec::new());
     let mut add = |asked: Result<Vec<Question>, String>| match asked {
         Ok(asked) => {
@@ -242,13 +246,13 @@ fn questions(request: &Request, declared: &Mechanism) -> Result<Vec<Question>, C
 }
 
 /// Sets a limit of one drive to what a text says.
-type Set = fn(&mut Given, &str) -> Option<()>;
+type Set = fn(&mut GivenLimits, &str) -> Option<()>;
 
 /// Limits as flags give them, drive by drive.
-fn given(request: &Request, declared: &Mechanism) -> Result<Vec<Given>, Vec<String>> {
+fn given(request: &PlanRequest, declared: &Mechanism) -> Result<Vec<GivenLimits>, Vec<String>> {
     let names: Vec<&str> =
         declared.actuators.iter().map(|drive| declared.joint_name(drive.joint)).collect();
-    let mut given = vec![Given::default(); names.len()];
+    let mut given = vec![GivenLimits::default(); names.len()];
     let mut wrong = Vec::new();
     let stroke: Set = |given, text| {
         let (low, high) = text.split_once("..")?;
@@ -302,7 +306,7 @@ fn number(text: &str) -> Option<f64> {
 }
 
 /// Where motions are made about: where the present one begins, else where the file puts the machine, within strokes.
-fn home(declared: &Mechanism, limits: &[Limit], present: Option<&Recording>) -> Vec<f64> {
+fn home(declared: &Mechanism, limits: &[DriveLimits], present: Option<&Recording>) -> Vec<f64> {
     let mut first: Vec<Command> = vec![Command::default(); declared.actuators.len()];
     if let Some(present) = present {
         commands(declared, present).at(0.0, &mut first);

@@ -1,11 +1,11 @@
 //! `plan.json`, `motion.csv` and the folder of results.
 
-use super::answer::Answer;
-use super::limits::{Limit, units};
-use super::outcome::{Answered, Outcome, chance};
-use super::prepare::Prepared;
-use super::separation::Posed;
-use crate::calibrate::report::ActsOn;
+use super::motions::limits::{DriveLimits, units};
+use super::outcome::{Answered, PlanOutcome, chance};
+use super::prepare::PreparedPlan;
+use super::questions::answer::MotionAnswer;
+use super::questions::separation::PosedQuestion;
+use crate::calibrate::results::report::ActsOn;
 use crate::effects::Setting;
 use crate::report::number;
 use crate::simulate::Provenance;
@@ -62,7 +62,7 @@ pub struct QuestionReport {
     /// `between` or `detect`.
     pub kind: &'static str,
     /// The models that are held against each other, at these values.
-    pub effects: Vec<EffectReport>,
+    pub effects: Vec<PlannedEffect>,
     /// Standard deviations that answer it.
     pub wanted_sigma: f64,
     /// On the present motion, if there is one.
@@ -73,7 +73,7 @@ pub struct QuestionReport {
 
 /// An effect with its values.
 #[derive(Clone, Debug, Serialize)]
-pub struct EffectReport {
+pub struct PlannedEffect {
     /// Its name.
     pub kind: &'static str,
     /// What it acts on.
@@ -110,7 +110,7 @@ pub struct CarriedReport {
 pub struct DriveReport {
     /// Its limits.
     #[serde(flatten)]
-    pub limit: Limit,
+    pub limit: DriveLimits,
     /// Lowest and highest coordinate of the motion.
     pub used_stroke: [f64; 2],
     /// Its largest rate.
@@ -142,12 +142,12 @@ pub(super) fn is_answered(answered: &Answered) -> bool {
 
 pub(super) fn question(answered: &Answered) -> QuestionReport {
     let Answered { posed, before, after } = answered;
-    let effect = |effect: &Setting| EffectReport {
+    let effect = |effect: &Setting| PlannedEffect {
         kind: effect.kind.name,
         on: ActsOn::of(effect),
         params: effect.values().map(|(name, value)| (name.to_owned(), value.into())).collect(),
     };
-    let answer = |answer: &Answer| AnswerReport {
+    let answer = |answer: &MotionAnswer| AnswerReport {
         sigma: answer.sigma,
         chance: chance(posed, answer.sigma),
         smallest: answer.smallest,
@@ -159,10 +159,10 @@ pub(super) fn question(answered: &Answered) -> QuestionReport {
     };
     let (kind, effects) = match posed {
         // The pair that comes nearer.
-        Posed::Between { pairs, .. } => {
+        PosedQuestion::Between { pairs, .. } => {
             ("between", pairs.iter().take(1).flatten().map(effect).collect())
         }
-        Posed::Detect { ways, .. } => ("detect", ways.iter().take(1).map(effect).collect()),
+        PosedQuestion::Detect { ways, .. } => ("detect", ways.iter().take(1).map(effect).collect()),
     };
     QuestionReport {
         question: posed.words(),
@@ -205,7 +205,7 @@ pub(super) fn summary(questions: &[QuestionReport], open: &[String], same: bool)
     all.join(" ") + &open + kept
 }
 
-pub(super) fn drives(prepared: &Prepared, outcome: &Outcome) -> Vec<DriveReport> {
+pub(super) fn drives(prepared: &PreparedPlan, outcome: &PlanOutcome) -> Vec<DriveReport> {
     let drives = prepared.limits.iter().zip(&outcome.motion.drives).enumerate();
     drives
         .map(|(place, (limit, series))| {

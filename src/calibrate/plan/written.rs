@@ -1,14 +1,14 @@
 //! From what was prepared to a folder with the plan, its motion, the rig with that motion and a page.
 
-use super::motion::rounded;
-use super::outcome::{Outcome, plan};
+use super::motions::motion::rounded;
+use super::outcome::{PlanOutcome, plan};
 use super::page;
-use super::prepare::Prepared;
+use super::prepare::PreparedPlan;
 use super::report::{
     MOTION_FILE, PLAN_FILE, PLANNED_FILE, Planned, QuestionReport, SensorReport, drives,
     is_answered, question, summary,
 };
-use crate::calibrate::result::{CalibrateError, publish, to_json};
+use crate::calibrate::results::result::{CalibrateError, publish, to_json};
 use crate::calibrate::sensed::start::machine;
 use crate::mechanism::{Imposed, Mechanism, Tracker, angle_near};
 use crate::scenario::{self, Scenario};
@@ -19,7 +19,7 @@ use std::time::Instant as Clock;
 
 /// A finished plan.
 #[derive(Debug)]
-pub struct Done {
+pub struct FinishedPlan {
     /// What it came to.
     pub planned: Planned,
     /// The text of `plan.json`.
@@ -34,10 +34,10 @@ pub struct Done {
 /// Limits that leave no motion, effects that no sensor can see, files that cannot be written; the folder is left as it
 /// was.
 pub fn into_folder(
-    prepared: &Prepared,
+    prepared: &PreparedPlan,
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Done, CalibrateError> {
+) -> Result<FinishedPlan, CalibrateError> {
     let started = Clock::now();
     let outcome = plan(prepared, tell)?;
     tell("drawing and writing");
@@ -77,13 +77,13 @@ pub fn into_folder(
     let texts =
         [(PLAN_FILE, &json), (MOTION_FILE, &motion), (PLANNED_FILE, &scenario), (PAGE_FILE, &page)];
     let folder = publish(folder, &texts, &pictures)?;
-    Ok(Done { planned, json, folder })
+    Ok(FinishedPlan { planned, json, folder })
 }
 
 /// The motion as a table that scenarios and machines read: `t`, `q_JOINT` of each drive, and the pose `x,y,phi` of the
 /// output body that these make, which is how a template of a platform is told to move.
-fn motion_csv(prepared: &Prepared, outcome: &Outcome) -> Result<String, CalibrateError> {
-    let Prepared { described, interval, samples, .. } = prepared;
+fn motion_csv(prepared: &PreparedPlan, outcome: &PlanOutcome) -> Result<String, CalibrateError> {
+    let PreparedPlan { described, interval, samples, .. } = prepared;
     let machine = machine(described, &[], &outcome.like)?;
     let names: Vec<String> = machine
         .actuators
@@ -122,7 +122,7 @@ fn poses(machine: &Mechanism, interval: f64, samples: usize) -> Vec<[f64; 3]> {
 }
 
 /// The rig with the planned motion: of a platform by its pose, else by the coordinates of its joints.
-fn planned_scenario(prepared: &Prepared) -> Scenario {
+fn planned_scenario(prepared: &PreparedPlan) -> Scenario {
     let by_pose = matches!(prepared.rig.mechanism, scenario::Mechanism::ThreeRpr(_));
     let mut planned = if by_pose { prepared.rig.clone() } else { prepared.described.clone() };
     if !by_pose {

@@ -1,7 +1,7 @@
 //! Forces of a log held against those of the declared model and of the servos' own law: another order of magnitude
 //! is another unit, another sign or another leg's force a mix-up.
 
-use crate::calibrate::mistaken::{Mistake, mistakes, rms};
+use crate::calibrate::measured::mistaken::{Mistake, mistakes, rms};
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log, LogError};
 use crate::scenario::{Drive, DriveMode};

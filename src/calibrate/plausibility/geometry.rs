@@ -1,7 +1,7 @@
 //! Lengths and poses of a log held against each other and against the rig's geometry, in every unit that
 //! somebody might have written them in.
 
-use crate::calibrate::recording::triple;
+use crate::calibrate::measured::recording::triple;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::three_rpr::Geometry;
 use crate::scenario::{Mechanism, Scenario, ThreeRpr};
@@ -63,7 +63,7 @@ pub(super) fn geometry(rig: &Scenario, log: &Log) -> Vec<(String, String)> {
 }
 
 /// What to say of lengths and poses that fit each other in no unit.
-fn not_closing(fit: &Fit, machine: &ThreeRpr, name: fn(usize) -> Channel) -> (String, String) {
+fn not_closing(fit: &UnitFit, machine: &ThreeRpr, name: fn(usize) -> Channel) -> (String, String) {
     let message = format!(
         "columns `{}` and `x`, `y`, `phi` do not close: the length of leg {} misses the one of \
          the measured pose by {:.3} m (rms)",
@@ -111,7 +111,7 @@ fn command(
 }
 
 /// Units in which lengths and poses fit each other.
-struct Fit {
+struct UnitFit {
     lengths: [(f64, &'static str); 3],
     pose: [(f64, &'static str); 3],
     /// Worst misfit of a leg, root mean square in m, and the leg.
@@ -121,10 +121,10 @@ struct Fit {
 
 /// The units with the fewest surprises in which measured lengths are those of the measured poses; if
 /// none are, the declared ones with their misfit.
-fn fit(geometry: &Geometry, rows: &[usize], lengths: [&[f64]; 3], pose: [&[f64]; 3]) -> Fit {
+fn fit(geometry: &Geometry, rows: &[usize], lengths: [&[f64]; 3], pose: [&[f64]; 3]) -> UnitFit {
     let wrong = |units: &[(f64, &str)]| units.iter().filter(|(factor, _)| *factor != 1.0).count();
-    let mut best: Option<Fit> = None;
-    let mut declared: Option<Fit> = None;
+    let mut best: Option<UnitFit> = None;
+    let mut declared: Option<UnitFit> = None;
     for x in LENGTHS {
         for y in LENGTHS {
             for phi in ANGLES {
@@ -157,9 +157,13 @@ fn fit(geometry: &Geometry, rows: &[usize], lengths: [&[f64]; 3], pose: [&[f64];
                     .enumerate()
                     .max_by(|a, b| a.1.total_cmp(&b.1))
                     .unwrap_or((0, 0.0));
-                let fit =
-                    Fit { lengths: units.map(|(unit, _)| unit), pose: [x, y, phi], misfit, leg };
-                let surprises = |fit: &Fit| wrong(&fit.lengths) + wrong(&fit.pose);
+                let fit = UnitFit {
+                    lengths: units.map(|(unit, _)| unit),
+                    pose: [x, y, phi],
+                    misfit,
+                    leg,
+                };
+                let surprises = |fit: &UnitFit| wrong(&fit.lengths) + wrong(&fit.pose);
                 if fit.misfit <= MISFIT
                     && best.as_ref().is_none_or(|best| surprises(&fit) < surprises(best))
                 {
@@ -170,7 +174,7 @@ fn fit(geometry: &Geometry, rows: &[usize], lengths: [&[f64]; 3], pose: [&[f64];
             }
         }
     }
-    best.or(declared).unwrap_or(Fit {
+    best.or(declared).unwrap_or(UnitFit {
         lengths: [LENGTHS[0]; 3],
         pose: [LENGTHS[0], LENGTHS[0], ANGLES[0]],
         misfit: 0.0,

@@ -10,7 +10,7 @@ mod geometry;
 pub use forces::{forces, mixed_up};
 pub use geometry::start_pose;
 
-use super::recording::Recording;
+use super::measured::recording::LegsRecording;
 use super::sensed::thresholds::LOWEST_RATE;
 use crate::measure::log::{Channel, Log, LogError};
 use crate::scenario::{Law, Mechanism, Problem, Scenario};
@@ -61,12 +61,12 @@ const SHORTEST: f64 = 1.0;
 const MOVES: f64 = 1e-4;
 
 /// Whether a recording has every column that the machine has instruments for.
-pub fn is_complete(recording: &Recording) -> bool {
+pub fn is_complete(recording: &LegsRecording) -> bool {
     Channel::all(3).into_iter().all(|channel| recording.log.get(channel).is_some())
 }
 
 /// What keeps recordings that are not complete from being calibrated with what they have.
-pub fn incomplete(scenario: &Scenario, recordings: &[Recording]) -> Vec<String> {
+pub fn incomplete(scenario: &Scenario, recordings: &[LegsRecording]) -> Vec<String> {
     let mut found: Vec<String> = rig(scenario).iter().map(Problem::to_string).collect();
     for one in recordings {
         found.extend(recording(scenario, one, SENSED).iter().map(LogError::to_string));
@@ -126,7 +126,7 @@ pub fn rig(rig: &Scenario) -> Vec<Problem> {
 }
 
 /// What is wrong with a log, by itself and beside the rig that it should be of.
-pub fn recording(rig: &Scenario, recording: &Recording, need: Need) -> Vec<LogError> {
+pub fn recording(rig: &Scenario, recording: &LegsRecording, need: Need) -> Vec<LogError> {
     let log = &recording.log;
     let wrong =
         |message: String, help: String| LogError { place: recording.path.clone(), message, help };
@@ -163,7 +163,7 @@ pub fn recording(rig: &Scenario, recording: &Recording, need: Need) -> Vec<LogEr
 }
 
 /// Columns that are not there, if any are needed.
-fn missing(recording: &Recording, need: Need) -> Option<LogError> {
+fn missing(recording: &LegsRecording, need: Need) -> Option<LogError> {
     let needed = Channel::all(3).into_iter();
     let needed = needed.filter(|channel| need.measured || matches!(channel, Channel::Command(_)));
     let absent: Vec<String> = needed
@@ -201,7 +201,7 @@ fn still(log: &Log) -> Vec<Channel> {
 }
 
 /// Logs that hold the same samples: a model judged on what it was fitted to is not judged.
-pub fn twins(recordings: &[Recording]) -> Vec<LogError> {
+pub fn twins(recordings: &[LegsRecording]) -> Vec<LogError> {
     let mut found = Vec::new();
     for (i, one) in recordings.iter().enumerate() {
         for other in &recordings[..i] {

@@ -8,21 +8,21 @@ mod run;
 pub use pace::passed;
 pub use run::clean;
 
-use super::errors::ChannelError;
-use super::result::{CalibrateError, control, publish, refuse, to_json};
-use super::sensed::charts::{Drawn, of_run};
+use super::results::result::{CalibrateError, control, publish, refuse, to_json};
+use super::sensed::charts::{DrawnRun, of_run};
 use super::sensed::errors::{self, mean};
 use super::sensed::predict::Along;
 use super::sensed::recording::Recording;
 use super::sensed::simulate::noisy;
 use super::sensed::start::machine;
 use super::sensed::thresholds::PREDICTING;
+use super::values::errors::ChannelError;
 use crate::mechanism::Mechanism;
 use crate::report::{Picture, Style};
 use crate::scenario::{self, Law, Scenario};
 use crate::simulate::{Machine, Provenance};
 use crate::study::{Folder, Forecast, PAGE_FILE, RunError};
-pub(super) use run::{Made, like};
+pub(super) use run::{RecordingSetup, like};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant as Clock;
@@ -49,17 +49,17 @@ const MOST: f64 = 1e7;
 
 /// How many rows recordings have.
 #[derive(Clone, Copy, Debug)]
-pub struct Rows {
+pub struct RowCount {
     /// Rows a second.
     pub rate: f64,
     /// Length of each recording in s.
     pub duration: f64,
 }
 
-impl Rows {
+impl RowCount {
     /// What is wrong with recordings of so many columns, made before anything is.
     fn too_many(self, columns: usize) -> Option<String> {
-        let Rows { rate, duration } = self;
+        let RowCount { rate, duration } = self;
         let numbers = rate * duration * columns as f64;
         (numbers > MOST).then(|| {
             format!(
@@ -72,7 +72,7 @@ impl Rows {
 
 /// `record.json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Recorded {
+pub struct RecordReport {
     /// Program, versions, scenario.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -102,7 +102,7 @@ pub struct Recorded {
     pub files: Vec<String>,
 }
 
-impl Recorded {
+impl RecordReport {
     /// Whether the sensors show what is hidden, in one sentence.
     pub fn verdict(&self) -> String {
         let hidden = self.hidden.join(", ");
@@ -121,9 +121,9 @@ impl Recorded {
 
 /// Finished recordings.
 #[derive(Debug)]
-pub struct Done {
+pub struct FinishedRecordings {
     /// What they came to.
-    pub recorded: Recorded,
+    pub recorded: RecordReport,
     /// The text of `record.json`.
     pub json: String,
     /// Where all files are.
@@ -132,10 +132,10 @@ pub struct Done {
 
 /// A scenario that can be recorded.
 #[derive(Debug)]
-pub struct Prepared {
+pub struct PreparedRecord {
     truth: Scenario,
     rig: Scenario,
-    rows: Rows,
+    rows: RowCount,
     likes: Vec<Recording>,
 }
 
@@ -146,8 +146,8 @@ pub struct Prepared {
 pub fn prepare(
     scenario: &Scenario,
     assembled: &Machine,
-    rows: Rows,
-) -> Result<Prepared, CalibrateError> {
+    rows: RowCount,
+) -> Result<PreparedRecord, CalibrateError> {
     let mut wrong = Vec::new();
     let mechanism = &assembled.mechanism;
     if mechanism.sensors.is_empty() {
@@ -173,7 +173,8 @@ pub fn prepare(
     rig.effects.clear();
     let declared = crate::model::assemble(&rig)?.mechanism;
     let likes = RUNS.map(|(name, pace)| {
-        let made = Made { name, interval: 1.0 / rows.rate, duration: rows.duration, pace };
+        let made =
+            RecordingSetup { name, interval: 1.0 / rows.rate, duration: rows.duration, pace };
         like(&declared, made)
     });
     // What cannot stand at a first row is told before anything is simulated.
@@ -181,7 +182,7 @@ pub fn prepare(
         refuse(recording.wrong().into_iter().collect())?;
         machine(scenario, &[], recording)?;
     }
-    Ok(Prepared { truth: scenario.clone(), rig, rows, likes: likes.to_vec() })
+    Ok(PreparedRecord { truth: scenario.clone(), rig, rows, likes: likes.to_vec() })
 }
 
 /// First seconds of a recording that tell what all of it will take: a machine has come to full speed by then.
@@ -190,13 +191,13 @@ const JUDGED: f64 = 0.5;
 /// Bytes that a number takes in a recording, with the comma behind it.
 const BYTES: f64 = 12.0;
 
-impl Prepared {
+impl PreparedRecord {
     /// What recording will cost at most, judged by its beginning: as many simulations as where joints rattle.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
     pub fn forecast(&self) -> Result<Forecast, CalibrateError> {
-        let Prepared { truth, rows, likes, .. } = self;
+        let PreparedRecord { truth, rows, likes, .. } = self;
         let judged = rows.duration.min(JUDGED);
         let started = Clock::now();
         let first = first(truth, &likes[0])?;
@@ -231,12 +232,12 @@ struct One {
 /// # Errors
 /// A machine that cannot be simulated, files that cannot be written; the folder is left as it was.
 pub fn into_folder(
-    prepared: &Prepared,
+    prepared: &PreparedRecord,
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Done, CalibrateError> {
+) -> Result<FinishedRecordings, CalibrateError> {
     let started = Clock::now();
-    let Prepared { truth, rig, rows, likes } = prepared;
+    let PreparedRecord { truth, rig, rows, likes } = prepared;
     let mut all = Vec::new();
     for (index, like) in likes.iter().enumerate() {
         tell(&format!("recording {}", like.name));
@@ -253,7 +254,7 @@ pub fn into_folder(
         .max_by(|a, b| a.0.total_cmp(&b.0));
     let texts = [RECORD_FILE, RIG_FILE, TRUTH_FILE, PAGE_FILE].into_iter();
     let names = texts.chain(RUNS.map(|(name, _)| name)).map(str::to_owned);
-    let recorded = Recorded {
+    let recorded = RecordReport {
         provenance: Provenance::of(truth),
         seed: truth.seed,
         runs: RUNS.map(|(name, _)| name.to_owned()).to_vec(),
@@ -277,11 +278,15 @@ pub fn into_folder(
         vec![(RECORD_FILE, &json), (RIG_FILE, &rig), (TRUTH_FILE, &truth), (PAGE_FILE, &page)];
     texts.extend(logs.iter().map(|(name, text)| (*name, text)));
     let folder = publish(folder, &texts, pictures.iter().copied())?;
-    Ok(Done { recorded, json, folder })
+    Ok(FinishedRecordings { recorded, json, folder })
 }
 
-fn recorded(prepared: &Prepared, index: usize, like: &Recording) -> Result<One, CalibrateError> {
-    let Prepared { truth, rig, .. } = prepared;
+fn recorded(
+    prepared: &PreparedRecord,
+    index: usize,
+    like: &Recording,
+) -> Result<One, CalibrateError> {
+    let PreparedRecord { truth, rig, .. } = prepared;
     let first = first(truth, like)?;
     let clean =
         clean((truth, &[]), &first, like, control(truth), 1).map_err(CalibrateError::from)?;
@@ -304,7 +309,7 @@ fn recorded(prepared: &Prepared, index: usize, like: &Recording) -> Result<One, 
     let [as_is, declared] = [&after[..], reference].map(|logs| mean(logs, count));
     let mut models = vec![("as it is", Style::Solid, &as_is)];
     models.extend(before.is_some().then_some(("as declared", Style::Reference, &declared)));
-    let drawn = Drawn { index, role, caption: CAPTION };
+    let drawn = DrawnRun { index, role, caption: CAPTION };
     let pictures = of_run(&true_machine, &noisy, drawn, &models).map_err(RunError::from)?;
     Ok(One { noisy, errors, pictures, replicas: after.len() })
 }

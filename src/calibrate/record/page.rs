@@ -1,8 +1,8 @@
 //! The page of synthetic recordings.
 
-use super::super::page::errors_table;
-use super::{RIG_FILE, Recorded, TRUTH_FILE};
-use crate::report::{Part, Picture, document, number};
+use super::super::results::page::errors_table;
+use super::{RIG_FILE, RecordReport, TRUTH_FILE};
+use crate::report::{PagePart, Picture, document, number};
 
 const NOTE: &str = "Root mean square of the recording less a model, both through a zero-phase low-pass of fourth order \
                     at 25 Hz, first and last 60 ms left out. Before: the rig as declared, without what is hidden (a dash \
@@ -10,7 +10,7 @@ const NOTE: &str = "Root mean square of the recording less a model, both through
                     model.";
 
 /// The page as HTML.
-pub fn page(recorded: &Recorded, pictures: &[&Picture]) -> String {
+pub fn page(recorded: &RecordReport, pictures: &[&Picture]) -> String {
     let pictures: Vec<Picture> = pictures.iter().copied().cloned().collect();
     let more = [
         (
@@ -26,9 +26,9 @@ pub fn page(recorded: &Recorded, pictures: &[&Picture]) -> String {
     ];
     let provenance = recorded.provenance.lines("scenario", None, more);
     let parts = [
-        Part::Table(errors_table(&recorded.errors, NOTE)),
-        Part::Pictures(&pictures),
-        Part::Provenance(&provenance),
+        PagePart::Table(errors_table(&recorded.errors, NOTE)),
+        PagePart::Pictures(&pictures),
+        PagePart::Provenance(&provenance),
     ];
     let title = format!("Recordings of {}", recorded.provenance.scenario_name);
     document(&title, &recorded.verdict(), &parts)

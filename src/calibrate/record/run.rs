@@ -35,7 +35,7 @@ pub fn clean(
 
 /// How a recording is made.
 #[derive(Clone, Copy, Debug)]
-pub struct Made {
+pub struct RecordingSetup {
     /// Its file.
     pub name: &'static str,
     /// Time in s between two rows.
@@ -49,8 +49,8 @@ pub struct Made {
 
 /// What a machine is recorded like: its commands along its motion, from rest on, to nine decimals as logs have them, and
 /// for what sensors will show where the machine stands at the start.
-pub fn like(mechanism: &Mechanism, made: Made) -> Recording {
-    let Made { name, interval, duration, pace } = made;
+pub fn like(mechanism: &Mechanism, made: RecordingSetup) -> Recording {
+    let RecordingSetup { name, interval, duration, pace } = made;
     let samples = (duration / interval).round() as usize + 1;
     let falls = mechanism.actuators.is_empty();
     let mut told = vec![Vec::with_capacity(samples); mechanism.actuators.len()];

@@ -1,6 +1,6 @@
 //! Which trials there are.
 
-use super::Trial;
+use super::LegsTrial;
 use super::hidden::{kinds, uniform};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -22,12 +22,12 @@ const PAIRS: u64 = 7;
 /// middle size, rigs that lack nothing, and rigs that lack two effects, drawn at random. `only` keeps
 /// those that hide one of these kinds (`nothing` for none, `a+b` for both; everything if empty); another
 /// `seed` gives other sizes, joints, motions, noise and pairs.
-pub fn trials(only: &[String], seed: u64) -> Vec<Trial> {
+pub fn trials(only: &[String], seed: u64) -> Vec<LegsTrial> {
     let mut trials = Vec::new();
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let kinds: Vec<&str> = kinds().collect();
     for gravity in [true, false] {
-        let trial = |hidden: &[&str], size: f64, withheld: bool, number: u64| Trial {
+        let trial = |hidden: &[&str], size: f64, withheld: bool, number: u64| LegsTrial {
             hidden: hidden.iter().map(|&kind| kind.to_owned()).collect(),
             size,
             gravity,
@@ -47,7 +47,7 @@ pub fn trials(only: &[String], seed: u64) -> Vec<Trial> {
             trials.push(trial(&[kinds[first], kinds[second]], MIDDLE, false, 700 + i));
         }
     }
-    let name = |trial: &Trial| match trial.hidden.as_slice() {
+    let name = |trial: &LegsTrial| match trial.hidden.as_slice() {
         [] => "nothing".to_owned(),
         hidden => hidden.join("+"),
     };

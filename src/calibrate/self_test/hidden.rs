@@ -1,6 +1,6 @@
 //! Effects of random size.
 
-use super::Trial;
+use super::LegsTrial;
 use crate::effects::{Setting, named};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// How an effect is hidden: name, joints to choose from, and for each value its smallest size, whether
 /// it takes either sign, and whether it grows with the size of the trial.
-struct Hidden {
+struct HiddenKind {
     kind: &'static str,
     joints: &'static [&'static str],
     values: &'static [(&'static str, Draw)],
@@ -37,8 +37,8 @@ use Draw::{Above, Around, Between, Either, Size};
 
 /// Every effect with a name that rigs may hide, at a size of one about three times what sensors and
 /// rattle would hide.
-const HIDDEN: &[Hidden] = &[
-    Hidden {
+const HIDDEN: &[HiddenKind] = &[
+    HiddenKind {
         kind: "payload",
         joints: &[],
         values: &[
@@ -47,31 +47,31 @@ const HIDDEN: &[Hidden] = &[
             ("com_y_m", Between(-0.03, 0.03)),
         ],
     },
-    Hidden {
+    HiddenKind {
         kind: "gravity",
         joints: &[],
         values: &[("gx_m_s2", Either(0.15)), ("gy_m_s2", Around(f64::NAN, 0.15))],
     },
-    Hidden {
+    HiddenKind {
         kind: "actuator-friction",
         joints: P,
         values: &[("coulomb_N", Size(0.3)), ("viscous_Ns_m", Size(1.0))],
     },
-    Hidden { kind: "journal-friction", joints: &[], values: &[("mu", Size(0.03))] },
-    Hidden {
+    HiddenKind { kind: "journal-friction", joints: &[], values: &[("mu", Size(0.03))] },
+    HiddenKind {
         kind: "anchor-offset",
         joints: A,
         values: &[("dx_m", Either(5e-5)), ("dy_m", Either(5e-5))],
     },
-    Hidden {
+    HiddenKind {
         kind: "joint-wear",
         joints: ALL_JOINTS,
         values: &[("clearance_m", Above(1e-4, 4e-5))],
     },
-    Hidden { kind: "command-delay", joints: &[], values: &[("delay_s", Size(2e-4))] },
-    Hidden { kind: "servo-lag", joints: &[], values: &[("time_constant_s", Size(4e-4))] },
-    Hidden { kind: "actuator-scale", joints: P, values: &[("relative", Either(1e-3))] },
-    Hidden {
+    HiddenKind { kind: "command-delay", joints: &[], values: &[("delay_s", Size(2e-4))] },
+    HiddenKind { kind: "servo-lag", joints: &[], values: &[("time_constant_s", Size(4e-4))] },
+    HiddenKind { kind: "actuator-scale", joints: P, values: &[("relative", Either(1e-3))] },
+    HiddenKind {
         kind: "screw-ripple",
         joints: P,
         values: &[
@@ -80,7 +80,7 @@ const HIDDEN: &[Hidden] = &[
             ("phase_rad", Between(0.0, TAU)),
         ],
     },
-    Hidden {
+    HiddenKind {
         kind: "tether",
         joints: &[],
         values: &[
@@ -90,12 +90,12 @@ const HIDDEN: &[Hidden] = &[
             ("rest_length_m", Between(0.02, 0.12)),
         ],
     },
-    Hidden {
+    HiddenKind {
         kind: "drag",
         joints: &[],
         values: &[("force_Ns_m", Size(0.8)), ("torque_Nms", Size(2e-3))],
     },
-    Hidden {
+    HiddenKind {
         kind: "base-vibration",
         joints: &[],
         values: &[
@@ -105,7 +105,7 @@ const HIDDEN: &[Hidden] = &[
             ("phase_rad", Between(0.0, TAU)),
         ],
     },
-    Hidden {
+    HiddenKind {
         kind: "unbalance",
         joints: &[],
         values: &[
@@ -127,7 +127,7 @@ pub(super) fn uniform(random: &mut ChaCha8Rng) -> f64 {
 }
 
 /// The effect called `name` with values of the trial's size, if it is one that can be hidden.
-pub(super) fn hide(name: &str, trial: &Trial, random: &mut ChaCha8Rng) -> Option<Setting> {
+pub(super) fn hide(name: &str, trial: &LegsTrial, random: &mut ChaCha8Rng) -> Option<Setting> {
     let hidden = HIDDEN.iter().find(|hidden| hidden.kind == name)?;
     let kind = named(hidden.kind)?;
     let joint = (!hidden.joints.is_empty())

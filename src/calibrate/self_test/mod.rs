@@ -12,17 +12,17 @@ pub use rates::rates;
 pub(in crate::calibrate) use rates::{covered, is_phase, near, share};
 pub use rig::recorded;
 
-use super::errors;
-use super::model::{Case, SearchError};
-use super::outcome::{Outcome, Verdict, calibrate};
-use super::way::names;
+use super::results::outcome::{LegsOutcome, Verdict, calibrate};
+use super::rounds::way::names;
+use super::values::errors;
+use super::values::model::{LegsCase, SearchError};
 use crate::effects::Setting;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// One rig to be understood.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
+pub struct LegsTrial {
     /// Hidden effects by name; none in a rig that lacks nothing.
     pub hidden: Vec<String>,
     /// Their size, in units of about three floors.
@@ -37,10 +37,10 @@ pub struct Trial {
 
 /// What became of a trial: a row of the self-test's table.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Tried {
+pub struct LegsTried {
     /// The trial.
     #[serde(flatten)]
-    pub trial: Trial,
+    pub trial: LegsTrial,
     /// Hidden effects with their joints, in words.
     pub lacks: String,
     /// Verdict.
@@ -50,7 +50,7 @@ pub struct Tried {
     /// Whether the verdict and the names are right.
     pub right: bool,
     /// Hidden values that were found by name.
-    pub values: Vec<Value>,
+    pub values: Vec<HiddenValue>,
     /// How large what is hidden is: the declared model's largest error on the validation run, in floors.
     pub floors: f64,
     /// How large the smallest of several hidden effects is: the same of the true model without it.
@@ -66,7 +66,7 @@ pub struct Tried {
 
 /// A hidden value and its estimate, in SI units.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Value {
+pub struct HiddenValue {
     /// `effect.parameter`.
     pub name: String,
     /// As hidden.
@@ -81,13 +81,13 @@ pub struct Value {
 ///
 /// # Errors
 /// A rig that cannot be simulated.
-pub fn run(trial: &Trial) -> Result<Tried, SearchError> {
+pub fn run(trial: &LegsTrial) -> Result<LegsTried, SearchError> {
     let (case, hidden) = recorded(trial)?;
     let hidden_names: Vec<&str> = trial.hidden.iter().map(String::as_str).collect();
     let without = if trial.withheld { &hidden_names[..] } else { &[] };
     let outcome = calibrate(&case, without, &|_| {})?;
     let least = least(&case, &hidden)?;
-    Ok(Tried { least, ..judge(trial, &hidden, &outcome) })
+    Ok(LegsTried { least, ..judge(trial, &hidden, &outcome) })
 }
 
 /// The largest error in floors on the validation run of the true model less one of its effects, the one whose
@@ -95,7 +95,7 @@ pub fn run(trial: &Trial) -> Result<Tried, SearchError> {
 ///
 /// # Errors
 /// A rig that cannot be simulated.
-pub fn least(case: &Case, hidden: &[Setting]) -> Result<Option<f64>, SearchError> {
+pub fn least(case: &LegsCase, hidden: &[Setting]) -> Result<Option<f64>, SearchError> {
     if hidden.len() < 2 {
         return Ok(None);
     }
@@ -115,7 +115,7 @@ pub fn least(case: &Case, hidden: &[Setting]) -> Result<Option<f64>, SearchError
     Ok(Some(least))
 }
 
-fn judge(trial: &Trial, hidden: &[Setting], outcome: &Outcome) -> Tried {
+fn judge(trial: &LegsTrial, hidden: &[Setting], outcome: &LegsOutcome) -> LegsTried {
     let found: Vec<Setting> = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
     let named = || outcome.effects.iter().filter(|(effect, _)| effect.map().is_none());
     let right = if trial.withheld {
@@ -141,7 +141,7 @@ fn judge(trial: &Trial, hidden: &[Setting], outcome: &Outcome) -> Tried {
                 };
                 let name = format!("{}.{name}", lacking.kind.name);
                 let std = Some(e.std).filter(|std| std.is_finite());
-                values.push(Value { name, truth, value: e.value - turns * TAU, std });
+                values.push(HiddenValue { name, truth, value: e.value - turns * TAU, std });
             }
         }
     }
@@ -150,7 +150,7 @@ fn judge(trial: &Trial, hidden: &[Setting], outcome: &Outcome) -> Tried {
         [] => "nothing".to_owned(),
         effects => names(effects),
     };
-    Tried {
+    LegsTried {
         trial: trial.clone(),
         lacks: words(hidden),
         verdict: outcome.verdict,

@@ -1,6 +1,6 @@
 //! What trials come to: rates of right answers, each with what chance leaves open.
 
-use super::{Tried, Value};
+use super::{HiddenValue, LegsTried};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -11,10 +11,10 @@ const LARGE: f64 = 3.0;
 const NEAR: f64 = 0.1;
 
 /// A kind of trial: its heading, and which trials are of it.
-type Row = (&'static str, fn(&Tried) -> bool);
+type TrialKind = (&'static str, fn(&LegsTried) -> bool);
 
 /// The kinds of trials of which one asks how many were right.
-const RIGHT: [Row; 6] = [
+const RIGHT: [TrialKind; 6] = [
     ("one effect above three floors: named, and nothing beside it", |tried| {
         single(tried) && tried.floors > LARGE
     }),
@@ -29,15 +29,15 @@ const RIGHT: [Row; 6] = [
     ("an effect that is no candidate: `unexplained`", |tried| tried.trial.withheld),
 ];
 
-fn single(tried: &Tried) -> bool {
+fn single(tried: &LegsTried) -> bool {
     !tried.trial.withheld && tried.trial.hidden.len() == 1
 }
 
 /// A Markdown table of rates, with gravity and without, each with its 95 % interval; below it every
 /// trial whose answer was wrong.
-pub fn rates(all: &[Tried]) -> String {
+pub fn rates(all: &[LegsTried]) -> String {
     let mut text = "| | with gravity | without: joints rattle |\n|---|---|---|\n".to_owned();
-    let mut row = |heading: &str, of: &dyn Fn(&Tried) -> Vec<bool>| {
+    let mut row = |heading: &str, of: &dyn Fn(&LegsTried) -> Vec<bool>| {
         let cell = |gravity: bool| {
             let own = all.iter().filter(|tried| tried.trial.gravity == gravity);
             share(&own.flat_map(of).collect::<Vec<_>>())
@@ -70,7 +70,7 @@ pub fn rates(all: &[Tried]) -> String {
     text
 }
 
-fn hidden(tried: &Tried) -> String {
+fn hidden(tried: &LegsTried) -> String {
     let gravity = if tried.trial.gravity { "with gravity" } else { "without gravity" };
     let withheld = if tried.trial.withheld { ", no candidate" } else { "" };
     let least =
@@ -78,22 +78,22 @@ fn hidden(tried: &Tried) -> String {
     format!("{} ({:.1} floors{least}, {gravity}{withheld})", tried.lacks, tried.floors)
 }
 
-fn found(tried: &Tried) -> String {
+fn found(tried: &LegsTried) -> String {
     format!("`{}`: {}", tried.verdict.word(), tried.found)
 }
 
 /// Whether a value is a phase, which near another one says nothing of its effect's size.
-pub(in crate::calibrate) fn is_phase(value: &Value) -> bool {
+pub(in crate::calibrate) fn is_phase(value: &HiddenValue) -> bool {
     value.name.ends_with("phase_rad")
 }
 
 /// Whether a value was found within 10 %.
-pub(in crate::calibrate) fn near(value: &Value) -> bool {
+pub(in crate::calibrate) fn near(value: &HiddenValue) -> bool {
     (value.value - value.truth).abs() < NEAR * value.truth.abs()
 }
 
 /// Whether the true value lies in the 95 % interval of the one that was found.
-pub(in crate::calibrate) fn covered(value: &Value) -> bool {
+pub(in crate::calibrate) fn covered(value: &HiddenValue) -> bool {
     value.std.is_some_and(|std| (value.value - value.truth).abs() < 1.96 * std)
 }
 
@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn the_docs_show_the_table_that_follows_from_the_trials() {
         let trials = include_str!("../../../assets/self-test/trials.jsonl");
-        let all: Vec<Tried> =
+        let all: Vec<LegsTried> =
             trials.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         let docs = include_str!("../../../docs/calibrate.md");
         let (_, rest) = docs.split_once("<!-- rates -->\n").unwrap();

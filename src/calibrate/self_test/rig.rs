@@ -1,10 +1,10 @@
 //! The rig of the self-test and its recordings.
 
-use super::Trial;
+use super::LegsTrial;
 use super::hidden::{hide, uniform};
-use crate::calibrate::model::{Case, Run, SearchError};
-use crate::calibrate::outcome::canonical;
-use crate::calibrate::replica;
+use crate::calibrate::measured::replica;
+use crate::calibrate::results::outcome::canonical;
+use crate::calibrate::values::model::{LegsCase, LegsRun, SearchError};
 use crate::effects::Setting;
 use crate::engine::StepControl;
 use crate::measure::log::{Channel, Log};
@@ -42,7 +42,7 @@ fn path(run: usize, random: [f64; 4], t: f64) -> Vector3<f64> {
 ///
 /// # Errors
 /// A hidden effect that gives no machine.
-pub fn recorded(trial: &Trial) -> Result<(Case, Vec<Setting>), SearchError> {
+pub fn recorded(trial: &LegsTrial) -> Result<(LegsCase, Vec<Setting>), SearchError> {
     let mut random = ChaCha8Rng::seed_from_u64(trial.seed);
     let gravity = if trial.gravity { "-9.81" } else { "0.0" };
     let set = [format!("environment.gravity=[0.0,{gravity}]")];
@@ -80,8 +80,8 @@ pub fn recorded(trial: &Trial) -> Result<(Case, Vec<Setting>), SearchError> {
     let control = StepControl::Tolerance(1e-5);
     let mut logs = Vec::new();
     for (i, template) in templates.into_iter().enumerate() {
-        let runs = vec![Run::new(template).map_err(missing)?];
-        let case = Case::new(rig.clone(), sensors.clone(), runs, control);
+        let runs = vec![LegsRun::new(template).map_err(missing)?];
+        let case = LegsCase::new(rig.clone(), sensors.clone(), runs, control);
         let machine = case.released(&hidden)?.remove(0);
         let log = &case.runs[0].log;
         // Another start of the rattle than any replica's.
@@ -89,8 +89,8 @@ pub fn recorded(trial: &Trial) -> Result<(Case, Vec<Setting>), SearchError> {
         logs.push(replica::with_noise(&clean, &sensors, trial.seed + 77 + i as u64));
     }
     let runs =
-        logs.into_iter().map(|log| Run::new(log).map_err(missing)).collect::<Result<_, _>>()?;
-    let mut case = Case::new(rig, sensors, runs, control);
+        logs.into_iter().map(|log| LegsRun::new(log).map_err(missing)).collect::<Result<_, _>>()?;
+    let mut case = LegsCase::new(rig, sensors, runs, control);
     case.chaotic = !trial.gravity;
     Ok((case, hidden))
 }

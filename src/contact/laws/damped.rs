@@ -1,7 +1,7 @@
 //! A spring and what it loses: the one form of the laws of this room.
 
 use super::loss::Loss;
-use super::spring::Spring;
+use super::spring::ElasticForce;
 use crate::contact::{ForceLaw, step};
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ pub struct Damped<S> {
     pub loss: Loss,
 }
 
-impl<S: Spring> ForceLaw for Damped<S> {
+impl<S: ElasticForce> ForceLaw for Damped<S> {
     fn normal_force(&self, penetration: f64, rate: f64) -> f64 {
         self.normal_force_after(penetration, rate, rate.abs())
     }

@@ -1,10 +1,10 @@
 //! Dubowsky and Freudenstein's law of a pin in a bearing.
 
 use super::conformal::{line_stiffness, logarithmic};
-use super::kind::{CONFORMAL, Kind, Losses};
+use super::kind::{CONFORMAL, LawKind, Losses};
 
 /// `δ = F/(π E* L) (ln(π E* L³ ΔR/(F R_i R_j)) + 1)`, so `D = e π E* L³ ΔR/(R_i R_j)`.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "dubowsky-freudenstein",
     summary: "line contact of a pin in a bearing, by Dubowsky and Freudenstein",
     equation: "d = F/(pi E* L) (ln(pi E* L^3 dR/(F Ri Rj)) + 1), solved for F",

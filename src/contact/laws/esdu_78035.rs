@@ -1,10 +1,10 @@
 //! The law of the design guide ESDU 78035.
 
 use super::conformal::{line_stiffness, logarithmic};
-use super::kind::{CONFORMAL, Kind, Losses};
+use super::kind::{CONFORMAL, LawKind, Losses};
 
 /// `δ = F/(π E* L) (ln(4 π E* L ΔR/F) + 1)`, so `D = 4 e π E* L ΔR`.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "esdu-78035",
     summary: "line contact of a pin in a bearing, by the design guide ESDU 78035",
     equation: "d = F/(pi E* L) (ln(4 pi E* L dR/F) + 1), solved for F",

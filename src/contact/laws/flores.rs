@@ -1,10 +1,10 @@
 //! The law of Flores, Machado, Silva and Martins.
 
-use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::kind::{BY_RESTITUTION, LawKind, Losses};
 use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 8 (1 − e)/(5 e)`.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "flores",
     summary: "Hertz with a hysteresis for soft materials, for all e",
     equation: "K d^n (1 + h rate/impact_speed), h = 8 (1 - e)/(5 e)",

@@ -1,10 +1,10 @@
 //! Goldsmith's law of two cylinders.
 
 use super::conformal::{line_stiffness, logarithmic};
-use super::kind::{CONFORMAL, Kind, Losses};
+use super::kind::{CONFORMAL, LawKind, Losses};
 
 /// `δ = F/(π E* L) (ln(π E* L³/(F R)) + 1)`, `R = R_i R_j/(R_i + R_j)`, so `D = e π E* L³/R`. The clearance does not enter.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "goldsmith",
     summary: "line contact of two cylinders, by Goldsmith; it does not know the clearance",
     equation: "d = F/(pi E* L) (ln(pi E* L^3/(F R)) + 1), solved for F",

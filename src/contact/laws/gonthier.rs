@@ -1,11 +1,11 @@
 //! The law of Gonthier, McPhee, Lange and Piedboeuf.
 
-use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::kind::{BY_RESTITUTION, LawKind, Losses};
 use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = (1 − e²)/e`: an approximate root of `h (1 + e) = ln((1 + h)/(1 − h e))`, which is exact
 /// for a free mass and any n.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "gonthier",
     summary: "Hertz with a hysteresis after the exact impact of a free mass, in an approximation for all e",
     equation: "K d^n (1 + h rate/impact_speed), h = (1 - e^2)/e",

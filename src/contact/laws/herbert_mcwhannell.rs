@@ -1,10 +1,10 @@
 //! Herbert and McWhannell's law.
 
-use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::kind::{BY_RESTITUTION, LawKind, Losses};
 use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 6 (1 − e)/((2e − 1)² + 3)`.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "herbert-mcwhannell",
     summary: "Hertz with a hysteresis whose factor corrects Hunt and Crossley's for larger losses",
     equation: "K d^n (1 + h rate/impact_speed), h = 6 (1 - e)/((2 e - 1)^2 + 3)",

@@ -1,10 +1,10 @@
 //! Hertz' law: an elastic contact.
 
-use super::kind::{ELASTIC, Kind, Losses};
+use super::kind::{ELASTIC, LawKind, Losses};
 use super::loss::Loss;
 
 /// `F = K δⁿ`, K as in [`hertz_stiffness`](crate::contact::hertz_stiffness).
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "hertz",
     summary: "the elastic contact of smooth bodies, without loss",
     equation: "K d^n",

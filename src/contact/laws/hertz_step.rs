@@ -1,14 +1,14 @@
 //! The entry of the default law, [`HertzStep`].
 
 use super::kind::{
-    EXPONENT, Given, Kind, Losses, POISSON_RATIO, Parameter, Range, STIFFNESS, STIFFNESS_FORM,
-    YOUNGS_MODULUS,
+    EXPONENT, Given, LawKind, LawParameter, LawRange, Losses, POISSON_RATIO, STIFFNESS,
+    STIFFNESS_FORM, YOUNGS_MODULUS,
 };
 use crate::contact::HertzStep;
 use std::sync::Arc;
 
 /// ADAMS' IMPACT function: see [`HertzStep`].
-pub static HERTZ_STEP: Kind = Kind {
+pub static HERTZ_STEP: LawKind = LawKind {
     name: "hertz-step",
     summary: "ADAMS' IMPACT function, the default: Hertz with a damper that fades in with penetration",
     equation: "max(0, K d^n + step(d) rate), step = c_max s^2 (3 - 2 s), s = d/d_max, at most c_max",
@@ -20,25 +20,25 @@ pub static HERTZ_STEP: Kind = Kind {
         STIFFNESS_FORM,
         STIFFNESS,
         EXPONENT,
-        Parameter {
+        LawParameter {
             name: "c_max",
             unit: "N s/m",
             about: "damping C_max at full depth",
-            range: Range::NotNegative,
+            range: LawRange::NotNegative,
             default: "500",
         },
-        Parameter {
+        LawParameter {
             name: "d_max",
             unit: "m",
             about: "penetration at which the damping is complete",
-            range: Range::Positive,
+            range: LawRange::Positive,
             default: "1e-5",
         },
-        Parameter {
+        LawParameter {
             name: "clip",
             unit: "",
             about: "whether the force is kept from pulling while the surfaces part",
-            range: Range::Choice("true or false"),
+            range: LawRange::Choice("true or false"),
             default: "true",
         },
     ],

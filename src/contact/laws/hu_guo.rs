@@ -1,10 +1,10 @@
 //! Hu and Guo's law.
 
-use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::kind::{BY_RESTITUTION, LawKind, Losses};
 use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 3 (1 − e)/(2 e)`.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "hu-guo",
     summary: "Hertz with a hysteresis that is exact to first order near e = 1 and grows as 1/e",
     equation: "K d^n (1 + h rate/impact_speed), h = 3 (1 - e)/(2 e)",

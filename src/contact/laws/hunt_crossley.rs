@@ -1,7 +1,7 @@
 //! Hunt and Crossley's law.
 
 use super::kind::{
-    EXPONENT, Kind, Losses, POISSON_RATIO, Parameter, Range, STIFFNESS, STIFFNESS_FORM,
+    EXPONENT, LawKind, LawParameter, LawRange, Losses, POISSON_RATIO, STIFFNESS, STIFFNESS_FORM,
     YOUNGS_MODULUS,
 };
 use super::loss::Loss;
@@ -12,7 +12,7 @@ const DAMPING: f64 = 2.7;
 
 /// `F = K δⁿ (1 + (3/2) α δ̇)`: no impact speed enters, so that hits return less the harder they are, `e ≈ 1 − α v`
 /// for small losses.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "hunt-crossley",
     summary: "Hertz with a damping that grows with the elastic force; slow hits return more than hard ones",
     equation: "K d^n (1 + 3/2 damping rate), e = 1 - damping impact_speed for small losses",
@@ -24,11 +24,11 @@ pub(super) static KIND: Kind = Kind {
         STIFFNESS_FORM,
         STIFFNESS,
         EXPONENT,
-        Parameter {
+        LawParameter {
             name: "damping",
             unit: "s/m",
             about: "alpha: the share of the speed that a hit loses, per m/s",
-            range: Range::NotNegative,
+            range: LawRange::NotNegative,
             default: "2.7",
         },
     ],

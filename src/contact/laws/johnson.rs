@@ -1,10 +1,10 @@
 //! Johnson's law of a journal in a bearing.
 
 use super::conformal::{line_stiffness, logarithmic};
-use super::kind::{CONFORMAL, Kind, Losses};
+use super::kind::{CONFORMAL, LawKind, Losses};
 
 /// `δ = F/(π E* L) (ln(4 π E* L ΔR/F) − 1)`, so `D = 4 π E* L ΔR/e`.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "johnson",
     summary: "line contact of cylinders of nearly the same radius, by Johnson",
     equation: "d = F/(pi E* L) (ln(4 pi E* L dR/F) - 1), solved for F",

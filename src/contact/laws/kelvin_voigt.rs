@@ -2,10 +2,11 @@
 
 use super::damped::Damped;
 use super::kind::{
-    Kind, Losses, POISSON_RATIO, Parameter, Range, STIFFNESS, STIFFNESS_FORM, YOUNGS_MODULUS,
+    LawKind, LawParameter, LawRange, Losses, POISSON_RATIO, STIFFNESS, STIFFNESS_FORM,
+    YOUNGS_MODULUS,
 };
 use super::loss::Loss;
-use super::spring::Power;
+use super::spring::PowerSpring;
 use std::sync::Arc;
 
 /// Depth in m at which the linear spring has taken up as much work as Hertz', where no stiffness is given: that of
@@ -18,7 +19,7 @@ const DAMPING: f64 = 243.0;
 
 /// `F = K δ + c δ̇`, at least zero. A free mass m leaves when the force is zero, with the share
 /// `exp(−β (π − arctan(2 β √(1 − β²)/(2 β² − 1)))/√(1 − β²))`, `β = c/(2 √(K m))`, of its speed.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "kelvin-voigt",
     summary: "a linear spring and a linear damper side by side; the force jumps when surfaces touch",
     equation: "max(0, K d + damping rate)",
@@ -29,17 +30,17 @@ pub(super) static KIND: Kind = Kind {
         YOUNGS_MODULUS,
         POISSON_RATIO,
         STIFFNESS_FORM,
-        Parameter {
+        LawParameter {
             unit: "N/m",
             about: "stiffness K of the linear spring, in place of the one that takes up as much work as Hertz' at \
                     10 um",
             ..STIFFNESS
         },
-        Parameter {
+        LawParameter {
             name: "damping",
             unit: "N s/m",
             about: "damping c",
-            range: Range::NotNegative,
+            range: LawRange::NotNegative,
             default: "243",
         },
     ],
@@ -48,6 +49,6 @@ pub(super) static KIND: Kind = Kind {
         // ½ k d² = K d^2.5/2.5.
         let stiffness = given.stiffness.unwrap_or_else(|| 0.8 * given.hertz() * EQUAL_WORK.sqrt());
         let loss = Loss::Viscous(given.damping.unwrap_or(DAMPING));
-        Arc::new(Damped { spring: Power { stiffness, exponent: 1.0 }, loss })
+        Arc::new(Damped { spring: PowerSpring { stiffness, exponent: 1.0 }, loss })
     },
 };

@@ -2,13 +2,13 @@
 
 use super::damped::Damped;
 use super::loss::Loss;
-use super::spring::Power;
+use super::spring::PowerSpring;
 use crate::contact::{ForceLaw, Material, StiffnessForm, hertz_stiffness};
 use std::sync::Arc;
 
 /// A normal force law by name.
 #[derive(Debug)]
-pub struct Kind {
+pub struct LawKind {
     /// Name in scenarios.
     pub name: &'static str,
     /// What it is, in a sentence.
@@ -20,22 +20,22 @@ pub struct Kind {
     /// Where it holds.
     pub validity: &'static str,
     /// Its parameters: the keys of `[contact]`, and of a joint, that mean something to it.
-    pub parameters: &'static [Parameter],
+    pub parameters: &'static [LawParameter],
     /// How it loses energy.
     pub losses: Losses,
     /// The law with its parameters.
     pub build: fn(&Given) -> Arc<dyn ForceLaw>,
 }
 
-impl PartialEq for Kind {
+impl PartialEq for LawKind {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
     }
 }
 
-impl Eq for Kind {}
+impl Eq for LawKind {}
 
-impl Kind {
+impl LawKind {
     /// Whether a key of `[contact]` means something to this law.
     pub fn takes(&self, key: &str) -> bool {
         self.parameters.iter().any(|parameter| parameter.name == key)
@@ -57,7 +57,7 @@ pub enum Losses {
 
 /// A parameter of a law.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameter {
+pub struct LawParameter {
     /// The key.
     pub name: &'static str,
     /// Unit in words; empty for a pure number or a word.
@@ -65,14 +65,14 @@ pub struct Parameter {
     /// What it means.
     pub about: &'static str,
     /// What may be written.
-    pub range: Range,
+    pub range: LawRange,
     /// What holds where nothing is written, in words.
     pub default: &'static str,
 }
 
 /// What a parameter may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Range {
+pub enum LawRange {
     /// Above 0.
     Positive,
     /// 0 or more.
@@ -87,28 +87,28 @@ pub enum Range {
     Choice(&'static str),
 }
 
-impl Range {
+impl LawRange {
     /// Whether a number is in it.
     pub fn holds(self, value: f64) -> bool {
         match self {
-            Range::Positive => value > 0.0,
-            Range::NotNegative => value >= 0.0,
-            Range::Share => value > 0.0 && value <= 1.0,
-            Range::Poisson => (0.0..0.5).contains(&value),
-            Range::FromOne => value >= 1.0,
-            Range::Choice(_) => false,
+            LawRange::Positive => value > 0.0,
+            LawRange::NotNegative => value >= 0.0,
+            LawRange::Share => value > 0.0 && value <= 1.0,
+            LawRange::Poisson => (0.0..0.5).contains(&value),
+            LawRange::FromOne => value >= 1.0,
+            LawRange::Choice(_) => false,
         }
     }
 
     /// What may be written, in words.
     pub fn in_words(self) -> &'static str {
         match self {
-            Range::Positive => "above 0",
-            Range::NotNegative => "0 or more",
-            Range::Share => "above 0, at most 1",
-            Range::Poisson => "from 0 to below 0.5",
-            Range::FromOne => "1 or more",
-            Range::Choice(words) => words,
+            LawRange::Positive => "above 0",
+            LawRange::NotNegative => "0 or more",
+            LawRange::Share => "above 0, at most 1",
+            LawRange::Poisson => "from 0 to below 0.5",
+            LawRange::FromOne => "1 or more",
+            LawRange::Choice(words) => words,
         }
     }
 }
@@ -205,67 +205,67 @@ impl Given {
 
     /// `K δⁿ` with a loss.
     pub fn power(&self, loss: Loss) -> Arc<dyn ForceLaw> {
-        let spring = Power { stiffness: self.stiffness(), exponent: self.exponent };
+        let spring = PowerSpring { stiffness: self.stiffness(), exponent: self.exponent };
         Arc::new(Damped { spring, loss })
     }
 }
 
 /// E of both surfaces.
-pub(super) const YOUNGS_MODULUS: Parameter = Parameter {
+pub(super) const YOUNGS_MODULUS: LawParameter = LawParameter {
     name: "youngs_modulus",
     unit: "Pa",
     about: "Young's modulus E of both surfaces",
-    range: Range::Positive,
+    range: LawRange::Positive,
     default: "73e9",
 };
 
 /// ν of both surfaces.
-pub(super) const POISSON_RATIO: Parameter = Parameter {
+pub(super) const POISSON_RATIO: LawParameter = LawParameter {
     name: "poisson_ratio",
     unit: "",
     about: "Poisson's ratio of both surfaces",
-    range: Range::Poisson,
+    range: LawRange::Poisson,
     default: "0.3",
 };
 
 /// How K follows from the radii.
-pub(super) const STIFFNESS_FORM: Parameter = Parameter {
+pub(super) const STIFFNESS_FORM: LawParameter = LawParameter {
     name: "stiffness_form",
     unit: "",
     about: "how K follows from the radii: with their sum (printed) or their difference (conformal)",
-    range: Range::Choice("\"printed\" or \"conformal\""),
+    range: LawRange::Choice("\"printed\" or \"conformal\""),
     default: "\"printed\"",
 };
 
 /// K itself.
-pub(super) const STIFFNESS: Parameter = Parameter {
+pub(super) const STIFFNESS: LawParameter = LawParameter {
     name: "stiffness",
     unit: "N/m^n",
     about: "stiffness K, in place of the one from E, Poisson's ratio and the radii",
-    range: Range::Positive,
+    range: LawRange::Positive,
     default: "from these",
 };
 
 /// n.
-pub(super) const EXPONENT: Parameter = Parameter {
+pub(super) const EXPONENT: LawParameter = LawParameter {
     name: "exponent",
     unit: "",
     about: "exponent n of the penetration",
-    range: Range::FromOne,
+    range: LawRange::FromOne,
     default: "1.5",
 };
 
 /// e of most laws.
-const RESTITUTION_KEY: Parameter = Parameter {
+const RESTITUTION_KEY: LawParameter = LawParameter {
     name: "restitution",
     unit: "",
     about: "coefficient of restitution e: the share of the impact speed that the law is asked to return",
-    range: Range::Share,
+    range: LawRange::Share,
     default: "0.73",
 };
 
 /// e of the conformal laws, which their authors give without damping.
-const CONFORMAL_RESTITUTION: Parameter = Parameter {
+const CONFORMAL_RESTITUTION: LawParameter = LawParameter {
     about: "coefficient of restitution e of the factor 1 + 3(1 - e^2)/4 rate/impact_speed after Lankarani and \
             Nikravesh; 1 is the elastic law as its authors give it",
     default: "1",
@@ -273,22 +273,22 @@ const CONFORMAL_RESTITUTION: Parameter = Parameter {
 };
 
 /// L.
-const LENGTH: Parameter = Parameter {
+const LENGTH: LawParameter = LawParameter {
     name: "length",
     unit: "m",
     about: "axial length L of the bearing",
-    range: Range::Positive,
+    range: LawRange::Positive,
     default: "its diameter",
 };
 
 /// Parameters of the conformal laws.
-pub(super) const CONFORMAL: &[Parameter] =
+pub(super) const CONFORMAL: &[LawParameter] =
     &[YOUNGS_MODULUS, POISSON_RATIO, LENGTH, CONFORMAL_RESTITUTION];
 
 /// Parameters of elastic laws after Hertz.
-pub(super) const ELASTIC: &[Parameter] =
+pub(super) const ELASTIC: &[LawParameter] =
     &[YOUNGS_MODULUS, POISSON_RATIO, STIFFNESS_FORM, STIFFNESS, EXPONENT];
 
 /// The same of laws by a coefficient of restitution.
-pub(super) const BY_RESTITUTION: &[Parameter] =
+pub(super) const BY_RESTITUTION: &[LawParameter] =
     &[YOUNGS_MODULUS, POISSON_RATIO, STIFFNESS_FORM, STIFFNESS, EXPONENT, RESTITUTION_KEY];

@@ -1,11 +1,11 @@
 //! Lankarani and Nikravesh's law.
 
-use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::kind::{BY_RESTITUTION, LawKind, Losses};
 use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 3 (1 − e²)/4`: the loss of an impact set equal to the work of a hysteresis that follows the
 /// elastic path both ways.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "lankarani-nikravesh",
     summary: "Hertz with a hysteresis that loses what an impact with restitution e loses, if little is lost",
     equation: "K d^n (1 + h rate/impact_speed), h = 3 (1 - e^2)/4",

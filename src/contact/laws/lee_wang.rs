@@ -1,10 +1,10 @@
 //! Lee and Wang's law.
 
-use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::kind::{BY_RESTITUTION, LawKind, Losses};
 use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 3 (1 − e)/4`.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "lee-wang",
     summary: "Hertz with half the hysteresis of Hunt and Crossley",
     equation: "K d^n (1 + h rate/impact_speed), h = 3 (1 - e)/4",

@@ -1,8 +1,8 @@
 //! The law of Liu, Zhang and Yang for cylindrical joints.
 
 use super::conformal::{dissipative, line_stiffness};
-use super::kind::{CONFORMAL, Kind, Losses};
-use super::spring::Spring;
+use super::kind::{CONFORMAL, LawKind, Losses};
+use super::spring::ElasticForce;
 
 /// `F = ½ π E* L δ √(δ/(2 (ΔR + δ)))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ struct Winkler {
     radial: f64,
 }
 
-impl Spring for Winkler {
+impl ElasticForce for Winkler {
     fn force(&self, penetration: f64) -> f64 {
         let width = (penetration / (2.0 * (self.radial + penetration))).sqrt();
         0.5 * self.stiffness * penetration * width
@@ -21,7 +21,7 @@ impl Spring for Winkler {
 }
 
 /// See [`Winkler`].
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "liu",
     summary: "a journal on an elastic bed, by Liu et al.: it knows clearance and depth alike, so that it holds for small \
               clearances, too",

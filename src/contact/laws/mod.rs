@@ -1,6 +1,6 @@
 //! The normal force laws of the literature, one file each; [`ALL`] is their list.
 //!
-//! Most are a [`spring`](spring::Spring) with a [`loss`](Loss), so that a law's file says its equation,
+//! Most are a [`spring`](spring::ElasticForce) with a [`loss`](Loss), so that a law's file says its equation,
 //! its source, where it holds, and the numbers that it puts into them. Symbols: δ penetration, δ̇ its rate,
 //! δ̇⁻ the impact speed (`rate`, `impact_speed` in texts), e the coefficient of restitution.
 
@@ -30,12 +30,12 @@ mod zhiying_qishao;
 pub use damped::Damped;
 pub use flores::factor as dissipation;
 pub use hertz_step::HERTZ_STEP;
-pub use kind::{Given, Kind, Losses, Parameter, RESTITUTION, Range};
+pub use kind::{Given, LawKind, LawParameter, LawRange, Losses, RESTITUTION};
 pub use loss::Loss;
-pub use spring::{Logarithmic, Power, Spring};
+pub use spring::{ElasticForce, Logarithmic, PowerSpring};
 
 /// All laws, in the order in which they are listed.
-pub const ALL: [&Kind; 17] = [
+pub const ALL: [&LawKind; 17] = [
     &HERTZ_STEP,
     &hertz::KIND,
     &kelvin_voigt::KIND,
@@ -56,7 +56,7 @@ pub const ALL: [&Kind; 17] = [
 ];
 
 /// The law of a name.
-pub fn named(name: &str) -> Option<&'static Kind> {
+pub fn named(name: &str) -> Option<&'static LawKind> {
     ALL.into_iter().find(|kind| kind.name == name)
 }
 

@@ -20,7 +20,7 @@ const HALVINGS: usize = 60;
 const HIT_POINTS: usize = 32;
 
 /// An elastic force that depends on the penetration alone and rises with it from zero.
-pub trait Spring: Debug + Clone + Send + Sync + 'static {
+pub trait ElasticForce: Debug + Clone + Send + Sync + 'static {
     /// Force in N at a penetration δ > 0 in m.
     fn force(&self, penetration: f64) -> f64;
 
@@ -93,14 +93,14 @@ fn rising(function: impl Fn(f64) -> f64, value: f64) -> f64 {
 
 /// `F = K δⁿ`: Hertz for n = 1.5, a linear spring for n = 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Power {
+pub struct PowerSpring {
     /// Stiffness K in N/mⁿ.
     pub stiffness: f64,
     /// Exponent n.
     pub exponent: f64,
 }
 
-impl Spring for Power {
+impl ElasticForce for PowerSpring {
     fn force(&self, penetration: f64) -> f64 {
         power_force(self.stiffness, self.exponent, penetration)
     }
@@ -143,7 +143,7 @@ const CONFORMING: f64 = 0.1;
 /// Most steps of Newton's method for u; four are enough.
 const NEWTON: usize = 12;
 
-impl Spring for Logarithmic {
+impl ElasticForce for Logarithmic {
     fn force(&self, penetration: f64) -> f64 {
         let y = penetration / (self.compliance * self.scale);
         let end = (-END).exp();
@@ -179,10 +179,10 @@ mod tests {
 
     #[test]
     fn energy_is_the_integral_of_the_force() {
-        let power = Power { stiffness: 3.7e9, exponent: 1.5 };
+        let power = PowerSpring { stiffness: 3.7e9, exponent: 1.5 };
         #[derive(Clone, Debug)]
-        struct Plain(Power);
-        impl Spring for Plain {
+        struct Plain(PowerSpring);
+        impl ElasticForce for Plain {
             fn force(&self, penetration: f64) -> f64 {
                 self.0.force(penetration)
             }

@@ -86,7 +86,7 @@ fn resting_penetration_bears_the_force() {
 #[test]
 fn defaults_return_about_what_the_default_law_returns() {
     let returned =
-        |kind: &Kind| impact(&*(kind.build)(&Given::default()), MASS, SPEED).rebound / SPEED;
+        |kind: &LawKind| impact(&*(kind.build)(&Given::default()), MASS, SPEED).rebound / SPEED;
     assert!((returned(&HERTZ_STEP) - RESTITUTION).abs() < 0.01, "{}", returned(&HERTZ_STEP));
     for kind in [&kelvin_voigt::KIND, &hunt_crossley::KIND] {
         let e = returned(kind);

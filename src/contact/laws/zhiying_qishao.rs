@@ -1,10 +1,10 @@
 //! Qin Zhiying and Lu Qishao's law.
 
-use super::kind::{BY_RESTITUTION, Kind, Losses};
+use super::kind::{BY_RESTITUTION, LawKind, Losses};
 use super::loss::Loss;
 
 /// `F = K δⁿ (1 + h δ̇/δ̇⁻)`, `h = 3 (1 − e²) e^(2(1−e))/4`: Lankarani and Nikravesh's, corrected by an exponential.
-pub(super) static KIND: Kind = Kind {
+pub(super) static KIND: LawKind = LawKind {
     name: "zhiying-qishao",
     summary: "Lankarani and Nikravesh's law with an exponential correction for larger losses",
     equation: "K d^n (1 + h rate/impact_speed), h = 3 (1 - e^2) exp(2 (1 - e))/4",

@@ -7,7 +7,7 @@
 
 use super::Dynamics;
 use super::pairs::Pair;
-use crate::mechanism::telescope::{PairMotion, Telescope};
+use crate::mechanism::equations::telescope::{PairMotion, Telescope};
 use crate::mechanism::{BodyState, Evaluation, Mechanism, Situation, turn};
 use nalgebra::{Vector2, Vector3};
 

@@ -2,7 +2,7 @@
 
 use super::Dynamics;
 use super::contacts::add;
-use crate::mechanism::telescope::Telescope;
+use crate::mechanism::equations::telescope::Telescope;
 use crate::mechanism::{BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, angle_near};
 use nalgebra::Vector3;
 

@@ -1,6 +1,6 @@
 //! Rigid joints that are solved together.
 
-use crate::mechanism::constraints::Rigid;
+use crate::mechanism::equations::constraints::Rigid;
 
 /// How much closer than usual to a lower rank a group's rows are where it counts as nearly singular: a
 /// thousandth of a radian away from the singular pose of a common linkage.
@@ -8,14 +8,14 @@ const NEARLY_SINGULAR: f64 = 1e-6;
 
 /// Rigid joints that are solved together.
 #[derive(Clone, Debug)]
-pub(super) struct Group {
+pub(super) struct JointGroup {
     pub joints: Vec<Rigid>,
     /// Highest rank of the rows so far, and the farthest that they were from a lower one.
     rank: usize,
     weakest: f64,
 }
 
-impl Group {
+impl JointGroup {
     pub fn new(joints: Vec<Rigid>) -> Self {
         Self { joints, rank: 0, weakest: 0.0 }
     }

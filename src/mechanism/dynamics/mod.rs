@@ -15,10 +15,10 @@ mod solved;
 
 use self::contacts::{Flight, Touched, reached, touch, touches};
 use self::coordinates::PairStart;
-use self::groups::Group;
+use self::groups::JointGroup;
 use self::pairs::{Pair, PlainServo};
-use super::constraints::{Constraints, Rigid, groups};
-use super::telescope::{Slideway, Telescope};
+use super::equations::constraints::{Constraints, Rigid, groups};
+use super::equations::telescope::{Slideway, Telescope};
 use super::{
     BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic, Situation,
     angle_near,
@@ -39,7 +39,7 @@ pub struct Dynamics {
     /// Joints with clearance.
     flights: Vec<Flight>,
     /// The other rigid joints, group by group.
-    groups: Vec<Group>,
+    groups: Vec<JointGroup>,
     /// Bodies that none of these holds.
     unpaired: Vec<usize>,
     /// All drives that push, where each is a plain servo on one of the pairs.
@@ -72,12 +72,12 @@ pub struct Dynamics {
 }
 
 /// Prismatic joints that alone hold two moving bodies, and the other groups of bodies that rigid joints hold together.
-fn pairs_and_groups(mechanism: &Mechanism) -> (Vec<Pair>, Vec<Group>) {
+fn pairs_and_groups(mechanism: &Mechanism) -> (Vec<Pair>, Vec<JointGroup>) {
     let (mut pairs, mut others) = (Vec::new(), Vec::new());
     for group in groups(mechanism) {
         match Pair::of(mechanism, &group) {
             Some(pair) => pairs.push(pair),
-            None => others.push(Group::new(group)),
+            None => others.push(JointGroup::new(group)),
         }
     }
     (pairs, others)

@@ -1,7 +1,7 @@
 //! Pairs of bodies on one slide, solved in closed form.
 
-use crate::mechanism::constraints::Rigid;
-use crate::mechanism::telescope::{PairMasses, PairMotion, Slideway, Telescope};
+use crate::mechanism::equations::constraints::Rigid;
+use crate::mechanism::equations::telescope::{PairMasses, PairMotion, Slideway, Telescope};
 use crate::mechanism::{
     Actuator, BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, Prismatic,
 };

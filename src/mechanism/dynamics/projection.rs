@@ -1,8 +1,8 @@
 //! Bodies put back to where rigid joints and prescribed drives hold them.
 
 use super::{Dynamics, Rigid};
-use crate::mechanism::rows::{Row, angle_row, prismatic_rows, revolute_rows};
-use crate::mechanism::telescope::Telescope;
+use crate::mechanism::equations::rows::{Row, angle_row, prismatic_rows, revolute_rows};
+use crate::mechanism::equations::telescope::Telescope;
 use crate::mechanism::{BodyState, Command, Evaluation, Mechanism, angle_near};
 use nalgebra::Vector3;
 

@@ -1,8 +1,8 @@
 //! The accelerations and joint forces of rigid joints that are solved together.
 
 use super::Dynamics;
-use crate::mechanism::constraints::{Constraints, Rigid};
-use crate::mechanism::rows::{angle_row, prismatic_rows, revolute_rows};
+use crate::mechanism::equations::constraints::{Constraints, Rigid};
+use crate::mechanism::equations::rows::{angle_row, prismatic_rows, revolute_rows};
 use crate::mechanism::{BodyState, Evaluation, Mechanism};
 use nalgebra::Vector2;
 

@@ -55,7 +55,7 @@ fn telescope_and_rows_agree() {
         assert_eq!(general.telescopes.len(), 1);
         general.telescopes.clear();
         (general.passive, general.unpaired) = (vec![0], vec![0, 1]);
-        general.groups.push(Group::new(vec![Rigid::Prismatic(0)]));
+        general.groups.push(JointGroup::new(vec![Rigid::Prismatic(0)]));
         let [a, b] = [&mut closed, &mut general].map(|dynamics| {
             let mut now = Evaluation::new(&mechanism);
             dynamics.forces(&mechanism, 0.0, &states, &mut now);

@@ -2,7 +2,7 @@
 
 use super::parts::{bar, corner, described, direction, drive, ground, revolute};
 use crate::model::motion;
-use crate::scenario::{Described, FiveBar, Output, Problem, Scenario, Target};
+use crate::scenario::{Described, FiveBar, MotionTarget, Output, Problem, Scenario};
 
 /// The motion is that of E; both elbows point outward.
 pub(super) fn expand(scenario: &Scenario, m: &FiveBar) -> Result<Scenario, Problem> {
@@ -47,6 +47,6 @@ pub(super) fn expand(scenario: &Scenario, m: &FiveBar) -> Result<Scenario, Probl
         }],
         ..Described::default()
     };
-    let target = Some(Target::Point("left rod.E".to_owned()));
+    let target = Some(MotionTarget::Point("left rod.E".to_owned()));
     Ok(described(scenario, machine, scenario.motion.clone(), target))
 }

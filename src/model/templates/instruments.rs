@@ -1,6 +1,6 @@
 //! `[sensors]` and `[columns]` of a template, which stand for a `[[sensor]]` of each column of its recordings.
 
-use crate::measure::log::Source;
+use crate::measure::log::ColumnSource;
 use crate::mechanism::JointIndex;
 use crate::scenario::{Body, DriveMode, Mechanism, Problem, Quantity, Scenario, Sensor, Sensors};
 
@@ -14,7 +14,7 @@ pub(super) fn of(scenario: &Scenario, output: &mut Body, joints: &[&str]) -> Vec
     let Some(instruments) = &scenario.sensors else { return Vec::new() };
     let Sensors { pose_std, angle_std, length_resolution, force_std, force_lowpass } = *instruments;
     let sensor =
-        |column: String, quantity, of: &str| exact(Source::new(&column, 1.0), quantity, of);
+        |column: String, quantity, of: &str| exact(ColumnSource::new(&column, 1.0), quantity, of);
     let columns = |quantity, name: fn(usize) -> String| {
         let joints = joints.iter().enumerate();
         joints.map(move |(i, joint)| sensor(name(i + 1), quantity, joint)).collect::<Vec<Sensor>>()
@@ -54,7 +54,7 @@ pub(super) fn named(
     }
     let sensor = |(name, quantity, of): &(&str, Quantity, &str)| {
         let source = columns.and_then(|columns| columns.source(name));
-        exact(source.unwrap_or_else(|| Source::new(name, 1.0)), *quantity, of)
+        exact(source.unwrap_or_else(|| ColumnSource::new(name, 1.0)), *quantity, of)
     };
     Ok(known.iter().map(sensor).collect())
 }
@@ -77,7 +77,7 @@ const ACCELERATION_LOWPASS: f64 = 300.0;
 
 /// A sensor of a quantity, of a revolute joint where it `turns`, with the noise of a good laboratory; a command is exact.
 pub fn laboratory(quantity: Quantity, turns: bool, column: &str, of: &str) -> Sensor {
-    let bare = exact(Source::new(column, 1.0), quantity, of);
+    let bare = exact(ColumnSource::new(column, 1.0), quantity, of);
     let Sensors { pose_std, angle_std, length_resolution, force_std, force_lowpass } = LABORATORY;
     match quantity {
         Quantity::X | Quantity::Y => Sensor { std: pose_std, ..bare },
@@ -163,7 +163,7 @@ fn all_sensors(mechanism: &crate::mechanism::Mechanism) -> Vec<Sensor> {
 }
 
 /// A sensor of which no noise is declared.
-fn exact(Source { column, scale }: Source, quantity: Quantity, of: &str) -> Sensor {
+fn exact(ColumnSource { column, scale }: ColumnSource, quantity: Quantity, of: &str) -> Sensor {
     let of = of.to_owned();
     Sensor { column, quantity, of, axis: None, scale, std: 0.0, resolution: 0.0, lowpass: 0.0 }
 }

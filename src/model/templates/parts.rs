@@ -98,7 +98,7 @@ pub(super) fn described(
     scenario: &Scenario,
     described: Described,
     motion: Motion,
-    target: Option<crate::scenario::Target>,
+    target: Option<crate::scenario::MotionTarget>,
 ) -> Scenario {
     let mut expanded = scenario.with_described(described, motion, target);
     expanded.columns = scenario.columns.as_ref().and_then(Columns::time_alone);

@@ -2,7 +2,9 @@
 
 use super::parts::{body, described, ground, plain_output};
 use crate::model::motion;
-use crate::scenario::{Body, Described, Joint, JointDrive, Problem, Scenario, Sensor, Target};
+use crate::scenario::{
+    Body, Described, Joint, JointDrive, MotionTarget, Problem, Scenario, Sensor,
+};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -53,6 +55,6 @@ pub(super) fn on_three_legs(
     let outputs = plain_output("platform");
     let machine =
         Described { ground, bodies, joints, drives, outputs, sensors, ..Described::default() };
-    let target = Some(Target::Body("platform".to_owned()));
+    let target = Some(MotionTarget::Body("platform".to_owned()));
     described(scenario, machine, scenario.motion.clone(), target)
 }

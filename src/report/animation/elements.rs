@@ -1,20 +1,20 @@
 //! The elements of a picture that moves: curves, attributes and transforms that take a value at each
 //! frame.
 
-use crate::measure::frames::Frame;
+use crate::measure::frames::FilmFrame;
 use crate::report::scene::{Outline, Scene};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// Frames of a scene to be played.
-pub(super) struct Film<'a> {
+pub(super) struct SceneFilm<'a> {
     pub scene: &'a Scene,
-    pub frames: &'a [&'a Frame],
+    pub frames: &'a [&'a FilmFrame],
     /// Length on the viewer's clock.
     pub seconds: f64,
 }
 
-impl Film<'_> {
+impl SceneFilm<'_> {
     /// A curve that appears as time goes by.
     pub fn revealed(&self, svg: &mut String, class: &str, points: &[[f64; 2]]) -> std::fmt::Result {
         let mut lengths = vec![0.0];
@@ -40,7 +40,12 @@ impl Film<'_> {
     }
 
     /// A transform that takes a value at each frame, straight from one to the next.
-    pub fn turned(&self, kind: &str, additive: &str, value: impl Fn(&Frame) -> String) -> String {
+    pub fn turned(
+        &self,
+        kind: &str,
+        additive: &str,
+        value: impl Fn(&FilmFrame) -> String,
+    ) -> String {
         let values: Vec<String> = self.frames.iter().map(|f| value(f)).collect();
         self.transform(kind, additive, "linear", &values)
     }

@@ -6,8 +6,8 @@ mod elements;
 use super::page::escaped;
 use super::quantity::number;
 use super::scene::Scene;
-use crate::measure::frames::{Frame, Frames};
-use elements::{Film, outline, pair, short, unwrapped};
+use crate::measure::frames::{FilmFrame, Frames};
+use elements::{SceneFilm, outline, pair, short, unwrapped};
 use std::fmt::Write;
 
 /// Seconds on the viewer's clock for each second shown.
@@ -34,7 +34,7 @@ const STYLE: &str = "text{font:600 15px system-ui,sans-serif;fill:#22262b}.s{fon
 
 /// Draws the frames as an SVG that plays them, 100 times slower than they were.
 pub fn animation_svg(scene: &Scene, frames: &Frames) -> String {
-    let frames: Vec<&Frame> = frames.all().collect();
+    let frames: Vec<&FilmFrame> = frames.all().collect();
     let joints: Vec<usize> =
         (0..scene.joints.len()).filter(|i| scene.joints[*i].clearance_m.is_some()).collect();
     let rows = joints.len().div_ceil(2).max(3) as f64;
@@ -49,22 +49,22 @@ pub fn animation_svg(scene: &Scene, frames: &Frames) -> String {
     if let (Some(first), Some(last)) = (frames.first(), frames.last())
         && last.t > first.t
     {
-        let film = Film { scene, frames: &frames, seconds: SLOWNESS * (last.t - first.t) };
-        let view = View::new(scene, &frames, bottom);
+        let film = SceneFilm { scene, frames: &frames, seconds: SLOWNESS * (last.t - first.t) };
+        let view = PixelView::new(scene, &frames, bottom);
         film.draw(&mut svg, &view, &joints, bottom).expect("writing to a string cannot fail");
     }
     svg + "</svg>\n"
 }
 
 /// Metres to pixels.
-struct View {
+struct PixelView {
     scale: f64,
     origin: [f64; 2],
 }
 
-impl View {
+impl PixelView {
     /// The whole mechanism, at all times, between the columns.
-    fn new(scene: &Scene, frames: &[&Frame], bottom: f64) -> Self {
+    fn new(scene: &Scene, frames: &[&FilmFrame], bottom: f64) -> Self {
         let mut points: Vec<[f64; 2]> =
             scene.ground.iter().flat_map(|o| &o.points).copied().collect();
         for frame in frames {
@@ -91,18 +91,18 @@ impl View {
 }
 
 /// A point of a body, or of the ground, in the world.
-fn world(frame: &Frame, body: Option<usize>, [u, v]: [f64; 2]) -> [f64; 2] {
+fn world(frame: &FilmFrame, body: Option<usize>, [u, v]: [f64; 2]) -> [f64; 2] {
     let Some(i) = body else { return [u, v] };
     let [x, y, angle] = [0, 1, 2].map(|k| f64::from(frame.values[3 * i + k]));
     let (sin, cos) = angle.sin_cos();
     [x + cos * u - sin * v, y + sin * u + cos * v]
 }
 
-impl Film<'_> {
+impl SceneFilm<'_> {
     fn draw(
         &self,
         svg: &mut String,
-        view: &View,
+        view: &PixelView,
         joints: &[usize],
         bottom: f64,
     ) -> Result<(), std::fmt::Error> {
@@ -112,7 +112,7 @@ impl Film<'_> {
         svg.push_str("</g>\n");
         for (i, body) in scene.bodies.iter().enumerate() {
             svg.push_str("<g>");
-            let place = |f: &Frame| pair(view.place(world(f, Some(i), [0.0, 0.0])), 2);
+            let place = |f: &FilmFrame| pair(view.place(world(f, Some(i), [0.0, 0.0])), 2);
             svg.push_str(&self.turned("translate", "replace", place));
             let angles = unwrapped(self.frames.iter().map(|f| f64::from(f.values[3 * i + 2])));
             let angles: Vec<String> = angles.iter().map(|a| short(-a.to_degrees(), 3)).collect();
@@ -142,7 +142,7 @@ impl Film<'_> {
             }
         }
         for joint in &scene.joints {
-            let place = |f: &Frame| pair(view.place(world(f, joint.body, joint.point)), 1);
+            let place = |f: &FilmFrame| pair(view.place(world(f, joint.body, joint.point)), 1);
             let radius = (view.scale * joint.radius_m).max(5.0);
             write!(svg, "<circle class=\"b\" r=\"{radius:.1}\">")?;
             svg.push_str(&self.turned("translate", "replace", place));
@@ -174,7 +174,7 @@ impl Film<'_> {
     fn joint(
         &self,
         svg: &mut String,
-        view: &View,
+        view: &PixelView,
         i: usize,
         [x, y]: [f64; 2],
         strongest: f64,
@@ -182,7 +182,7 @@ impl Film<'_> {
         let joint = &self.scene.joints[i];
         let clearance = joint.clearance_m.unwrap_or(1.0);
         let column = 3 * self.scene.bodies.len() + 2 * i;
-        let eccentricity = |f: &Frame| {
+        let eccentricity = |f: &FilmFrame| {
             [f.values[column], -f.values[column + 1]].map(|e| PLAY * f64::from(e) / clearance)
         };
         let ends: Vec<[f64; 2]> =
@@ -213,7 +213,7 @@ impl Film<'_> {
 
         // An arrow of length 1 from the ring inwards, turned, stretched and faded.
         let marks = self.marks(i, &orbit, strongest);
-        let list = |f: &dyn Fn(&Mark) -> String| marks.iter().map(f).collect::<Vec<_>>();
+        let list = |f: &dyn Fn(&HitMark) -> String| marks.iter().map(f).collect::<Vec<_>>();
         svg.push_str("<g class=\"a\">");
         svg.push_str(&self.transform(
             "rotate",
@@ -234,15 +234,15 @@ impl Film<'_> {
     }
 
     /// What the latest hit has left, frame by frame: a stronger one, or a fresher one, takes its place.
-    fn marks(&self, joint: usize, orbit: &[[f64; 2]], strongest: f64) -> Vec<Mark> {
-        let mut mark = Mark::default();
+    fn marks(&self, joint: usize, orbit: &[[f64; 2]], strongest: f64) -> Vec<HitMark> {
+        let mut mark = HitMark::default();
         let mut before = self.frames[0].t;
-        let next = |(frame, place): (&&Frame, &[f64; 2])| {
+        let next = |(frame, place): (&&FilmFrame, &[f64; 2])| {
             mark.left *= (-SLOWNESS * (frame.t - before) / FADE).exp();
             before = frame.t;
             let size = (f64::from(frame.extremes[joint][1]) / strongest).max(0.0).sqrt();
             if size > mark.size * mark.left {
-                mark = Mark { angle: place[1].atan2(place[0]).to_degrees(), size, left: 1.0 };
+                mark = HitMark { angle: place[1].atan2(place[0]).to_degrees(), size, left: 1.0 };
             }
             mark
         };
@@ -252,7 +252,7 @@ impl Film<'_> {
 
 /// What a hit leaves to see.
 #[derive(Clone, Copy, Default)]
-struct Mark {
+struct HitMark {
     /// Direction of the contact, in degrees clockwise from +x as the screen has it.
     angle: f64,
     /// Square root of its force, as a share of the strongest's.
@@ -304,7 +304,7 @@ mod tests {
         scene.bodies.push(crate::report::scene::SceneBody { name: "rod".into(), outlines: vec![] });
         for (t, e) in [(0.0, [0.0, 0.0]), (0.01, [1e-3, 0.0]), (0.02, [0.0, 1e-3])] {
             let values = vec![0.1, 0.2, 0.3, e[0], e[1], 0.0, 0.0];
-            frames.push(Frame { t, values, extremes: vec![[0.0, 4.0]] });
+            frames.push(FilmFrame { t, values, extremes: vec![[0.0, 4.0]] });
         }
         let svg = animation_svg(&scene, &frames);
         assert!(svg.contains("values=\"0 0;48 0;0 -48\""), "{svg}");

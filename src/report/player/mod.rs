@@ -63,7 +63,7 @@ fn base64(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::frames::Frame;
+    use crate::measure::frames::FilmFrame;
 
     #[test]
     fn base64_is_that_of_the_standard() {
@@ -87,7 +87,7 @@ mod tests {
             charts: vec![],
         };
         let mut frames = Frames::new(2);
-        frames.push(Frame { t: 1.0, values: vec![2.0], extremes: vec![] });
+        frames.push(FilmFrame { t: 1.0, values: vec![2.0], extremes: vec![] });
         let html = player_html(&scene, &frames);
         assert!(!html.contains("<script>alert"));
         assert!(html.contains("\"frames\":\"AACAPwAAAEA=\""), "1.0 and 2.0");

@@ -1,6 +1,6 @@
 //! `[columns]`: which column of a recording is which quantity, and in which unit.
 
-use crate::measure::log::Source;
+use crate::measure::log::ColumnSource;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -17,13 +17,13 @@ pub struct Columns(BTreeMap<String, Column>);
 #[serde(untagged, expecting = "a column's name, or a table with column and scale")]
 enum Column {
     Name(String),
-    Scaled(Source),
+    Scaled(ColumnSource),
 }
 
 impl Column {
-    fn source(&self) -> Source {
+    fn source(&self) -> ColumnSource {
         match self {
-            Column::Name(column) => Source::new(column, 1.0),
+            Column::Name(column) => ColumnSource::new(column, 1.0),
             Column::Scaled(source) => source.clone(),
         }
     }
@@ -34,7 +34,7 @@ const TIME: &str = "t";
 
 impl Columns {
     /// Where a quantity stands, by its name; none where nothing is said of it.
-    pub fn source(&self, quantity: &str) -> Option<Source> {
+    pub fn source(&self, quantity: &str) -> Option<ColumnSource> {
         self.0.get(quantity).map(Column::source)
     }
 

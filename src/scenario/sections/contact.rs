@@ -1,6 +1,6 @@
 //! `[contact]`: the force between a journal and its bearing.
 
-use crate::contact::laws::{self, HERTZ_STEP, Kind};
+use crate::contact::laws::{self, HERTZ_STEP, LawKind};
 use crate::contact::{CoulombFriction, Extent, Film, Friction, StiffnessForm};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserializer, Error};
@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 /// Contact law and its parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct Contact {
+pub struct ContactKeys {
     /// Which law. Default `hertz-step`: the paper's.
     pub law: Law,
     /// Young's modulus E of both surfaces, Pa. Default 73e9: the paper.
@@ -84,9 +84,9 @@ pub struct Contact {
     pub film_eccentricity_max: Option<f64>,
 }
 
-impl Default for Contact {
+impl Default for ContactKeys {
     fn default() -> Self {
-        Contact {
+        ContactKeys {
             law: Law::HertzStep,
             youngs_modulus: 73e9,
             poisson_ratio: 0.3,
@@ -122,7 +122,7 @@ const PRESLIDING: f64 = 1e-6;
 /// Static over sliding friction where nothing is written.
 const STATIC_RATIO: f64 = 1.5;
 
-impl Contact {
+impl ContactKeys {
     /// Whether something beside laws asks for the key: wear and films for the `length` of bearings.
     pub fn asks_for(&self, key: &str) -> bool {
         key == "length" && (self.wear_coefficient.is_some() || self.viscosity.is_some())
@@ -237,7 +237,7 @@ pub enum Law {
     /// No clearance: ideal revolute joints.
     Ideal,
     /// Another force law of the literature.
-    Other(&'static Kind),
+    Other(&'static LawKind),
 }
 
 /// The names of all laws, the physics engine's contact and ideal joints after the default.
@@ -257,7 +257,7 @@ impl Law {
     }
 
     /// A force law.
-    pub fn of(kind: &'static Kind) -> Self {
+    pub fn of(kind: &'static LawKind) -> Self {
         if *kind == HERTZ_STEP { Law::HertzStep } else { Law::Other(kind) }
     }
 
@@ -272,7 +272,7 @@ impl Law {
     }
 
     /// The force law that it is; none where no force law acts.
-    pub fn kind(self) -> Option<&'static Kind> {
+    pub fn kind(self) -> Option<&'static LawKind> {
         match self {
             Law::HertzStep => Some(&HERTZ_STEP),
             Law::Native | Law::Ideal => None,

@@ -77,13 +77,13 @@ impl Serialize for PerJoint {
 
 impl<'de> Deserialize<'de> for PerJoint {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(OneOrMany)
+        deserializer.deserialize_any(PerJointVisitor)
     }
 }
 
-struct OneOrMany;
+struct PerJointVisitor;
 
-impl<'de> Visitor<'de> for OneOrMany {
+impl<'de> Visitor<'de> for PerJointVisitor {
     type Value = PerJoint;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

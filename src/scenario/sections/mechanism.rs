@@ -2,7 +2,7 @@
 
 use super::templates::*;
 use super::{Described, Joint, Motion};
-use crate::scenario::reader::Reader;
+use crate::scenario::reading::reader::Reader;
 use schemars::JsonSchema;
 use serde::Serialize;
 use toml::Table;

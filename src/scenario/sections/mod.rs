@@ -4,8 +4,6 @@
 mod columns;
 mod contact;
 mod described;
-mod described_drives;
-mod described_joints;
 mod drive;
 mod environment;
 mod joints;
@@ -20,12 +18,12 @@ mod templates;
 pub use crate::contact::StiffnessForm;
 pub use crate::engine::StepControl;
 pub use columns::Columns;
-pub use contact::{Contact, FilmKind, FrictionLaw, Law, is_law_key};
+pub use contact::{ContactKeys, FilmKind, FrictionLaw, Law, is_law_key};
+pub use described::drives::{Force, JointDrive, On, SampledDrive, Servo};
+pub use described::joints::{Fixed, Joint, Prismatic, Revolute};
 pub use described::{
     Body, Described, GROUND, Ground, Output, Quantity, Sensor, Shape, Spring, Stop,
 };
-pub use described_drives::{Force, JointDrive, On, SampledDrive, Servo};
-pub use described_joints::{Fixed, Joint, Prismatic, Revolute};
 pub use drive::{Drive, DriveMode, Sampled};
 pub use environment::Environment;
 pub use joints::{Joints, PerJoint};
@@ -33,7 +31,7 @@ pub use legs::Legs;
 pub use mechanism::Mechanism;
 pub use motion::{
     Circle, JointLine, JointMotion, JointMultisine, JointPath, JointQuintic, JointTable, Line,
-    Motion, Multisine, Quintic, Table, Target, Term, Term1,
+    Motion, MotionTarget, Multisine, Quintic, Table, Term, Term1,
 };
 pub use native::Native;
 pub use sensors::Sensors;

@@ -42,7 +42,7 @@ impl Motion {
 /// What a described machine's `[motion]` moves, where it moves no joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Target {
+pub enum MotionTarget {
     /// `body = "…"`: a body's axes, x, y and φ.
     Body(String),
     /// `point = "body.point"`: x and y.

@@ -3,10 +3,10 @@
 use super::{MINIMAL, RIG, load_text};
 
 /// A wrong file, overrides, and what the message must contain.
-type Mistake = (&'static str, &'static [&'static str], &'static [&'static str]);
+type MistakenFile = (&'static str, &'static [&'static str], &'static [&'static str]);
 
 /// Every mistake says where it is, what is wrong, and what would be right.
-fn are_told(mistakes: &[Mistake]) {
+fn are_told(mistakes: &[MistakenFile]) {
     for (text, list, fragments) in mistakes {
         let message = match load_text(text, list) {
             Ok(_) => panic!("accepted: {text} {list:?}"),
@@ -26,7 +26,7 @@ fn are_told(mistakes: &[Mistake]) {
     }
 }
 
-const SYNTAX: &[Mistake] = &[
+const SYNTAX: &[MistakenFile] = &[
     ("a = 1\nb = = 2\n", &[], &["my.toml:2:5: "]),
     ("a = 1\na = 2\n", &[], &["my.toml:2:1: ", "duplicate key"]),
     (
@@ -43,7 +43,7 @@ fn mistakes_of_syntax() {
     are_told(SYNTAX);
 }
 
-const KEYS: &[Mistake] = &[
+const KEYS: &[MistakenFile] = &[
     ("", &[], &["my.toml: mechanism.kind: is missing; write kind = \"3rpr\""]),
     ("seed = 2\n[mechanism]\n", &[], &["my.toml:2: mechanism.kind: is missing"]),
     (
@@ -92,7 +92,7 @@ fn mistakes_of_keys() {
     are_told(KEYS);
 }
 
-const TYPES: &[Mistake] = &[
+const TYPES: &[MistakenFile] = &[
     (
         "[mechanism]\nkind = \"3rpr\"\nbase_side = \"big\"\nplatform_side = true\n",
         &[],
@@ -135,7 +135,7 @@ fn mistakes_of_types() {
     are_told(TYPES);
 }
 
-const OVERRIDES: &[Mistake] = &[
+const OVERRIDES: &[MistakenFile] = &[
     (MINIMAL, &["seed"], &["--set seed: `seed` is not an assignment; write PATH=VALUE"]),
     (MINIMAL, &["a..b=1"], &["--set a..b: ", "is not an assignment"]),
     (MINIMAL, &["seed="], &["--set seed: the value is not TOML"]),
@@ -164,7 +164,7 @@ fn mistakes_of_overrides() {
     are_told(OVERRIDES);
 }
 
-const VALUES: &[Mistake] = &[
+const VALUES: &[MistakenFile] = &[
     (
         "[mechanism]\nkind = \"3rpr\"\nplatform_mass = inf\n[environment]\ngravity = [0, nan]\n",
         &[],
@@ -206,7 +206,7 @@ fn mistakes_of_values() {
     are_told(VALUES);
 }
 
-const LAWS: &[Mistake] = &[
+const LAWS: &[MistakenFile] = &[
     (
         "[mechanism]\nkind = \"3rpr\"\n[contact]\nlaw = \"hunt-crossley\"\nc_max = 3.0\n",
         &[],

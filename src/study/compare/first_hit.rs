@@ -2,7 +2,7 @@
 //! before chaos has its say.
 
 use super::plan::SAMPLE_INTERVAL;
-use super::plan::{Plan, Row, machine, tolerance};
+use super::plan::{ComparePlan, CompareRow, machine, tolerance};
 use super::statistics::{Mean, line};
 use crate::engine::{self, Schedule, StepControl};
 use crate::mechanism::Mechanism;
@@ -55,8 +55,8 @@ pub struct FirstHit {
 ///
 /// # Errors
 /// A motion table that cannot be read.
-pub fn first_hits(scenario: &Scenario, plan: &Plan) -> Result<Option<FirstHits>, Problem> {
-    let rows: Vec<&Row> = plan
+pub fn first_hits(scenario: &Scenario, plan: &ComparePlan) -> Result<Option<FirstHits>, Problem> {
+    let rows: Vec<&CompareRow> = plan
         .rows
         .iter()
         .filter(|row| row.law != Law::Ideal && row.control.step().is_some())

@@ -17,14 +17,14 @@ mod verdict;
 pub use first_hit::{FirstHit, FirstHits};
 pub use plan::{Options, SAMPLE_INTERVAL};
 pub(in crate::study) use plan::{machine, tolerance};
-pub(in crate::study) use probe::{Forces, Measured, measure, quantile};
-pub use quantities::{QUANTITIES, Quantity};
+pub(in crate::study) use probe::{CompareMeasured, Forces, measure, quantile};
+pub use quantities::{ComparedQuantity, QUANTITIES};
 pub use result::{ChaosResult, Comparison, NativeResult, RowResult, TrendResult};
 pub use statistics::{Behaviour, Mean, Trend};
-pub use usable::{Use, Verdict};
+pub use usable::{NativeUse, QuantityVerdict};
 pub use verdict::in_words;
 
-use super::chaos::{self, Chaos, Look};
+use super::chaos::{self, Chaos, ComparedRow};
 use super::files::{PAGE_FILE, keep_scenario, scenario_files};
 use super::folder::Folder;
 use super::run_error::{RunError, refused};
@@ -32,7 +32,7 @@ use super::watch::Watch;
 use crate::engine;
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
-use plan::{Plan, plan};
+use plan::{ComparePlan, plan};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use statrs::statistics::{Data, OrderStatistics};
 use std::fs;
@@ -97,12 +97,12 @@ pub fn compare(
             let mut machine = machine(scenario, row.law, row.control, start, plan.starts)?;
             Ok(measure(scenario, &mut machine, watch))
         })
-        .collect::<Result<Vec<Measured>, Problem>>()?;
+        .collect::<Result<Vec<CompareMeasured>, Problem>>()?;
     watch.ended()?;
     let looks = looks(scenario, &plan)?;
 
     // By row, then by start.
-    let mut runs: Vec<Vec<Measured>> = vec![Vec::new(); plan.rows.len()];
+    let mut runs: Vec<Vec<CompareMeasured>> = vec![Vec::new(); plan.rows.len()];
     for ((_, row), measured) in jobs.iter().zip(results) {
         runs[*row].push(measured);
     }
@@ -168,7 +168,7 @@ fn native(scenario: &Scenario) -> Result<NativeResult, Problem> {
 }
 
 /// One pair of runs and one run's own error for each start.
-fn looks(scenario: &Scenario, plan: &Plan) -> Result<Vec<Chaos>, Problem> {
+fn looks(scenario: &Scenario, plan: &ComparePlan) -> Result<Vec<Chaos>, Problem> {
     let look = |start: usize| -> Result<Option<Chaos>, Problem> {
         let control = tolerance(scenario);
         let mut machine = machine(scenario, Law::HertzStep, control, start, plan.starts)?;
@@ -176,7 +176,7 @@ fn looks(scenario: &Scenario, plan: &Plan) -> Result<Vec<Chaos>, Problem> {
         let mechanism = &machine.mechanism;
         let mut rows = Vec::new();
         let done = engine::run(mechanism, control, machine.schedule, &mut |instant| {
-            rows.push(Look::at(mechanism, instant));
+            rows.push(ComparedRow::at(mechanism, instant));
         });
         let direction = start as f64 / plan.starts as f64;
         Ok(done
@@ -207,10 +207,10 @@ fn chaos_result(looks: &[Chaos]) -> Option<ChaosResult> {
     })
 }
 
-fn row_result(row: &plan::Row, runs: &[Measured]) -> RowResult {
+fn row_result(row: &plan::CompareRow, runs: &[CompareMeasured]) -> RowResult {
     let good = || runs.iter().filter(|run| run.halted.is_none());
     let faulty = || good().filter(|run| !run.faults.is_empty());
-    let mean = |f: &dyn Fn(&Measured) -> f64| Mean::of(good().map(f));
+    let mean = |f: &dyn Fn(&CompareMeasured) -> f64| Mean::of(good().map(f));
     RowResult {
         law: row.law,
         step_s: row.control.step(),

@@ -3,9 +3,9 @@
 use super::quantities::QUANTITIES;
 use super::result::{ChaosResult, Comparison, RowResult};
 use super::statistics::Behaviour;
-use super::usable::Use;
+use super::usable::NativeUse;
 use super::verdict::{criteria, in_words};
-use crate::report::{Fact, Part, Picture, Table, document, length, number};
+use crate::report::{Fact, PagePart, PageTable, Picture, document, length, number};
 use crate::scenario::Law;
 use crate::study::files::SCENARIO_FILE;
 
@@ -18,14 +18,14 @@ pub fn page(comparison: &Comparison, pictures: &[Picture]) -> String {
     let lead = if answer.is_empty() { String::new() } else { answer.remove(0) };
     answer.push(method(comparison));
     let parts = [
-        Part::Text { id: "answer", title: "Answer", paragraphs: &answer },
-        Part::Table(verdicts(comparison)),
-        Part::Facts(&facts),
-        Part::Table(side_by_side(comparison)),
-        Part::Table(law_over_steps(comparison)),
-        Part::Table(limits(comparison)),
-        Part::Pictures(pictures),
-        Part::Provenance(&provenance),
+        PagePart::Text { id: "answer", title: "Answer", paragraphs: &answer },
+        PagePart::Table(verdicts(comparison)),
+        PagePart::Facts(&facts),
+        PagePart::Table(side_by_side(comparison)),
+        PagePart::Table(law_over_steps(comparison)),
+        PagePart::Table(limits(comparison)),
+        PagePart::Pictures(pictures),
+        PagePart::Provenance(&provenance),
     ];
     let title = format!("Contact models compared: {}", comparison.provenance.scenario_name);
     document(&title, &lead, &parts)
@@ -130,11 +130,11 @@ fn row_name(row: &RowResult) -> String {
 
 /// Quantities down; across, what can be compared: the law at its tolerance, native contacts at every
 /// step, ideal joints.
-fn side_by_side(c: &Comparison) -> Table {
+fn side_by_side(c: &Comparison) -> PageTable {
     let law = c.best(Law::HertzStep).into_iter();
     let columns: Vec<&RowResult> =
         law.chain(c.rows_of(Law::Native)).chain(c.best(Law::Ideal)).collect();
-    Table {
+    PageTable {
         id: "side-by-side",
         title: "Side by side".into(),
         note: "Contact forces are over the time in contact of all joints, sampled every 0.1 ms, peaks \
@@ -147,9 +147,9 @@ fn side_by_side(c: &Comparison) -> Table {
 }
 
 /// The law at all its steps.
-fn law_over_steps(c: &Comparison) -> Table {
+fn law_over_steps(c: &Comparison) -> PageTable {
     let columns: Vec<&RowResult> = c.rows_of(Law::HertzStep).collect();
-    Table {
+    PageTable {
         id: "law-steps",
         title: "The law at its steps".into(),
         note: "\"Too long\": the step does not resolve the law's hits, or a servo. \"With faults\": runs whose \
@@ -159,7 +159,7 @@ fn law_over_steps(c: &Comparison) -> Table {
     }
 }
 
-fn columns_table(columns: &[&RowResult]) -> Table {
+fn columns_table(columns: &[&RowResult]) -> PageTable {
     let header = std::iter::once(String::new()).chain(columns.iter().map(|row| row_name(row)));
     let quantities = QUANTITIES.iter().enumerate().map(|(i, quantity)| {
         let cells = columns.iter().map(|row| {
@@ -177,7 +177,7 @@ fn columns_table(columns: &[&RowResult]) -> Table {
     });
     let cost = columns.iter().map(|row| number(row.wall_s_per_simulated_s));
     let cost = std::iter::once("computing, s per simulated s".to_owned()).chain(cost).collect();
-    Table {
+    PageTable {
         id: "",
         title: String::new(),
         header: header.collect(),
@@ -187,7 +187,7 @@ fn columns_table(columns: &[&RowResult]) -> Table {
 }
 
 /// What each quantity converges to.
-fn limits(c: &Comparison) -> Table {
+fn limits(c: &Comparison) -> PageTable {
     let laws = [Law::HertzStep, Law::Native];
     let rows = QUANTITIES.iter().enumerate().map(|(i, quantity)| {
         let mut cells = vec![quantity.label.to_owned()];
@@ -214,7 +214,7 @@ fn limits(c: &Comparison) -> Table {
         }));
         cells
     });
-    Table {
+    PageTable {
         id: "limits",
         title: "What each converges to".into(),
         header: ["quantity", "hertz-step, step → 0", "native, step → 0", "hertz-step at its tolerance"]
@@ -229,19 +229,19 @@ fn limits(c: &Comparison) -> Table {
     }
 }
 
-fn verdicts(c: &Comparison) -> Table {
+fn verdicts(c: &Comparison) -> PageTable {
     let rows = c.verdicts.iter().map(|verdict| {
         let quantity = QUANTITIES.iter().find(|q| q.key == verdict.quantity);
         let usable = match verdict.usable {
-            Use::Yes => "yes",
-            Use::Size => "as a size",
-            Use::No => "no",
-            Use::Unclear => "unclear",
+            NativeUse::Yes => "yes",
+            NativeUse::Size => "as a size",
+            NativeUse::No => "no",
+            NativeUse::Unclear => "unclear",
         };
         let label = quantity.map_or(verdict.quantity, |q| q.label);
         vec![label.to_owned(), usable.to_owned(), verdict.reason.clone()]
     });
-    Table {
+    PageTable {
         id: "verdicts",
         title: "May native contacts be used?".into(),
         header: ["quantity", "native", "why"].map(str::to_owned).into(),

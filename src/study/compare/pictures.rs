@@ -1,8 +1,8 @@
 //! The pictures of a comparison.
 
 use super::CompareError;
-use super::plan::{Plan, machine};
-use super::probe::Measured;
+use super::plan::{ComparePlan, machine};
+use super::probe::CompareMeasured;
 use super::quantities::index;
 use super::result::{Comparison, RowResult};
 use crate::engine::{self, Schedule};
@@ -21,8 +21,8 @@ const DISTRIBUTION: usize = 400;
 pub fn draw(
     scenario: &Scenario,
     comparison: &Comparison,
-    plan: &Plan,
-    runs: &[Vec<Measured>],
+    plan: &ComparePlan,
+    runs: &[Vec<CompareMeasured>],
     looks: &[Chaos],
 ) -> Result<Vec<Picture>, CompareError> {
     let draw = |picture: Result<Picture, ReportError>| picture.map_err(RunError::from);
@@ -114,13 +114,16 @@ fn over_step(comparison: &Comparison) -> Result<Picture, ReportError> {
 
 /// The beginning of one motion under one law: path error (mm), peak acceleration (m/s²), and peak
 /// contact force (N), over time in s.
-struct Beginning {
+struct MotionBeginning {
     name: String,
     style: Style,
     curves: [Vec<(f64, f64)>; 3],
 }
 
-fn beginnings(scenario: &Scenario, plan: &Plan) -> Result<Vec<Beginning>, CompareError> {
+fn beginnings(
+    scenario: &Scenario,
+    plan: &ComparePlan,
+) -> Result<Vec<MotionBeginning>, CompareError> {
     let mut beginnings = Vec::new();
     for law in super::plan::LAWS {
         let Some(row) = plan.rows.iter().rfind(|row| row.law == law) else { continue };
@@ -145,14 +148,14 @@ fn beginnings(scenario: &Scenario, plan: &Plan) -> Result<Vec<Beginning>, Compar
             .step()
             .map_or_else(String::new, |step| format!(", step {} s", number(step)));
         let style = if law == Law::Ideal { Style::Reference } else { Style::Solid };
-        beginnings.push(Beginning { name: law.name().to_owned() + &step, style, curves });
+        beginnings.push(MotionBeginning { name: law.name().to_owned() + &step, style, curves });
     }
     // The law, drawn last, stays visible on the native spikes.
     beginnings.reverse();
     Ok(beginnings)
 }
 
-fn side_by_side(beginnings: Vec<Beginning>) -> Result<Picture, ReportError> {
+fn side_by_side(beginnings: Vec<MotionBeginning>) -> Result<Picture, ReportError> {
     let labels = [
         ("Distance of the output body from its ideal position", "distance (mm)"),
         ("Acceleration of the output body, peak since the row before", "|a| (m/s²)"),
@@ -185,8 +188,11 @@ fn side_by_side(beginnings: Vec<Beginning>) -> Result<Picture, ReportError> {
 }
 
 /// How often a touching joint feels more than a force.
-fn distributions(comparison: &Comparison, runs: &[Vec<Measured>]) -> Result<Picture, ReportError> {
-    let curve = |row: &RowResult, runs: &[Measured]| {
+fn distributions(
+    comparison: &Comparison,
+    runs: &[Vec<CompareMeasured>],
+) -> Result<Picture, ReportError> {
+    let curve = |row: &RowResult, runs: &[CompareMeasured]| {
         let mut forces: Vec<f64> = runs.iter().flat_map(|run| run.forces.iter().copied()).collect();
         forces.sort_by(f64::total_cmp);
         let n = forces.len();

@@ -25,7 +25,7 @@ pub struct Options {
 
 /// One row of a comparison: a law and how it is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct CompareRow {
     /// The contact law.
     pub law: Law,
     /// A fixed step, or a tolerance.
@@ -39,14 +39,14 @@ pub struct Row {
 
 /// Everything that is run.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct ComparePlan {
     /// The tables' rows: law by law, longest step first, tolerance last.
-    pub rows: Vec<Row>,
+    pub rows: Vec<CompareRow>,
     /// Starts of a motion that chance has a part in.
     pub starts: usize,
 }
 
-impl Plan {
+impl ComparePlan {
     /// All runs as (start, row), start by start, so that the progress of the first ones foretells
     /// that of the others.
     pub fn runs(&self) -> Vec<(usize, usize)> {
@@ -62,7 +62,7 @@ impl Plan {
 ///
 /// # Errors
 /// A motion table that cannot be read, a machine without joints to compare.
-pub fn plan(scenario: &Scenario, options: &Options) -> Result<Plan, Problem> {
+pub fn plan(scenario: &Scenario, options: &Options) -> Result<ComparePlan, Problem> {
     if scenario.simulation.engine == Engine::Direct {
         let message = "\"direct\" has no contacts of the physics engine's own to compare";
         return Err(scenario.problem("simulation.engine", message, "leave simulation.engine out"));
@@ -77,17 +77,17 @@ pub fn plan(scenario: &Scenario, options: &Options) -> Result<Plan, Problem> {
     for law in LAWS {
         let starts = if law == Law::Ideal { 1 } else { options.starts };
         let limit = if law == Law::HertzStep { longest } else { servo };
-        rows.extend(options.steps.iter().map(|&step| Row {
+        rows.extend(options.steps.iter().map(|&step| CompareRow {
             law,
             control: StepControl::Fixed(step),
             resolved: step <= limit,
             starts,
         }));
         if law != Law::Native {
-            rows.push(Row { law, control: tolerance(scenario), resolved: true, starts });
+            rows.push(CompareRow { law, control: tolerance(scenario), resolved: true, starts });
         }
     }
-    Ok(Plan { rows, starts: options.starts })
+    Ok(ComparePlan { rows, starts: options.starts })
 }
 
 /// Complains about a machine without contacts.

@@ -14,7 +14,7 @@ const SMOOTHING: usize = 100;
 
 /// What a run came to.
 #[derive(Clone, Debug)]
-pub struct Measured {
+pub struct CompareMeasured {
     /// The compared quantities, in their order; NaN where a law or a machine has none.
     pub values: [f64; COUNT],
     /// Steps per simulated second.
@@ -30,9 +30,9 @@ pub struct Measured {
 }
 
 /// Runs a machine and measures it; `watch` sees how much time was simulated, in s, and may end it.
-pub fn measure(scenario: &Scenario, machine: &mut Machine, watch: &Watch) -> Measured {
+pub fn measure(scenario: &Scenario, machine: &mut Machine, watch: &Watch) -> CompareMeasured {
     let settle = scenario.simulation.settle();
-    let mut probe = Probe::default();
+    let mut probe = CompareProbe::default();
     let mut told = 0.0;
     let summary =
         measured_until(scenario, machine, watch.stop(), &mut |mechanism, instant, ideal| {
@@ -56,7 +56,7 @@ pub fn measure(scenario: &Scenario, machine: &mut Machine, watch: &Watch) -> Mea
 
 /// What a summary does not gather.
 #[derive(Debug, Default)]
-struct Probe {
+struct CompareProbe {
     rows: usize,
     /// Difference of the platform's velocity from the ideal one, [`SMOOTHING`] rows ago at most.
     velocity: Vector2<f64>,
@@ -67,7 +67,7 @@ struct Probe {
     forces: Forces,
 }
 
-impl Probe {
+impl CompareProbe {
     fn row(&mut self, instant: &Instant, velocity: Vector2<f64>) {
         let energy = instant.tallies.iter().map(|tally| tally.energy).sum();
         if self.rows == 0 {
@@ -86,7 +86,7 @@ impl Probe {
         self.forces.row(instant.evaluation.contacts.iter().map(|contact| contact.normal_force));
     }
 
-    fn finish(self, s: Summary, machine: &Machine) -> Measured {
+    fn finish(self, s: Summary, machine: &Machine) -> CompareMeasured {
         let forces = self.forces.sorted();
         let clearance = s.joints.iter().any(|joint| joint.clearance_m.is_some());
         // An ideal joint transmits forces, but nothing in it touches or gives way.
@@ -115,7 +115,7 @@ impl Probe {
         let steps_per_s = s.steps as f64 / s.simulated_s;
         let cost = s.wall_s_per_simulated_s;
         let (halted, faults) = (s.halted, s.watched.faults);
-        Measured { values, steps_per_s, cost, halted, faults, forces }
+        CompareMeasured { values, steps_per_s, cost, halted, faults, forces }
     }
 }
 

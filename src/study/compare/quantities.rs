@@ -2,7 +2,7 @@
 
 /// One compared quantity.
 #[derive(Debug)]
-pub struct Quantity {
+pub struct ComparedQuantity {
     /// Key in `compare.json` and column in `compare.csv`, with its unit.
     pub key: &'static str,
     /// What it is called in words.
@@ -11,8 +11,8 @@ pub struct Quantity {
     pub unit: &'static str,
 }
 
-const fn quantity(key: &'static str, label: &'static str, unit: &'static str) -> Quantity {
-    Quantity { key, label, unit }
+const fn quantity(key: &'static str, label: &'static str, unit: &'static str) -> ComparedQuantity {
+    ComparedQuantity { key, label, unit }
 }
 
 /// Number of compared quantities.
@@ -20,7 +20,7 @@ pub const COUNT: usize = 15;
 
 /// The compared quantities, in the order of the tables. Means, peaks and fractions leave out the start
 /// (`simulation.settle`).
-pub const QUANTITIES: [Quantity; COUNT] = [
+pub const QUANTITIES: [ComparedQuantity; COUNT] = [
     quantity("rms_path_error_m", "path error, rms", "m"),
     quantity("max_path_error_m", "path error, largest", "m"),
     quantity(

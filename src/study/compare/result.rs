@@ -2,7 +2,7 @@
 
 use super::first_hit::FirstHits;
 use super::statistics::{Mean, Trend};
-use super::usable::Verdict;
+use super::usable::QuantityVerdict;
 use crate::scenario::{DriveMode, Law};
 use crate::simulate::Provenance;
 use serde::Serialize;
@@ -35,7 +35,7 @@ pub struct Comparison {
     /// How long a prediction holds under the law.
     pub chaos: Option<ChaosResult>,
     /// What native contacts may be used for.
-    pub verdicts: Vec<Verdict>,
+    pub verdicts: Vec<QuantityVerdict>,
     /// The same in words.
     pub answer: Vec<String>,
     /// Time of computing in s.
@@ -144,7 +144,7 @@ pub(super) fn by_key<S: serde::Serializer>(
     means: &[Mean],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    let entry = |(quantity, mean): (&super::quantities::Quantity, &Mean)| {
+    let entry = |(quantity, mean): (&super::quantities::ComparedQuantity, &Mean)| {
         let mean = serde_json::to_value(mean).unwrap_or(Value::Null);
         (quantity.key.to_owned(), mean)
     };

@@ -108,14 +108,14 @@ pub fn trend(points: &[(f64, Mean)], order: f64) -> Trend {
 
 /// A straight line through data with errors.
 #[derive(Clone, Copy, Debug)]
-pub struct Line {
+pub struct FittedLine {
     /// Value at x = 0, and its standard error.
     pub intercept: f64,
-    /// See [`Line::intercept`].
+    /// See [`FittedLine::intercept`].
     pub intercept_std: f64,
     /// Slope, and its standard error.
     pub slope: f64,
-    /// See [`Line::slope`].
+    /// See [`FittedLine::slope`].
     pub slope_std: f64,
     /// χ² per degree of freedom; 1 where there is none left.
     pub misfit: f64,
@@ -123,7 +123,7 @@ pub struct Line {
 
 /// Least squares of (x, y, error of y), weighted. Errors are enlarged where the line misses the data
 /// by more than they say. All x equal give no numbers.
-pub fn line(data: &[(f64, f64, f64)]) -> Line {
+pub fn line(data: &[(f64, f64, f64)]) -> FittedLine {
     let weight = |e: f64| 1.0 / (e * e);
     let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
         data.iter().map(|&(x, y, e)| weight(e) * f(x, y)).sum()
@@ -137,7 +137,7 @@ pub fn line(data: &[(f64, f64, f64)]) -> Line {
     let chi2 = sum(&|x, y| (y - intercept - slope * x).powi(2));
     let misfit = if free > 0 { chi2 / free as f64 } else { 1.0 };
     let enlarged = misfit.max(1.0).sqrt();
-    Line {
+    FittedLine {
         intercept,
         intercept_std: enlarged * (1.0 / s + xm * xm / sxx).sqrt(),
         slope,

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// What a native quantity may be used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Use {
+pub enum NativeUse {
     /// As it is.
     Yes,
     /// As a size, not as a value.
@@ -18,12 +18,12 @@ pub enum Use {
 
 /// A judgement of one quantity.
 #[derive(Clone, Debug, Serialize)]
-pub struct Verdict {
+pub struct QuantityVerdict {
     /// Key of the quantity.
     pub quantity: &'static str,
     /// What native may be used for.
     #[serde(rename = "use")]
-    pub usable: Use,
+    pub usable: NativeUse,
     /// Why, with the figures.
     pub reason: String,
 }

@@ -1,9 +1,9 @@
 //! What native contacts may be used for, by stated criteria.
 
-use super::quantities::{QUANTITIES, Quantity, index};
+use super::quantities::{ComparedQuantity, QUANTITIES, index};
 use super::result::{Comparison, RowResult};
 use super::statistics::{Behaviour, Mean, Trend};
-use super::usable::{Use, Verdict};
+use super::usable::{NativeUse, QuantityVerdict};
 use crate::report::{length, number};
 use crate::scenario::Law;
 
@@ -31,13 +31,17 @@ pub fn criteria() -> String {
 
 /// Judges every quantity that the machine has: one that no row has a value of, such as the actuator
 /// forces of a machine without actuators, is none of it.
-pub fn verdicts(comparison: &Comparison) -> Vec<Verdict> {
-    let judge = |(i, quantity): (usize, &Quantity)| {
+pub fn verdicts(comparison: &Comparison) -> Vec<QuantityVerdict> {
+    let judge = |(i, quantity): (usize, &ComparedQuantity)| {
         comparison.rows.iter().find(|row| row.quantities[i].mean.is_finite())?;
         let law = comparison.best(Law::HertzStep)?.quantities[i];
         if !touches(comparison) {
             let reason = "no journal touched its ring: nothing can be told".to_owned();
-            return Some(Verdict { quantity: quantity.key, usable: Use::Unclear, reason });
+            return Some(QuantityVerdict {
+                quantity: quantity.key,
+                usable: NativeUse::Unclear,
+                reason,
+            });
         }
         let native: Vec<(f64, Mean)> = comparison
             .rows_of(Law::Native)
@@ -45,7 +49,7 @@ pub fn verdicts(comparison: &Comparison) -> Vec<Verdict> {
             .collect();
         let trend = comparison.trend(Law::Native, quantity.key)?;
         let (usable, reason) = verdict(quantity, law, &native, trend);
-        Some(Verdict { quantity: quantity.key, usable, reason })
+        Some(QuantityVerdict { quantity: quantity.key, usable, reason })
     };
     QUANTITIES.iter().enumerate().filter_map(judge).collect()
 }
@@ -58,7 +62,12 @@ fn touches(comparison: &Comparison) -> bool {
     law.chain(comparison.rows_of(Law::Native)).any(|row| share(row) != 0.0)
 }
 
-fn verdict(quantity: &Quantity, law: Mean, native: &[(f64, Mean)], trend: &Trend) -> (Use, String) {
+fn verdict(
+    quantity: &ComparedQuantity,
+    law: Mean,
+    native: &[(f64, Mean)],
+    trend: &Trend,
+) -> (NativeUse, String) {
     let value = |v: f64| in_words(quantity, v);
     let expected = format!("the law says {} ± {}", value(law.mean), value(law.sem));
     let ends = native.first().zip(native.last());
@@ -74,10 +83,10 @@ fn verdict(quantity: &Quantity, law: Mean, native: &[(f64, Mean)], trend: &Trend
             number(trend.power),
             number(trend.power_std),
         );
-        return (Use::No, reason);
+        return (NativeUse::No, reason);
     }
     let (Some(limit), Some([low, high])) = (trend.limit, trend.ci95) else {
-        return (Use::Unclear, format!("too few steps to see a limit; {expected}"));
+        return (NativeUse::Unclear, format!("too few steps to see a limit; {expected}"));
     };
     let sem = (high - low) / (2.0 * 1.96);
     let reason =
@@ -86,23 +95,23 @@ fn verdict(quantity: &Quantity, law: Mean, native: &[(f64, Mean)], trend: &Trend
     let scatter = SCATTER * sem.hypot(law.sem);
     let ratio = limit / law.mean;
     let usable = if !difference.is_finite() {
-        Use::Unclear
+        NativeUse::Unclear
     } else if difference <= CLOSE * law.mean.abs() {
-        Use::Yes
+        NativeUse::Yes
     } else if scatter > (SIZE - 1.0) * law.mean.abs() {
-        Use::Unclear
+        NativeUse::Unclear
     } else if difference <= scatter {
-        Use::Yes
+        NativeUse::Yes
     } else if (1.0 / SIZE..=SIZE).contains(&ratio) {
-        Use::Size
+        NativeUse::Size
     } else {
-        Use::No
+        NativeUse::No
     };
     (usable, reason)
 }
 
 /// A value with its unit.
-pub fn in_words(quantity: &Quantity, value: f64) -> String {
+pub fn in_words(quantity: &ComparedQuantity, value: f64) -> String {
     match quantity.unit {
         "m" => length(value),
         "" => number(value),
@@ -117,7 +126,7 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
             "No journal touched its ring: nothing can be told of native contacts (a longer --duration may show hits).".to_owned(),
         ];
     }
-    let named = |usable: Use| -> Vec<&str> {
+    let named = |usable: NativeUse| -> Vec<&str> {
         let verdicts = comparison.verdicts.iter().filter(|v| v.usable == usable);
         verdicts
             .filter_map(|v| QUANTITIES.iter().find(|q| q.key == v.quantity))
@@ -125,11 +134,11 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
             .collect()
     };
     let sentences = [
-        (Use::Yes, "In this machine, native contacts may be used for"),
-        (Use::Size, "They may be used to tell the size, not the value, of"),
-        (Use::No, "They may not be used for"),
+        (NativeUse::Yes, "In this machine, native contacts may be used for"),
+        (NativeUse::Size, "They may be used to tell the size, not the value, of"),
+        (NativeUse::No, "They may not be used for"),
         (
-            Use::Unclear,
+            NativeUse::Unclear,
             "Too few steps or too much scatter to tell (more --steps, more --starts or a longer --duration would):",
         ),
     ];
@@ -140,8 +149,8 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
             (!names.is_empty()).then(|| format!("{start} {}.", names.join("; ")))
         })
         .collect();
-    if named(Use::Yes).is_empty() {
-        let told = comparison.verdicts.iter().any(|verdict| verdict.usable != Use::Unclear);
+    if named(NativeUse::Yes).is_empty() {
+        let told = comparison.verdicts.iter().any(|verdict| verdict.usable != NativeUse::Unclear);
         let first = match told {
             true => "In this machine, native contacts may be used for nothing compared here.",
             false => {

@@ -7,7 +7,7 @@ mod results;
 mod series;
 
 pub use models::{diff_models, simulated_time};
-pub use result::{Diff, Row};
+pub use result::{Diff, FigureRow};
 pub use results::diff_results;
 
 use super::files::SCENARIO_FILE;
@@ -96,7 +96,7 @@ fn unlike_times(sides: &[Side; 2]) -> Option<String> {
 
 /// A finished comparison of two.
 #[derive(Debug)]
-pub struct Done {
+pub struct FinishedDiff {
     /// All figures.
     pub diff: Diff,
     /// The text of `diff.json`.

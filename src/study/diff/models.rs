@@ -1,15 +1,15 @@
 //! Two models, each simulated from several starts.
 
 use super::page::{self, RUNS_FILE};
-use super::result::{Diff, Row};
-use super::series::{Series, overlaid};
-use super::{DiffError, Done, Side, unlike, unlike_times};
+use super::result::{Diff, FigureRow};
+use super::series::{TimeTable, overlaid};
+use super::{DiffError, FinishedDiff, Side, unlike, unlike_times};
 use crate::measure::student::t95;
 use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
 use crate::scenario::{Problem, Scenario};
 use crate::simulate::{Provenance, measured};
 use crate::study::Watch;
-use crate::study::compare::{Mean, Measured, QUANTITIES, machine, measure, tolerance};
+use crate::study::compare::{CompareMeasured, Mean, QUANTITIES, machine, measure, tolerance};
 use crate::study::folder::Folder;
 use crate::study::run_error::RunError;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -39,7 +39,7 @@ pub fn diff_models(
     starts: usize,
     folder: Folder,
     watch: &Watch,
-) -> Result<Done, DiffError> {
+) -> Result<FinishedDiff, DiffError> {
     let started = Clock::now();
     let both = [0, 1].map(|i| sides[i].scenario());
     let runs = simulate(both, starts, watch)?;
@@ -72,7 +72,7 @@ fn simulate(
     both: [&Scenario; 2],
     starts: usize,
     watch: &Watch,
-) -> Result<[Vec<Measured>; 2], DiffError> {
+) -> Result<[Vec<CompareMeasured>; 2], DiffError> {
     let jobs: Vec<(usize, usize)> =
         (0..starts).flat_map(|start| [(0, start), (1, start)]).collect();
     let results = jobs
@@ -83,15 +83,15 @@ fn simulate(
             let mut machine = machine(scenario, scenario.contact.law, control, start, starts)?;
             Ok(measure(scenario, &mut machine, watch))
         })
-        .collect::<Result<Vec<Measured>, Problem>>()?;
+        .collect::<Result<Vec<CompareMeasured>, Problem>>()?;
     watch.ended()?;
     let of = |side: usize| results.iter().skip(side).step_by(2).cloned().collect();
     Ok([of(0), of(1)])
 }
 
 /// The figures that both have, with means over the starts.
-fn rows(runs: &[Vec<Measured>; 2], starts: usize) -> Vec<Row> {
-    let figure = |(i, quantity): (usize, &crate::study::compare::Quantity)| {
+fn rows(runs: &[Vec<CompareMeasured>; 2], starts: usize) -> Vec<FigureRow> {
+    let figure = |(i, quantity): (usize, &crate::study::compare::ComparedQuantity)| {
         let [a, b] = [0, 1].map(|side: usize| {
             let good = runs[side].iter().filter(|run| run.halted.is_none());
             Mean::of(good.map(|run| run.values[i]))
@@ -99,7 +99,7 @@ fn rows(runs: &[Vec<Measured>; 2], starts: usize) -> Vec<Row> {
         let difference = b.mean - a.mean;
         let floor = t95(starts - 1) * a.sem.hypot(b.sem);
         let least = LEAST_DIFFERENCE * a.mean.abs().max(b.mean.abs());
-        difference.is_finite().then(|| Row {
+        difference.is_finite().then(|| FigureRow {
             key: quantity.key.to_owned(),
             label: quantity.label.to_owned(),
             unit: quantity.unit,
@@ -114,8 +114,8 @@ fn rows(runs: &[Vec<Measured>; 2], starts: usize) -> Vec<Row> {
 }
 
 /// Runs that broke down or saw faults of their own.
-fn broken(runs: &[Vec<Measured>; 2]) -> Vec<String> {
-    let told = |(side, runs): (&str, &Vec<Measured>)| {
+fn broken(runs: &[Vec<CompareMeasured>; 2]) -> Vec<String> {
+    let told = |(side, runs): (&str, &Vec<CompareMeasured>)| {
         let halted = runs.iter().filter_map(|run| run.halted.as_deref());
         let faulty = runs.iter().flat_map(|run| run.faults.iter().map(String::as_str));
         let said: Vec<&str> = halted.chain(faulty).collect();
@@ -125,8 +125,8 @@ fn broken(runs: &[Vec<Measured>; 2]) -> Vec<String> {
 }
 
 /// One dot a run, figure by figure.
-fn every_run(diff: &Diff, runs: &[Vec<Measured>; 2]) -> Result<Picture, RunError> {
-    let panel = |row: &Row| {
+fn every_run(diff: &Diff, runs: &[Vec<CompareMeasured>; 2]) -> Result<Picture, RunError> {
+    let panel = |row: &FigureRow| {
         let i = QUANTITIES.iter().position(|quantity| quantity.key == row.key)?;
         let curves = diff.names.iter().zip(runs).enumerate().map(|(k, (name, runs))| Curve {
             name: format!("{} {name}", k + 1),
@@ -141,7 +141,7 @@ fn every_run(diff: &Diff, runs: &[Vec<Measured>; 2]) -> Result<Picture, RunError
         })
     };
     // What differs first; more than six panels are no picture.
-    let mut shown: Vec<&Row> = diff.rows.iter().collect();
+    let mut shown: Vec<&FigureRow> = diff.rows.iter().collect();
     shown.sort_by_key(|row| row.differs != Some(true));
     let panels: Vec<Panel> = shown.into_iter().filter_map(panel).take(6).collect();
     Ok(Picture {
@@ -178,7 +178,7 @@ fn over_time(both: [&Scenario; 2], names: &[String; 2]) -> Result<Option<Picture
 }
 
 /// Path error, acceleration and efforts of one run as its scenario says.
-fn series(scenario: &Scenario) -> Result<Series, DiffError> {
+fn series(scenario: &Scenario) -> Result<TimeTable, DiffError> {
     let mut machine = crate::simulate::assemble(scenario)?;
     let drives = machine.mechanism.actuators.iter().map(|drive| drive.name.clone());
     let heads = ["t", "path error", "acceleration"].map(str::to_owned).into_iter();
@@ -190,5 +190,5 @@ fn series(scenario: &Scenario) -> Result<Series, DiffError> {
         let figures = figures.into_iter().chain(instant.evaluation.drive_forces.iter().copied());
         columns.iter_mut().zip(figures).for_each(|(column, figure)| column.push(figure));
     });
-    Ok(Series { heads, columns })
+    Ok(TimeTable { heads, columns })
 }

@@ -1,8 +1,8 @@
 //! The page and the files of a difference.
 
-use super::result::{Diff, Row};
-use super::{DIFF_FILE, DiffError, Done, TABLE_FILE};
-use crate::report::{Part, Picture, Table, document, length, number};
+use super::result::{Diff, FigureRow};
+use super::{DIFF_FILE, DiffError, FinishedDiff, TABLE_FILE};
+use crate::report::{PagePart, PageTable, Picture, document, length, number};
 use crate::study::files::{PAGE_FILE, to_json};
 use crate::study::folder::Folder;
 use crate::study::run_error::{RunError, refused};
@@ -12,7 +12,11 @@ use std::fs;
 pub const RUNS_FILE: &str = "every-run.svg";
 
 /// Writes everything about a difference and gives the folder its name.
-pub fn write(mut diff: Diff, pictures: &[Picture], folder: Folder) -> Result<Done, DiffError> {
+pub fn write(
+    mut diff: Diff,
+    pictures: &[Picture],
+    folder: Folder,
+) -> Result<FinishedDiff, DiffError> {
     let texts = [DIFF_FILE, TABLE_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     diff.files = texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect();
     let json = to_json(&diff);
@@ -24,7 +28,7 @@ pub fn write(mut diff: Diff, pictures: &[Picture], folder: Folder) -> Result<Don
     }
     write(PAGE_FILE, &page(&diff, pictures))?;
     let folder = folder.finish().map_err(RunError::from)?;
-    Ok(Done { diff, json, folder })
+    Ok(FinishedDiff { diff, json, folder })
 }
 
 fn page(diff: &Diff, pictures: &[Picture]) -> String {
@@ -40,11 +44,15 @@ fn page(diff: &Diff, pictures: &[Picture]) -> String {
         ("Time of computing", format!("{} s", number(diff.wall_s))),
     ];
     let provenance = diff.provenance.lines("first", None, more);
-    let parts = [Part::Table(table(diff)), Part::Pictures(pictures), Part::Provenance(&provenance)];
+    let parts = [
+        PagePart::Table(table(diff)),
+        PagePart::Pictures(pictures),
+        PagePart::Provenance(&provenance),
+    ];
     document(&title, &lead.join(" "), &parts)
 }
 
-fn table(diff: &Diff) -> Table {
+fn table(diff: &Diff) -> PageTable {
     let note = match diff.of {
         "models" => format!(
             "Means over {} starts. Floor: half of the 95 % interval of the difference; figures differ that are one and a half \
@@ -64,7 +72,7 @@ fn table(diff: &Diff) -> Table {
         "floor",
         "differs",
     ];
-    Table {
+    PageTable {
         id: "figures",
         title: "Figures".to_owned(),
         header: header.map(str::to_owned).into(),
@@ -73,7 +81,7 @@ fn table(diff: &Diff) -> Table {
     }
 }
 
-impl Row {
+impl FigureRow {
     /// What tables show of it.
     pub fn cells(&self) -> [String; 6] {
         let value = |value: f64| match self.unit {

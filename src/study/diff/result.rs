@@ -24,7 +24,7 @@ pub struct Diff {
     /// How many floors two figures have to lie apart to differ.
     pub sure: f64,
     /// The figures, one by one.
-    pub rows: Vec<Row>,
+    pub rows: Vec<FigureRow>,
     /// What is to be known before a figure is believed.
     pub warnings: Vec<String>,
     /// What differs, in words.
@@ -37,7 +37,7 @@ pub struct Diff {
 
 /// One figure of both.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct FigureRow {
     /// Its key, with the unit: a figure of summaries, or a column of time series.
     pub key: String,
     /// What it is called in words.

@@ -1,9 +1,9 @@
 //! Two results of runs, as they lie there.
 
 use super::page;
-use super::result::{Diff, Row};
-use super::series::{Series, overlaid};
-use super::{DiffError, Done, Side, unlike, unlike_times};
+use super::result::{Diff, FigureRow};
+use super::series::{TimeTable, overlaid};
+use super::{DiffError, FinishedDiff, Side, unlike, unlike_times};
 use crate::measure::bounded;
 use crate::report::{Panel, Picture, panels_svg};
 use crate::simulate::Provenance;
@@ -33,7 +33,7 @@ const FIGURES: [(&str, &str, &str); 3] = [
 /// A result read.
 struct Read {
     summary: Value,
-    series: Series,
+    series: TimeTable,
 }
 
 impl Read {
@@ -44,7 +44,7 @@ impl Read {
         };
         let text = bounded::text(&file, bounded::TABLE).map_err(|error| wrong(&error))?;
         let summary = serde_json::from_str(&text).map_err(|error| wrong(&error))?;
-        let series = Series::read(&folder.join(TIME_SERIES_FILE)).map_err(DiffError::Input)?;
+        let series = TimeTable::read(&folder.join(TIME_SERIES_FILE)).map_err(DiffError::Input)?;
         Ok(Self { summary, series })
     }
 
@@ -68,7 +68,7 @@ pub fn diff_results(
     folders: [&Path; 2],
     names: [String; 2],
     folder: Folder,
-) -> Result<Done, DiffError> {
+) -> Result<FinishedDiff, DiffError> {
     let started = Clock::now();
     let both = [Read::of(folders[0])?, Read::of(folders[1])?];
     let chaotic = both.iter().any(Read::chaotic);
@@ -117,7 +117,7 @@ fn warnings(chaotic: bool, horizon: Option<f64>, folders: [&Path; 2]) -> Vec<Str
 }
 
 /// Figures of both summaries. Those of chaotic runs are one draw each: nobody knows their floor.
-fn figures(both: &[Read; 2], chaotic: bool) -> Vec<Row> {
+fn figures(both: &[Read; 2], chaotic: bool) -> Vec<FigureRow> {
     let known = QUANTITIES.iter().map(|quantity| (quantity.key, quantity.label, quantity.unit));
     let row = |(key, label, unit): (&str, &str, &'static str)| {
         let path = format!("/{key}");
@@ -126,7 +126,7 @@ fn figures(both: &[Read; 2], chaotic: bool) -> Vec<Row> {
         let difference = b - a;
         let differs = floor.map(|floor| difference.abs() > SURE * floor);
         let (key, label) = (key.to_owned(), label.to_owned());
-        Some(Row {
+        Some(FigureRow {
             key,
             label,
             unit,
@@ -197,7 +197,7 @@ fn in_words(head: &str) -> String {
 }
 
 /// Columns that both have, up to where they can be compared.
-fn columns(both: &[Read; 2], horizon: Option<f64>) -> Vec<Row> {
+fn columns(both: &[Read; 2], horizon: Option<f64>) -> Vec<FigureRow> {
     let [a, b] = both;
     let own = |read: &Read| read.number("/watched/own_error/position_m");
     let floor = own(a).zip(own(b)).map(|(a, b)| a + b);
@@ -207,7 +207,7 @@ fn columns(both: &[Read; 2], horizon: Option<f64>) -> Vec<Row> {
         let [first, second, difference] = a.series.apart(&b.series, head, window)?;
         let (unit, place) = unit(head);
         let floor = floor.filter(|_| place);
-        Some(Row {
+        Some(FigureRow {
             key: head.clone(),
             label: format!("{}, rms", in_words(head)),
             unit,
@@ -225,11 +225,11 @@ fn columns(both: &[Read; 2], horizon: Option<f64>) -> Vec<Row> {
 /// The columns that differ most of what they are, one over the other.
 fn over_time(both: &[Read; 2], diff: &Diff) -> Result<Vec<Picture>, RunError> {
     let series = [&both[0].series, &both[1].series];
-    let wanted = |row: &&Row| {
+    let wanted = |row: &&FigureRow| {
         let force = row.key.starts_with('F') || row.key.starts_with("force_");
         unit(&row.key).1 || row.key.starts_with('q') || force
     };
-    let panel = |row: &Row| {
+    let panel = |row: &FigureRow| {
         let unit = if row.unit.is_empty() { "SI" } else { row.unit };
         overlaid(series, &diff.names, &row.key, (&in_words(&row.key), unit, 1.0))
     };

@@ -9,14 +9,14 @@ const POINTS: usize = 2000;
 
 /// A table of numbers over time.
 #[derive(Clone, Debug, Default)]
-pub struct Series {
+pub struct TimeTable {
     /// Heads, `t` first.
     pub heads: Vec<String>,
     /// Column by column, as many as heads.
     pub columns: Vec<Vec<f64>>,
 }
 
-impl Series {
+impl TimeTable {
     /// Reads the `timeseries.csv` of a run.
     ///
     /// # Errors
@@ -92,7 +92,7 @@ impl Series {
 
 /// A column of both, one over the other, `scale` of the column's numbers drawn.
 pub fn overlaid(
-    both: [&Series; 2],
+    both: [&TimeTable; 2],
     names: &[String; 2],
     head: &str,
     (title, y_label, scale): (&str, &str, f64),
@@ -123,7 +123,7 @@ mod tests {
         let of = |step: f64, add: f64| {
             let t: Vec<f64> = (0..11).map(|i| f64::from(i) * step).collect();
             let x = t.iter().map(|t| 2.0 * t + add).collect();
-            Series { heads: vec!["t".into(), "x".into()], columns: vec![t, x] }
+            TimeTable { heads: vec!["t".into(), "x".into()], columns: vec![t, x] }
         };
         let [_, _, difference] = of(0.1, 0.0).apart(&of(0.07, 0.5), "x", [0.0, 9.0]).unwrap();
         assert!((difference - 0.5).abs() < 1e-12);

@@ -22,7 +22,7 @@ const ATTEMPTS: usize = 100;
 
 /// A folder in the making that belongs to this process. Dropped, it is removed.
 #[derive(Debug)]
-pub(super) struct Claim {
+pub(super) struct FolderClaim {
     path: PathBuf,
     /// Holds the lock, where the file system has any.
     _lock: Option<File>,
@@ -40,14 +40,14 @@ pub(super) fn beside(absolute: &Path, ending: &str) -> PathBuf {
     name.into()
 }
 
-impl Claim {
+impl FolderClaim {
     /// Claims the place of the result `absolute`, which the user calls `target`, for this process. What
     /// a dead one left there, or beside it, is removed.
     ///
     /// # Errors
     /// [`FolderError`] if another process holds it, if it holds files that are not ours, or if the file
     /// system refuses.
-    pub fn new(target: &Path, absolute: &Path, marker: &str) -> Result<Claim, FolderError> {
+    pub fn new(target: &Path, absolute: &Path, marker: &str) -> Result<FolderClaim, FolderError> {
         let path = place(absolute);
         for _ in 0..ATTEMPTS {
             // Nobody abandons what is made here before it is on the list.
@@ -71,7 +71,7 @@ impl Claim {
             }
             making.push(path.clone());
             drop(making);
-            let claim = Claim { path, _lock: lock };
+            let claim = FolderClaim { path, _lock: lock };
             fs::write(claim.path.join(MARK), MARK_TEXT)
                 .and_then(|()| clear(&claim.path))
                 .map_err(FolderError::io(target))?;
@@ -112,7 +112,7 @@ impl Claim {
     }
 }
 
-impl Drop for Claim {
+impl Drop for FolderClaim {
     fn drop(&mut self) {
         let mut making = making::hold();
         if !self.path.as_os_str().is_empty() {
@@ -197,7 +197,7 @@ mod tests {
     fn a_dead_process_leaves_its_place_and_a_living_one_keeps_it() {
         let dir = tempfile::tempdir().expect("folder");
         let target = dir.path().join("r");
-        let claim = || Claim::new(&target, &target, MARKER);
+        let claim = || FolderClaim::new(&target, &target, MARKER);
         let living = claim().expect("free");
         assert!(matches!(claim(), Err(FolderError::Busy(_))));
         fs::write(living.path().join("rows.csv"), "half").expect("write");
@@ -218,7 +218,7 @@ mod tests {
         let dir = tempfile::tempdir().expect("folder");
         let claim = |name: &str| {
             let target = dir.path().join(name);
-            Claim::new(&target, &target, MARKER).expect("free")
+            FolderClaim::new(&target, &target, MARKER).expect("free")
         };
         let [living, mut dead] = ["living", "dead"].map(claim);
         let left = std::mem::take(&mut dead.path);
@@ -237,7 +237,7 @@ mod tests {
         let place = place(&target);
         fs::create_dir(&place).expect("make");
         fs::write(place.join("mine"), "").expect("write");
-        assert!(Claim::new(&target, &target, MARKER).is_err());
+        assert!(FolderClaim::new(&target, &target, MARKER).is_err());
         assert!(place.join("mine").exists());
     }
 }

@@ -18,7 +18,7 @@ pub(in crate::study) mod sync;
 pub use folder_error::FolderError;
 pub use making::abandon;
 
-use claim::Claim;
+use claim::FolderClaim;
 use marker::files_of_result;
 use std::fs;
 use std::io;
@@ -32,7 +32,7 @@ pub struct Folder {
     target: PathBuf,
     /// The same from the root: the working directory itself may be meant.
     absolute: PathBuf,
-    claim: Claim,
+    claim: FolderClaim,
     marker: &'static str,
     force: bool,
 }
@@ -86,7 +86,7 @@ impl Folder {
             return Err(FolderError::Taken(target.to_owned()));
         };
         fs::create_dir_all(parent).map_err(FolderError::io(parent))?;
-        let claim = Claim::new(target, &absolute, marker)?;
+        let claim = FolderClaim::new(target, &absolute, marker)?;
         swap::mend(&absolute, marker).map_err(FolderError::io(target))?;
         Ok(Folder { target: target.to_owned(), absolute, claim, marker, force })
     }

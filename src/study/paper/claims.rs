@@ -18,7 +18,7 @@ pub struct Claim {
     /// What is asked of the simulations.
     pub test: Test,
     /// When it counts as true.
-    pub limit: Limit,
+    pub limit: ClaimLimit,
 }
 
 /// A value that a claim is judged by.
@@ -37,7 +37,7 @@ pub enum Test {
 /// When a value makes a claim true. A claim is supported if the whole 95 % interval lies on that side,
 /// contradicted if it lies on the other, undecided otherwise.
 #[derive(Clone, Copy, Debug)]
-pub enum Limit {
+pub enum ClaimLimit {
     /// It lies above.
     Above(f64),
     /// It lies below.
@@ -56,12 +56,12 @@ const CLEARLY: f64 = 2.0;
 /// "Sensitive": a doubled clearance changes the value by more than a tenth, 2^0.1375 = 1.1.
 pub(super) const SENSITIVE: f64 = 0.1375;
 
+use ClaimLimit::{Above, Below};
 use Item::{
     AccelerationJump, AngularJump, ForceJump, ForceShare, IdealForceJump, IdealPeakAcceleration,
     IdealPeakActuatorForce, Lyapunov, PathError, PeakAcceleration, PeakActuatorForce,
     PeakContactForce, SmoothForceShare,
 };
-use Limit::{Above, Below};
 use Test::{EveryStep, Mean, Power, Ratio};
 
 /// The claims, in the order of the paper.
@@ -187,7 +187,7 @@ pub const CLAIMS: [Claim; 14] = [
     },
 ];
 
-impl Limit {
+impl ClaimLimit {
     /// The limit in words.
     pub fn in_words(self) -> String {
         match self {

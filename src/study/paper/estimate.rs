@@ -1,7 +1,7 @@
 //! Means and ratios over a few starts, with 95 % intervals.
 
 use crate::measure::student::t95;
-use crate::study::compare::{Quantity, in_words};
+use crate::study::compare::{ComparedQuantity, in_words};
 use serde::Serialize;
 
 /// A value and where it lies with 95 % confidence.
@@ -50,7 +50,7 @@ impl RunMean {
     }
 
     /// Mean ± standard error, the error left out where it is rounding.
-    pub(super) fn in_words(&self, quantity: &Quantity) -> String {
+    pub(super) fn in_words(&self, quantity: &ComparedQuantity) -> String {
         let mean = in_words(quantity, self.mean);
         if self.sem > ROUNDING * self.mean.abs() {
             format!("{mean} ± {}", in_words(quantity, self.sem))

@@ -30,12 +30,12 @@ pub fn draw(scenario: &Scenario, paper: &Paper) -> Result<Vec<Picture>, PaperErr
 }
 
 /// A signal over the time in s, with clearance and without.
-struct Signal {
+struct PairedSignal {
     real: Envelope,
     ideal: Envelope,
 }
 
-impl Signal {
+impl PairedSignal {
     fn new() -> Self {
         Self { real: Envelope::new(STRETCHES), ideal: Envelope::new(STRETCHES) }
     }
@@ -47,11 +47,11 @@ impl Signal {
 }
 
 /// One run: x'', y'', φ'' of the platform, then the actuator forces.
-fn trace(scenario: &Scenario, clearance: f64) -> Result<Vec<Signal>, PaperError> {
+fn trace(scenario: &Scenario, clearance: f64) -> Result<Vec<PairedSignal>, PaperError> {
     let mut machine = machine(scenario, clearance, 0, 1)?;
     let (mechanism, ideal) = (&machine.mechanism, &mut machine.ideal);
-    let mut signals: Vec<Signal> =
-        (0..3 + mechanism.actuators.len()).map(|_| Signal::new()).collect();
+    let mut signals: Vec<PairedSignal> =
+        (0..3 + mechanism.actuators.len()).map(|_| PairedSignal::new()).collect();
     // What a run that breaks down has shown before is drawn.
     let _ = engine::run(mechanism, machine.control, machine.schedule, &mut |instant| {
         let ideal = ideal.at(instant.t);
@@ -67,7 +67,7 @@ fn trace(scenario: &Scenario, clearance: f64) -> Result<Vec<Signal>, PaperError>
 }
 
 /// Figures 4 to 9. `traces` are those of [`SIZES`].
-fn figures(traces: &[Vec<Signal>]) -> Result<Vec<Picture>, ReportError> {
+fn figures(traces: &[Vec<PairedSignal>]) -> Result<Vec<Picture>, ReportError> {
     let named = [
         ("Acceleration of the platform along x", "x″ (m/s²)"),
         ("Acceleration of the platform along y", "y″ (m/s²)"),
@@ -78,7 +78,7 @@ fn figures(traces: &[Vec<Signal>]) -> Result<Vec<Picture>, ReportError> {
     ];
     let figure = |(k, (title, label)): (usize, (&str, &str))| {
         let number = k + 4;
-        let panel = |(trace, (_, size)): (&Vec<Signal>, (f64, &str))| Panel {
+        let panel = |(trace, (_, size)): (&Vec<PairedSignal>, (f64, &str))| Panel {
             title: format!("{size}: {}", title.to_lowercase()),
             x_label: "time (s)".into(),
             y_label: label.into(),

@@ -1,6 +1,6 @@
 //! What is measured of a run, by name.
 
-use crate::study::compare::Quantity;
+use crate::study::compare::ComparedQuantity;
 
 /// One measured quantity; the number is its place in the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,14 +52,14 @@ pub const COUNT: usize = 19;
 /// turn of the motion (1 s).
 pub const JUMP: f64 = 1e-3;
 
-const fn quantity(key: &'static str, label: &'static str, unit: &'static str) -> Quantity {
-    Quantity { key, label, unit }
+const fn quantity(key: &'static str, label: &'static str, unit: &'static str) -> ComparedQuantity {
+    ComparedQuantity { key, label, unit }
 }
 
 /// The measured quantities, in the order of [`Item`]. All leave out the start (`simulation.settle`)
 /// but the Lyapunov exponent, which comes from the first 0.2 s. Jumps are the root mean square change
 /// of a signal within 1 ms over √2 times its standard deviation: 0.004 of a sine of 1 Hz, 1 of noise.
-pub const QUANTITIES: [Quantity; COUNT] = [
+pub const QUANTITIES: [ComparedQuantity; COUNT] = [
     quantity("peak_platform_acceleration_m_s2", "platform acceleration, peak", "m/s²"),
     quantity(
         "rms_acceleration_deviation_m_s2",
@@ -99,7 +99,7 @@ pub const QUANTITIES: [Quantity; COUNT] = [
 
 impl Item {
     /// Its name, label and unit.
-    pub fn quantity(self) -> &'static Quantity {
+    pub fn quantity(self) -> &'static ComparedQuantity {
         &QUANTITIES[self as usize]
     }
 }

@@ -1,33 +1,33 @@
 //! What the simulations say of the paper's claims.
 
 use super::claims::Claim;
-use super::claims::Limit::{self, Above, Below};
+use super::claims::ClaimLimit::{self, Above, Below};
 use super::claims::Test::{EveryStep, Mean, Power, Ratio};
 use super::estimate::Estimate;
 use super::items::Item;
 use super::result::CaseResult;
 use super::variants::{LARGE, SMALL};
-use super::verdict::{Judged, Verdict};
+use super::verdict::{ClaimVerdict, JudgedClaim};
 use crate::report::{length, number};
 use crate::study::compare::in_words;
 
-impl Limit {
+impl ClaimLimit {
     /// What an interval says of a claim with this limit.
-    fn verdict(self, [low, high]: [f64; 2]) -> Verdict {
+    fn verdict(self, [low, high]: [f64; 2]) -> ClaimVerdict {
         let (holds, fails) = match self {
             Above(limit) => (low > limit, high < limit),
             Below(limit) => (high < limit, low > limit),
         };
         match (holds, fails) {
-            (true, _) => Verdict::Supported,
-            (_, true) => Verdict::Contradicted,
-            _ => Verdict::Undecided,
+            (true, _) => ClaimVerdict::Supported,
+            (_, true) => ClaimVerdict::Contradicted,
+            _ => ClaimVerdict::Undecided,
         }
     }
 }
 
 /// Judges a claim by the cases of one variant, which has one for each clearance of the study.
-pub fn judge(claim: &Claim, cases: &[CaseResult]) -> Judged {
+pub fn judge(claim: &Claim, cases: &[CaseResult]) -> JudgedClaim {
     let (estimate, evidence) = match claim.test {
         Mean(item, c) => (mean_of(cases, item, c).estimate(), said(cases, item, c)),
         Ratio([(a, c), (b, d)]) => (
@@ -42,14 +42,14 @@ pub fn judge(claim: &Claim, cases: &[CaseResult]) -> Judged {
         EveryStep(item) => steps(cases, item)
             .map(|(_, ratio)| claim.limit.verdict(ratio.ci95))
             .reduce(worse)
-            .unwrap_or(Verdict::Undecided),
+            .unwrap_or(ClaimVerdict::Undecided),
         _ => claim.limit.verdict(estimate.ci95),
     };
-    Judged { key: claim.key, verdict, estimate, evidence }
+    JudgedClaim { key: claim.key, verdict, estimate, evidence }
 }
 
-fn worse(a: Verdict, b: Verdict) -> Verdict {
-    use Verdict::{Contradicted, Supported, Undecided};
+fn worse(a: ClaimVerdict, b: ClaimVerdict) -> ClaimVerdict {
+    use ClaimVerdict::{Contradicted, Supported, Undecided};
     match (a, b) {
         (Contradicted, _) | (_, Contradicted) => Contradicted,
         (Undecided, _) | (_, Undecided) => Undecided,
@@ -127,7 +127,7 @@ fn power(cases: &[CaseResult], item: Item, [from, to]: [f64; 2]) -> (Estimate, S
 mod tests {
     use super::super::claims::{CLAIMS, SENSITIVE, Test};
     use super::super::items::COUNT;
-    use super::super::probe::Measured;
+    use super::super::probe::PaperMeasured;
     use super::super::variants::CLEARANCES;
     use super::Item::PathError;
     use super::*;
@@ -138,14 +138,14 @@ mod tests {
             let runs: Vec<Option<_>> = (0..8)
                 .map(|k| if k % 2 == 0 { 1.0 + spread } else { 1.0 - spread })
                 .map(|factor| [factor * value(c); COUNT])
-                .map(|values| Some(Measured { values, faults: Vec::new() }))
+                .map(|values| Some(PaperMeasured { values, faults: Vec::new() }))
                 .collect();
             CaseResult::new(c, &runs)
         };
         CLEARANCES.map(case).into()
     }
 
-    fn judged(test: Test, limit: Limit, cases: &[CaseResult]) -> Judged {
+    fn judged(test: Test, limit: ClaimLimit, cases: &[CaseResult]) -> JudgedClaim {
         let claim = Claim { key: "", label: "", quote: "", place: "", test, limit };
         judge(&claim, cases)
     }
@@ -154,30 +154,36 @@ mod tests {
     fn an_interval_decides() {
         let cases = cases(|_| 10.0, 0.2);
         let verdict = |limit| judged(Mean(PathError, LARGE), limit, &cases).verdict;
-        assert_eq!(verdict(Above(5.0)), Verdict::Supported);
-        assert_eq!(verdict(Above(10.5)), Verdict::Undecided);
-        assert_eq!(verdict(Above(20.0)), Verdict::Contradicted);
-        assert_eq!(verdict(Below(20.0)), Verdict::Supported);
-        assert_eq!(verdict(Below(5.0)), Verdict::Contradicted);
+        assert_eq!(verdict(Above(5.0)), ClaimVerdict::Supported);
+        assert_eq!(verdict(Above(10.5)), ClaimVerdict::Undecided);
+        assert_eq!(verdict(Above(20.0)), ClaimVerdict::Contradicted);
+        assert_eq!(verdict(Below(20.0)), ClaimVerdict::Supported);
+        assert_eq!(verdict(Below(5.0)), ClaimVerdict::Contradicted);
     }
 
     #[test]
     fn growth_must_hold_at_every_step() {
         let grows = cases(f64::sqrt, 0.1);
         let j = judged(EveryStep(PathError), Above(1.0), &grows);
-        assert_eq!(j.verdict, Verdict::Supported);
+        assert_eq!(j.verdict, ClaimVerdict::Supported);
         assert!((j.estimate.value - 5f64.sqrt()).abs() < 1e-9, "1e-4 to 5e-4: {j:?}");
         let dips = cases(|c| if c == 1e-5 { 1e-9 } else { c }, 0.1);
-        assert_eq!(judged(EveryStep(PathError), Above(1.0), &dips).verdict, Verdict::Contradicted);
+        assert_eq!(
+            judged(EveryStep(PathError), Above(1.0), &dips).verdict,
+            ClaimVerdict::Contradicted
+        );
         let level = cases(|_| 1.0, 0.1);
-        assert_eq!(judged(EveryStep(PathError), Above(1.0), &level).verdict, Verdict::Undecided);
+        assert_eq!(
+            judged(EveryStep(PathError), Above(1.0), &level).verdict,
+            ClaimVerdict::Undecided
+        );
     }
 
     #[test]
     fn powers_are_found() {
         let cases = cases(|c| 3.0 * c.powf(0.4), 0.01);
         let j = judged(Power(PathError, [1e-6, LARGE]), Above(SENSITIVE), &cases);
-        assert!((j.estimate.value - 0.4).abs() < 1e-9 && j.verdict == Verdict::Supported);
+        assert!((j.estimate.value - 0.4).abs() < 1e-9 && j.verdict == ClaimVerdict::Supported);
     }
 
     #[test]
@@ -185,7 +191,7 @@ mod tests {
         let nothing: Vec<_> =
             CLEARANCES.iter().map(|&c| CaseResult::new(c, &[None, None])).collect();
         for claim in &CLAIMS {
-            assert_eq!(judge(claim, &nothing).verdict, Verdict::Undecided, "{}", claim.key);
+            assert_eq!(judge(claim, &nothing).verdict, ClaimVerdict::Undecided, "{}", claim.key);
         }
     }
 }

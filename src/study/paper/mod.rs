@@ -17,10 +17,10 @@ mod verdict;
 pub use estimate::{Estimate, RunMean};
 pub use items::Item;
 pub use paper_error::PaperError;
-pub use parameters::{Origin, Parameter};
-pub use result::{CaseResult, ClaimResult, Moves, Paper, VariantResult};
+pub use parameters::{Origin, PaperParameter};
+pub use result::{CaseResult, ClaimMoves, ClaimResult, Paper, VariantResult};
 pub use variants::{CLEARANCES, Variant, scenarios};
-pub use verdict::{Judged, Verdict};
+pub use verdict::{ClaimVerdict, JudgedClaim};
 
 use super::chaos;
 use super::files::{PAGE_FILE, SCENARIO_FILE, to_json};
@@ -82,7 +82,7 @@ pub fn paper(
         measure: claim.test.in_words(),
         limit: claim.limit.in_words(),
         judged: variants[0].claims[i].clone(),
-        over_variants: Moves::of(variants.iter().map(|variant| &variant.claims[i])),
+        over_variants: ClaimMoves::of(variants.iter().map(|variant| &variant.claims[i])),
     });
     let mut paper = Paper {
         provenance: Provenance::of(base),

@@ -3,8 +3,8 @@
 use super::estimate::Estimate;
 use super::items::QUANTITIES;
 use super::result::Paper;
-use super::verdict::{Judged, Verdict};
-use crate::report::{Part, Picture, Table, document, length, number};
+use super::verdict::{ClaimVerdict, JudgedClaim};
+use crate::report::{PagePart, PageTable, Picture, document, length, number};
 use crate::study::files::SCENARIO_FILE;
 
 /// The page as HTML.
@@ -12,25 +12,30 @@ pub fn page(paper: &Paper, pictures: &[Picture]) -> String {
     let provenance = provenance(paper);
     let open = not_given(paper);
     let parts = [
-        Part::Table(claims(paper)),
-        Part::Table(moves(paper)),
-        Part::Pictures(pictures),
-        Part::Table(parameters(paper)),
-        Part::Text { id: "not-given", title: "What the paper does not give", paragraphs: &open },
-        Part::Table(variants(paper)),
-        Part::Table(quantities(paper)),
-        Part::Provenance(&provenance),
+        PagePart::Table(claims(paper)),
+        PagePart::Table(moves(paper)),
+        PagePart::Pictures(pictures),
+        PagePart::Table(parameters(paper)),
+        PagePart::Text {
+            id: "not-given",
+            title: "What the paper does not give",
+            paragraphs: &open,
+        },
+        PagePart::Table(variants(paper)),
+        PagePart::Table(quantities(paper)),
+        PagePart::Provenance(&provenance),
     ];
     document("The paper's study, repeated", &lead(paper), &parts)
 }
 
 fn lead(p: &Paper) -> String {
-    let count = |verdict: Verdict| p.claims.iter().filter(|c| c.judged.verdict == verdict).count();
+    let count =
+        |verdict: ClaimVerdict| p.claims.iter().filter(|c| c.judged.verdict == verdict).count();
     let firm = p.claims.iter().filter(|claim| claim.over_variants.agree()).count();
     let refuted: Vec<&str> = p
         .claims
         .iter()
-        .filter(|claim| claim.judged.verdict == Verdict::Contradicted)
+        .filter(|claim| claim.judged.verdict == ClaimVerdict::Contradicted)
         .map(|claim| claim.label)
         .collect();
     let refuted = if refuted.is_empty() {
@@ -44,9 +49,9 @@ fn lead(p: &Paper) -> String {
          the assumed values; {} keep their verdict under all {} sets of assumptions about what the \
          paper does not give.{refuted}",
         p.claims.len(),
-        count(Verdict::Supported),
-        count(Verdict::Contradicted),
-        count(Verdict::Undecided),
+        count(ClaimVerdict::Supported),
+        count(ClaimVerdict::Contradicted),
+        count(ClaimVerdict::Undecided),
         firm,
         p.variants.len()
     )
@@ -58,7 +63,7 @@ fn interval(estimate: &Estimate) -> String {
     format!("{} ({low} to {high})", value(estimate.value))
 }
 
-fn claims(p: &Paper) -> Table {
+fn claims(p: &Paper) -> PageTable {
     let rows = p.claims.iter().map(|claim| {
         let moves = &claim.over_variants;
         let of = |count: usize, word: &str| (count > 0).then(|| format!("{count} {word}"));
@@ -75,7 +80,7 @@ fn claims(p: &Paper) -> Table {
             moved.join(", "),
         ]
     });
-    Table {
+    PageTable {
         id: "claims",
         title: "The paper's claims".into(),
         header: [
@@ -102,16 +107,16 @@ fn claims(p: &Paper) -> Table {
     }
 }
 
-fn cell(judged: &Judged) -> String {
+fn cell(judged: &JudgedClaim) -> String {
     let mark = match judged.verdict {
-        Verdict::Supported => "yes",
-        Verdict::Contradicted => "no",
-        Verdict::Undecided => "open",
+        ClaimVerdict::Supported => "yes",
+        ClaimVerdict::Contradicted => "no",
+        ClaimVerdict::Undecided => "open",
     };
     format!("{mark} {}", interval(&judged.estimate))
 }
 
-fn moves(p: &Paper) -> Table {
+fn moves(p: &Paper) -> PageTable {
     let header = std::iter::once("claim; limit".to_owned());
     let header = header.chain(p.variants.iter().map(|variant| variant.label.to_owned()));
     let rows = p.claims.iter().enumerate().map(|(i, claim)| {
@@ -119,7 +124,7 @@ fn moves(p: &Paper) -> Table {
         let cells = p.variants.iter().map(|variant| cell(&variant.claims[i]));
         std::iter::once(name).chain(cells).collect()
     });
-    Table {
+    PageTable {
         id: "assumptions",
         title: "As the assumptions move".into(),
         header: header.collect(),
@@ -131,7 +136,7 @@ fn moves(p: &Paper) -> Table {
     }
 }
 
-fn parameters(p: &Paper) -> Table {
+fn parameters(p: &Paper) -> PageTable {
     let rows = p.parameters.iter().map(|parameter| {
         vec![
             parameter.name.to_owned(),
@@ -141,7 +146,7 @@ fn parameters(p: &Paper) -> Table {
             parameter.note.to_owned(),
         ]
     });
-    Table {
+    PageTable {
         id: "parameters",
         title: "Parameters".into(),
         header: ["parameter", "paper", "used here", "origin", "where, or why"]
@@ -185,7 +190,7 @@ fn not_given(p: &Paper) -> Vec<String> {
     paragraphs
 }
 
-fn variants(p: &Paper) -> Table {
+fn variants(p: &Paper) -> PageTable {
     let rows = p.variants.iter().map(|variant| {
         let halted: usize = variant.cases.iter().map(|case| case.halted).sum();
         let faulty: usize = variant.cases.iter().map(|case| case.faulty).sum();
@@ -198,7 +203,7 @@ fn variants(p: &Paper) -> Table {
             faulty.to_string(),
         ]
     });
-    Table {
+    PageTable {
         id: "variants",
         title: "The sets of assumptions".into(),
         header: [
@@ -217,7 +222,7 @@ fn variants(p: &Paper) -> Table {
     }
 }
 
-fn quantities(p: &Paper) -> Table {
+fn quantities(p: &Paper) -> PageTable {
     let cases = &p.variants[0].cases;
     let header = std::iter::once("quantity".to_owned());
     let header = header.chain(cases.iter().map(|case| length(case.clearance_m)));
@@ -228,7 +233,7 @@ fn quantities(p: &Paper) -> Table {
         });
         std::iter::once(quantity.label.to_owned()).chain(cells).collect()
     });
-    Table {
+    PageTable {
         id: "quantities",
         title: "All quantities under the assumed values".into(),
         header: header.collect(),

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// One parameter.
 #[derive(Clone, Debug, Serialize)]
-pub struct Parameter {
+pub struct PaperParameter {
     /// What it is.
     pub name: &'static str,
     /// The paper's value with its unit; none where it is silent.
@@ -45,20 +45,26 @@ impl Origin {
 }
 
 /// A number that the paper gives.
-fn given(name: &'static str, unit: &str, paper: f64, used: f64, note: &'static str) -> Parameter {
+fn given(
+    name: &'static str,
+    unit: &str,
+    paper: f64,
+    used: f64,
+    note: &'static str,
+) -> PaperParameter {
     let value = |v: f64| format!("{} {unit}", number(v)).trim_end().to_owned();
     let same = (used / paper - 1.0).abs() < 1e-9;
     let origin = if same { Origin::Paper } else { Origin::Changed };
-    Parameter { name, paper: Some(value(paper)), used: value(used), origin, note }
+    PaperParameter { name, paper: Some(value(paper)), used: value(used), origin, note }
 }
 
 /// Something that the paper does not give.
-fn assumed(name: &'static str, used: String, note: &'static str) -> Parameter {
-    Parameter { name, paper: None, used, origin: Origin::Assumed, note }
+fn assumed(name: &'static str, used: String, note: &'static str) -> PaperParameter {
+    PaperParameter { name, paper: None, used, origin: Origin::Assumed, note }
 }
 
 /// The table of a scenario; `machine` is its machine.
-pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
+pub fn parameters(scenario: &Scenario, machine: &Machine) -> Vec<PaperParameter> {
     let Mechanism::ThreeRpr(declared) = &scenario.mechanism else { return Vec::new() };
     [
         dimensions_and_material(scenario, declared),
@@ -75,7 +81,7 @@ fn mm(metres: f64) -> String {
     format!("{} mm", number(1e3 * metres))
 }
 
-fn dimensions_and_material(scenario: &Scenario, m: &ThreeRpr) -> Vec<Parameter> {
+fn dimensions_and_material(scenario: &Scenario, m: &ThreeRpr) -> Vec<PaperParameter> {
     let (legs, contact) = (&scenario.legs, &scenario.contact);
     vec![
         given("platform, side length", "mm", 100.0, 1e3 * m.platform_side, "table 1"),
@@ -84,7 +90,7 @@ fn dimensions_and_material(scenario: &Scenario, m: &ThreeRpr) -> Vec<Parameter> 
         given("links, density", "kg/m³", 2270.0, legs.density, "table 1"),
         given("links, Young's modulus", "GPa", 73.0, 1e-9 * contact.youngs_modulus, "table 1"),
         given("links, Poisson's ratio", "", 0.3, contact.poisson_ratio, "table 1"),
-        Parameter {
+        PaperParameter {
             name: "stroke of the actuators",
             paper: Some("motion course amplitude 200 mm".into()),
             used: format!("{} to {}", mm(legs.stroke[0]), mm(legs.stroke[1])),
@@ -94,13 +100,13 @@ fn dimensions_and_material(scenario: &Scenario, m: &ThreeRpr) -> Vec<Parameter> 
     ]
 }
 
-fn joints_and_contacts(scenario: &Scenario, machine: &Machine) -> Vec<Parameter> {
+fn joints_and_contacts(scenario: &Scenario, machine: &Machine) -> Vec<PaperParameter> {
     let (contact, joints) = (&scenario.contact, &scenario.joints);
     let stiffness =
         machine.contact(0, 0.1).and_then(|(law, _)| law.stiffness()).unwrap_or(f64::NAN);
     vec![
         given("bearing radius", "mm", 10.0, 1e3 * joints.bearing_radius, "section 3.1"),
-        Parameter {
+        PaperParameter {
             name: "radial clearances",
             paper: Some(format!("{} and 0.00001 mm", mm(LARGE))),
             used: CLEARANCES.map(|c| format!("{} mm", number(1e3 * c))).join(", "),
@@ -137,9 +143,9 @@ fn joints_and_contacts(scenario: &Scenario, machine: &Machine) -> Vec<Parameter>
     ]
 }
 
-fn motion(scenario: &Scenario) -> Vec<Parameter> {
+fn motion(scenario: &Scenario) -> Vec<PaperParameter> {
     vec![
-        Parameter {
+        PaperParameter {
             name: "trajectory",
             paper: Some("\"a trajectory with a constant velocity\"".into()),
             used: trajectory(&scenario.motion),
@@ -158,7 +164,7 @@ fn motion(scenario: &Scenario) -> Vec<Parameter> {
     ]
 }
 
-fn masses_and_shapes(scenario: &Scenario, m: &ThreeRpr) -> Vec<Parameter> {
+fn masses_and_shapes(scenario: &Scenario, m: &ThreeRpr) -> Vec<PaperParameter> {
     let legs = &scenario.legs;
     vec![
         assumed(
@@ -179,7 +185,7 @@ fn masses_and_shapes(scenario: &Scenario, m: &ThreeRpr) -> Vec<Parameter> {
     ]
 }
 
-fn surroundings_and_drives(scenario: &Scenario) -> Vec<Parameter> {
+fn surroundings_and_drives(scenario: &Scenario) -> Vec<PaperParameter> {
     let gravity = scenario.environment.gravity;
     vec![
         assumed(

@@ -14,7 +14,7 @@ use std::ops::Range;
 const SMOOTHING: usize = 100;
 
 /// The measured quantities of one run, in the order of [`Item`].
-pub type Values = [f64; COUNT];
+pub type PaperValues = [f64; COUNT];
 
 /// Channels of the signals: a_x and a_y, then φ'', then the actuator forces.
 const LINEAR: Range<usize> = 0..2;
@@ -23,18 +23,18 @@ const FORCES: usize = 3;
 
 /// What a run came to.
 #[derive(Clone, Debug)]
-pub struct Measured {
+pub struct PaperMeasured {
     /// The measured quantities.
-    pub values: Values,
+    pub values: PaperValues,
     /// What it saw of its own faults, in words.
     pub faults: Vec<String>,
 }
 
 /// Runs a machine and measures it. `watch` sees how much time was simulated, in s, and may
 /// end it. `None` if the run broke down or was ended.
-pub fn measure(scenario: &Scenario, machine: &mut Machine, watch: &Watch) -> Option<Measured> {
+pub fn measure(scenario: &Scenario, machine: &mut Machine, watch: &Watch) -> Option<PaperMeasured> {
     let settle = scenario.simulation.settle();
-    let mut probe = Probe::default();
+    let mut probe = PaperProbe::default();
     let mut told = 0.0;
     let s = measured_until(scenario, machine, watch.stop(), &mut |mechanism, instant, ideal| {
         if instant.t >= settle {
@@ -80,12 +80,12 @@ pub fn measure(scenario: &Scenario, machine: &mut Machine, watch: &Watch) -> Opt
     ] {
         values[item as usize] = value;
     }
-    Some(Measured { values, faults: s.watched.faults })
+    Some(PaperMeasured { values, faults: s.watched.faults })
 }
 
 /// What a summary does not gather.
 #[derive(Debug, Default)]
-struct Probe {
+struct PaperProbe {
     real: Signals,
     ideal: Signals,
     angular_squares: f64,
@@ -93,7 +93,7 @@ struct Probe {
     contact_forces: Forces,
 }
 
-impl Probe {
+impl PaperProbe {
     fn row(&mut self, instant: &Instant, output: usize, ideal: &IdealInstant) {
         let now = instant.evaluation;
         let acceleration = &now.accelerations[output];
@@ -114,13 +114,13 @@ fn channels(acceleration: &Vector3<f64>, forces: &[f64]) -> Vec<f64> {
 #[derive(Debug, Default)]
 struct Signals {
     rows: usize,
-    channels: Vec<Channel>,
+    channels: Vec<ProbeChannel>,
     /// The samples of the last [`JUMP`].
     recent: VecDeque<Vec<f64>>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Channel {
+struct ProbeChannel {
     sum: f64,
     squares: f64,
     /// Sum of squared changes.
@@ -130,7 +130,7 @@ struct Channel {
 impl Signals {
     fn push(&mut self, sample: Vec<f64>) {
         self.rows += 1;
-        self.channels.resize(sample.len(), Channel::default());
+        self.channels.resize(sample.len(), ProbeChannel::default());
         for (channel, value) in self.channels.iter_mut().zip(&sample) {
             channel.sum += value;
             channel.squares += value * value;

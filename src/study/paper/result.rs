@@ -2,11 +2,11 @@
 
 use super::estimate::RunMean;
 use super::items::{COUNT, Item, QUANTITIES};
-use super::parameters::Parameter;
-use super::probe::Measured;
-use super::verdict::{Judged, Verdict};
+use super::parameters::PaperParameter;
+use super::probe::PaperMeasured;
+use super::verdict::{ClaimVerdict, JudgedClaim};
 use crate::simulate::Provenance;
-use crate::study::compare::Quantity;
+use crate::study::compare::ComparedQuantity;
 use serde::{Serialize, Serializer};
 
 /// The result of the study. Figures leave out the first `settle_s` seconds of each run.
@@ -26,7 +26,7 @@ pub struct Paper {
     /// Clearances of the study in m.
     pub clearances_m: Vec<f64>,
     /// The machine's parameters: what the paper says and what is used here.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<PaperParameter>,
     /// The claims under the scenario as it stands, and what becomes of them under the variants.
     pub claims: Vec<ClaimResult>,
     /// All variants, the scenario as it stands first.
@@ -71,14 +71,14 @@ pub struct ClaimResult {
     pub limit: String,
     /// Key, verdict, value, interval and evidence under the scenario as it stands.
     #[serde(flatten)]
-    pub judged: Judged,
+    pub judged: JudgedClaim,
     /// What becomes of it as the assumptions move.
-    pub over_variants: Moves,
+    pub over_variants: ClaimMoves,
 }
 
 /// A claim over all variants.
 #[derive(Clone, Debug, Serialize)]
-pub struct Moves {
+pub struct ClaimMoves {
     /// Number of variants that support it.
     pub supported: usize,
     /// Number of variants that contradict it.
@@ -91,15 +91,15 @@ pub struct Moves {
     pub highest: f64,
 }
 
-impl Moves {
+impl ClaimMoves {
     /// Of a claim's verdicts.
-    pub fn of<'a>(judged: impl Iterator<Item = &'a Judged> + Clone) -> Self {
-        let count = |verdict: Verdict| judged.clone().filter(|j| j.verdict == verdict).count();
+    pub fn of<'a>(judged: impl Iterator<Item = &'a JudgedClaim> + Clone) -> Self {
+        let count = |verdict: ClaimVerdict| judged.clone().filter(|j| j.verdict == verdict).count();
         let values = || judged.clone().map(|j| j.estimate.value);
         Self {
-            supported: count(Verdict::Supported),
-            contradicted: count(Verdict::Contradicted),
-            undecided: count(Verdict::Undecided),
+            supported: count(ClaimVerdict::Supported),
+            contradicted: count(ClaimVerdict::Contradicted),
+            undecided: count(ClaimVerdict::Undecided),
             lowest: values().fold(f64::NAN, f64::min),
             highest: values().fold(f64::NAN, f64::max),
         }
@@ -126,7 +126,7 @@ pub struct VariantResult {
     /// One for each clearance.
     pub cases: Vec<CaseResult>,
     /// One for each claim.
-    pub claims: Vec<Judged>,
+    pub claims: Vec<JudgedClaim>,
 }
 
 /// All starts of a variant at one clearance.
@@ -147,7 +147,7 @@ pub struct CaseResult {
 
 impl CaseResult {
     /// Of the runs at one clearance in m; a run that broke down has no values.
-    pub(super) fn new(clearance_m: f64, runs: &[Option<Measured>]) -> Self {
+    pub(super) fn new(clearance_m: f64, runs: &[Option<PaperMeasured>]) -> Self {
         let mean = |i: usize| RunMean::of(runs.iter().flatten().map(|run| run.values[i]));
         let faulty = || runs.iter().flatten().filter(|run| !run.faults.is_empty());
         Self {
@@ -165,7 +165,7 @@ impl CaseResult {
     }
 
     /// The measured quantities by name.
-    pub fn quantities(&self) -> impl Iterator<Item = (&'static Quantity, &RunMean)> {
+    pub fn quantities(&self) -> impl Iterator<Item = (&'static ComparedQuantity, &RunMean)> {
         QUANTITIES.iter().zip(&self.quantities)
     }
 }

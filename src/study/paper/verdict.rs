@@ -6,7 +6,7 @@ use serde::Serialize;
 /// What the simulations say of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum ClaimVerdict {
     /// The interval agrees with it.
     Supported,
     /// The interval excludes it.
@@ -17,11 +17,11 @@ pub enum Verdict {
 
 /// A claim in the light of one variant.
 #[derive(Clone, Debug, Serialize)]
-pub struct Judged {
+pub struct JudgedClaim {
     /// Key of the claim.
     pub key: &'static str,
     /// What the simulations say.
-    pub verdict: Verdict,
+    pub verdict: ClaimVerdict,
     /// The value that the claim is judged by; `null` for a ratio to nothing.
     #[serde(flatten)]
     pub estimate: Estimate,
@@ -29,13 +29,13 @@ pub struct Judged {
     pub evidence: String,
 }
 
-impl Verdict {
+impl ClaimVerdict {
     /// In one word.
     pub fn in_words(self) -> &'static str {
         match self {
-            Verdict::Supported => "supported",
-            Verdict::Contradicted => "contradicted",
-            Verdict::Undecided => "undecided",
+            ClaimVerdict::Supported => "supported",
+            ClaimVerdict::Contradicted => "contradicted",
+            ClaimVerdict::Undecided => "undecided",
         }
     }
 }

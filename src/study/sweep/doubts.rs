@@ -1,7 +1,7 @@
 //! What is doubtful about the keys that a sweep varies, whatever its runs do.
 
 use super::Vary;
-use super::statistics::is_start;
+use super::rows::statistics::is_start;
 use crate::mechanism::JointIndex;
 use crate::scenario::Scenario;
 use crate::simulate::assemble;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 /// What a few runs say of all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Forecast {
+pub struct SweepForecast {
     /// Runs that were tried.
     pub tried: usize,
     /// Mean time of a run in s on one thread, with no other beside it.
@@ -16,13 +16,13 @@ pub struct Forecast {
 
 /// Tries the first, the last and a middle one of the runs `missing` of a plan (they see what a varied key does to the
 /// cost), each for `at_most`; one that would take longer is judged by the share of its time that it reached. None where nothing is missing, or the machine can do none of those.
-pub fn forecast(plan: &Plan, missing: &[usize], at_most: Duration) -> Option<Forecast> {
+pub fn forecast(plan: &Plan, missing: &[usize], at_most: Duration) -> Option<SweepForecast> {
     let last = missing.len().checked_sub(1)?;
     let mut chosen = [0, last / 2, last].map(|place| missing[place]).to_vec();
     chosen.dedup();
     let times: Vec<f64> = chosen.iter().filter_map(|run| time_of(plan, *run, at_most)).collect();
     let tried = times.len();
-    (tried > 0).then(|| Forecast { tried, run_s: times.iter().sum::<f64>() / tried as f64 })
+    (tried > 0).then(|| SweepForecast { tried, run_s: times.iter().sum::<f64>() / tried as f64 })
 }
 
 /// Time in s of run `run`.

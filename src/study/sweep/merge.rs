@@ -1,7 +1,7 @@
 //! The parts of a sweep joined.
 
-use super::journal::{self, JOURNAL_FILE, Rows};
-use super::result::{Outcome, put, refuse_edited_table, write};
+use super::result::{SweepOutcome, put, refuse_edited_table, write};
+use super::rows::journal::{self, JOURNAL_FILE, RunRows};
 use super::{RECORD_FILE, Record, Shard, SweepError};
 use crate::study::files::SCENARIO_FILE;
 use crate::study::folder::Folder;
@@ -24,13 +24,13 @@ pub fn merge(
     target: &Path,
     force: bool,
     partial: bool,
-) -> Result<Outcome, SweepError> {
+) -> Result<SweepOutcome, SweepError> {
     refuse_twice(parts)?;
     let records: Vec<Record> =
         parts.iter().map(|part| Record::read(part)).collect::<Result<_, _>>()?;
     refuse_foreign(parts, &records)?;
     let (identity, first_part) = (&records[0].identity, &parts[0]);
-    let mut rows = Rows::new();
+    let mut rows = RunRows::new();
     for (part, record) in parts.iter().zip(&records) {
         refuse_edited_table(part, record)?;
         for (run, row) in journal::read(part, identity, record.shard)? {
@@ -103,7 +103,7 @@ fn refuse_foreign(parts: &[PathBuf], records: &[Record]) -> Result<(), SweepErro
 
 /// Fails if a run has no row, and says which parts are not there and which are unfinished.
 fn refuse_missing(
-    rows: &Rows,
+    rows: &RunRows,
     runs: usize,
     parts: &[PathBuf],
     records: &[Record],

@@ -6,36 +6,30 @@
 //! Everything about run n follows from n: its values from the design, its figures from a simulation
 //! that knows nothing of the others. So neither threads nor shards nor interruptions show in the
 //! table, and the journal, one line a finished run in whatever order they finish, is all the state
-//! there is.
+//! there is. `varied` holds what is varied, `rows` everything about rows on the disk.
 
-mod design;
 mod doubts;
 mod forecast;
-mod journal;
 mod merge;
-mod page;
-#[cfg(feature = "parquet")]
-mod parquet;
-mod pictures;
 mod plan;
-mod record;
 mod result;
-pub(super) mod row;
+mod rows;
 mod shard;
 mod standing;
-mod statistics;
-mod vary;
+mod varied;
 mod work;
 
-pub use design::Design;
-pub use forecast::{Forecast, forecast};
+pub(super) use rows::row;
+
+pub use forecast::{SweepForecast, forecast};
 pub use merge::merge;
 pub use plan::Plan;
-pub use record::{Identity, RECORD_FILE, Record};
-pub use result::Outcome;
+pub use result::SweepOutcome;
+pub use rows::record::{Identity, RECORD_FILE, Record};
 pub use shard::Shard;
 pub use standing::Standing;
-pub use vary::{Range, Values, Vary};
+pub use varied::design::Design;
+pub use varied::vary::{Range, Values, Vary};
 pub use work::{Ongoing, on_threads, sweep};
 
 use super::run_error::RunError;

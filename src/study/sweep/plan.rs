@@ -1,13 +1,13 @@
 //! A sweep before it is run: every run's scenario, checked; and one of its runs made.
 
 use super::doubts::doubts;
-use super::record::{hexadecimal, sha256};
-use super::{Design, Identity, Shard, SweepError, Vary, row};
+use super::rows::record::{hexadecimal, sha256};
+use super::rows::row;
+use super::{Design, Identity, Shard, SweepError, Vary};
 use crate::measure::bounded;
 use crate::scenario::{Location, Problem, Scenario, Source};
-use crate::simulate::{
-    Machine, Provenance, Severity, assemble, findings, measured_until, unacting,
-};
+use crate::simulate::unacting;
+use crate::simulate::{Machine, Provenance, Severity, assemble, findings, measured_until};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::io::Read as _;

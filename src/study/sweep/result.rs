@@ -1,9 +1,10 @@
 //! The files of a sweep, from its rows: table, pictures, page, record.
 
-use super::journal::{JOURNAL_FILE, Rows};
-use super::record::sha256;
-use super::row::{Status, status};
-use super::{Identity, RECORD_FILE, Record, Shard, SweepError, page, pictures, statistics};
+use super::rows::journal::{JOURNAL_FILE, RunRows};
+use super::rows::record::sha256;
+use super::rows::row::{Status, status};
+use super::rows::{page, pictures, statistics};
+use super::{Identity, RECORD_FILE, Record, Shard, SweepError};
 use crate::study::files::{PAGE_FILE, SCENARIO_FILE};
 use crate::study::folder::sync;
 use crate::study::run_error::{RunError, refused};
@@ -23,7 +24,7 @@ const UNFINISHED_FILE: &str = "unfinished.tmp";
 
 /// What a sweep came to.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct SweepOutcome {
     /// What `sweep.json` says.
     pub record: Record,
     /// The text of `sweep.json`.
@@ -34,7 +35,7 @@ pub struct Outcome {
 
 impl Record {
     /// The record of part `shard` of a sweep that has come as far as `rows`, its table not written.
-    pub(super) fn new(identity: Identity, shard: Shard, rows: &Rows, folder: &Path) -> Record {
+    pub(super) fn new(identity: Identity, shard: Shard, rows: &RunRows, folder: &Path) -> Record {
         let count = |wanted| rows.values().filter(|row| status(row) == wanted).count();
         let texts = [
             RECORD_FILE,
@@ -69,8 +70,8 @@ pub(super) fn write(
     folder: &Path,
     identity: &Identity,
     shard: Shard,
-    rows: &Rows,
-) -> Result<Outcome, RunError> {
+    rows: &RunRows,
+) -> Result<SweepOutcome, RunError> {
     let table = table(identity, rows).map_err(refused(TABLE_FILE))?;
     let mut record = Record::new(identity.clone(), shard, rows, folder);
     record.table_sha256 = Some(sha256(table.as_bytes()));
@@ -81,7 +82,7 @@ pub(super) fn write(
     put(place, TABLE_FILE, &table)?;
     #[cfg(feature = "parquet")]
     {
-        let table = super::parquet::table(identity, rows).map_err(refused(PARQUET_FILE))?;
+        let table = super::rows::parquet::table(identity, rows).map_err(refused(PARQUET_FILE))?;
         put(place, PARQUET_FILE, &table)?;
     }
     if statistics::has_starts(identity) {
@@ -95,7 +96,7 @@ pub(super) fn write(
     put(place, PAGE_FILE, page::page(&record, rows, &pictures))?;
     let json = record.to_json();
     put(place, RECORD_FILE, &json)?;
-    Ok(Outcome { record, json, folder: folder.to_owned() })
+    Ok(SweepOutcome { record, json, folder: folder.to_owned() })
 }
 
 /// Writes a file that is never seen half written, not even after a power cut.
@@ -129,7 +130,7 @@ pub(super) fn refuse_edited_table(folder: &Path, record: &Record) -> Result<(), 
 }
 
 /// `sweep.csv`: the rows by the number of their run.
-fn table(identity: &Identity, rows: &Rows) -> io::Result<String> {
+fn table(identity: &Identity, rows: &RunRows) -> io::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&identity.columns)?;
     for row in rows.values() {

@@ -1,6 +1,6 @@
 //! How far a part of a sweep has come, seen from outside: nothing is made, changed or locked for long.
 
-use super::journal::{self, lock};
+use super::rows::journal::{self, lock};
 use super::work::refuse_other;
 use super::{Plan, RECORD_FILE, Record, Shard, SweepError};
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! A sweep at work: what is not in the journal yet is run, on all threads.
 
-use super::journal::{JOURNAL_FILE, Journal, Rows, kept, lock};
-use super::result::{Outcome, PARQUET_FILE, TABLE_FILE, put, refuse_edited_table, write};
+use super::result::{PARQUET_FILE, SweepOutcome, TABLE_FILE, put, refuse_edited_table, write};
+use super::rows::journal::{JOURNAL_FILE, Journal, RunRows, kept, lock};
 use super::{Identity, Plan, RECORD_FILE, Record, Shard, SweepError};
 use crate::study::files::SCENARIO_FILE;
 use crate::study::folder::Folder;
@@ -41,7 +41,7 @@ pub fn sweep(
     force: bool,
     stop: &AtomicBool,
     progress: &(dyn Fn(usize, usize) + Sync),
-) -> Result<Outcome, SweepError> {
+) -> Result<SweepOutcome, SweepError> {
     let ongoing = Ongoing::begin(plan, target, force)?;
     let (pending, of) = (ongoing.missing(), ongoing.runs());
     progress(ongoing.finished(), of);
@@ -70,7 +70,7 @@ pub struct Ongoing {
     identity: Identity,
     shard: Shard,
     journal: Journal,
-    rows: Rows,
+    rows: RunRows,
 }
 
 impl Ongoing {
@@ -162,13 +162,13 @@ impl Ongoing {
     ///
     /// # Errors
     /// [`SweepError`] if files cannot be written; the rows stand.
-    pub fn finish(self) -> Result<Outcome, SweepError> {
+    pub fn finish(self) -> Result<SweepOutcome, SweepError> {
         Ok(write(&self.target, &self.target, &self.identity, self.shard, &self.rows)?)
     }
 }
 
 /// The journal of this sweep in `target`, and the rows that are there.
-fn open(plan: &Plan, target: &Path, force: bool) -> Result<(Journal, Rows), SweepError> {
+fn open(plan: &Plan, target: &Path, force: bool) -> Result<(Journal, RunRows), SweepError> {
     Folder::mend(target, RECORD_FILE).map_err(RunError::from)?;
     // Held until the journal is replaced: nobody works on what is thrown away.
     let replaced =
@@ -187,7 +187,7 @@ fn open(plan: &Plan, target: &Path, force: bool) -> Result<(Journal, Rows), Swee
 /// Makes the folder of a sweep without rows. It gets its name when record and journal are in it.
 fn create(plan: &Plan, target: &Path, force: bool) -> Result<(), SweepError> {
     let folder = Folder::prepare(target, RECORD_FILE, force).map_err(RunError::from)?;
-    let record = Record::new(plan.identity().clone(), plan.shard(), &Rows::new(), target);
+    let record = Record::new(plan.identity().clone(), plan.shard(), &RunRows::new(), target);
     let put = |name, text: &str| put(folder.path(), name, text);
     put(RECORD_FILE, &record.to_json())?;
     put(JOURNAL_FILE, "")?;

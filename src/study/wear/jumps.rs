@@ -4,7 +4,7 @@
 //! one run rubs (Euler's method, with the cycles for time). Each jump is made twice, in one and in two halves with a run
 //! between them; their distance is the error of the one, and twice that of the two, which are kept.
 
-use super::request::{Request, WearError};
+use super::request::{WearError, WearRequest};
 use super::rings::Ring;
 use super::stage::Stage;
 use crate::contact::Play;
@@ -31,11 +31,11 @@ pub(super) type Rub<'a> = dyn FnMut(&[Play], f64) -> Result<Vec<Vec<f64>>, WearE
 pub(super) fn predict(
     rings: &[Ring],
     start: Vec<Play>,
-    request: Request,
+    request: WearRequest,
     rub: &mut Rub,
     come: &dyn Fn(f64),
 ) -> Result<Vec<Stage>, WearError> {
-    let Request { cycles, tolerance, .. } = request;
+    let WearRequest { cycles, tolerance, .. } = request;
     let errors = vec![0.0; rings.len()];
     let rubbed = rub(&start, 0.0)?;
     let mut jump = first(rings, &start, &rubbed, cycles);
@@ -108,8 +108,8 @@ mod tests {
         Ring { joint: 0, name: "A".to_owned(), clearance, radius, length, coefficient: 1e-14 }
     }
 
-    fn request(tolerance: f64) -> Request {
-        Request { cycles: CYCLES, period: 1.0, tolerance }
+    fn request(tolerance: f64) -> WearRequest {
+        WearRequest { cycles: CYCLES, period: 1.0, tolerance }
     }
 
     /// What is rubbed grows in proportion to the mean room, in all directions: the room grows exponentially.

@@ -15,7 +15,7 @@ mod rings;
 mod stage;
 
 pub use files::WEAR_PREDICTED_FILE;
-pub use request::{Request, WearError};
+pub use request::{WearError, WearRequest};
 pub use result::{JointWear, RingWear, WearSummary};
 pub use stage::Stage;
 
@@ -38,7 +38,7 @@ use std::time::Instant as Clock;
 
 /// A finished prediction and its files.
 #[derive(Debug)]
-pub struct Predicted {
+pub struct PredictedWear {
     /// All figures.
     pub summary: WearSummary,
     /// The text of [`WEAR_PREDICTED_FILE`].
@@ -59,10 +59,10 @@ pub fn period_of(scenario: &Scenario) -> Option<f64> {
 /// [`WearError`]; the folder is left as it was.
 pub fn wear(
     scenario: &Scenario,
-    request: Request,
+    request: WearRequest,
     folder: Folder,
     watch: &Watch,
-) -> Result<Predicted, WearError> {
+) -> Result<PredictedWear, WearError> {
     let started = Clock::now();
     let expanded = expand(scenario)?;
     let machine = assemble(scenario)?;
@@ -93,7 +93,7 @@ pub fn wear(
     }
     write(PAGE_FILE, &page::page(&summary, &pictures))?;
     let folder = folder.finish().map_err(RunError::from)?;
-    Ok(Predicted { summary, json, folder })
+    Ok(PredictedWear { summary, json, folder })
 }
 
 /// Force times sliding of each ring in J per cycle, in a run with rings that leave these rooms. The start that is left out of a run's figures is left out here, too.

@@ -6,7 +6,8 @@ use super::result::{RingWear, WearSummary, depths};
 use super::rings::Ring;
 use super::stage::Stage;
 use crate::report::{
-    Curve, Panel, Part, Picture, ReportError, Style, Table, document, length, number, panels_svg,
+    Curve, PagePart, PageTable, Panel, Picture, ReportError, Style, document, length, number,
+    panels_svg,
 };
 use crate::study::files::SCENARIO_FILE;
 
@@ -127,12 +128,15 @@ pub(super) fn page(summary: &WearSummary, pictures: &[Picture]) -> String {
         ("Time of computing", format!("{} s", number(summary.wall_s))),
     ];
     let provenance = summary.provenance.lines("scenario", Some(SCENARIO_FILE), more);
-    let parts =
-        [Part::Table(table(summary)), Part::Pictures(pictures), Part::Provenance(&provenance)];
+    let parts = [
+        PagePart::Table(table(summary)),
+        PagePart::Pictures(pictures),
+        PagePart::Provenance(&provenance),
+    ];
     document(&title, &lead, &parts)
 }
 
-fn table(summary: &WearSummary) -> Table {
+fn table(summary: &WearSummary) -> PageTable {
     let header = [
         "joint",
         "wear coefficient (1/Pa)",
@@ -155,7 +159,7 @@ fn table(summary: &WearSummary) -> Table {
             length(joint.error_m),
         ]
     };
-    Table {
+    PageTable {
         id: "rings",
         title: "Rings".to_owned(),
         header: header.map(str::to_owned).to_vec(),

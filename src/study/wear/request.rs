@@ -6,7 +6,7 @@ use crate::study::run_error::RunError;
 
 /// What is to be predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Request {
+pub struct WearRequest {
     /// How many cycles.
     pub cycles: f64,
     /// Time of one cycle in s.

@@ -1,7 +1,7 @@
 //! What a prediction of wear comes to.
 
 use super::around::{angles, table};
-use super::request::Request;
+use super::request::WearRequest;
 use super::rings::Ring;
 use super::stage::Stage;
 use crate::contact::Play;
@@ -94,7 +94,7 @@ fn joints(rings: &[Ring], start: &Stage, stage: &Stage) -> Vec<JointWear> {
 pub(super) fn summary(
     scenario: &Scenario,
     rings: &[Ring],
-    request: Request,
+    request: WearRequest,
     stages: &[Stage],
 ) -> WearSummary {
     let of = |stage: &Stage| StageSummary {

@@ -2,8 +2,8 @@
 
 use super::lasting::{Lasting, low};
 use super::scan::{Peak, Rulers, scan};
-use super::series::{Series, means, scatter};
-use crate::calibrate::report::{ActsOn, Depends, EffectReport, Fitted};
+use super::series::{FreedomSeries, means, scatter};
+use crate::calibrate::results::report::{ActsOn, Depends, EffectReport, Fitted};
 use crate::calibrate::sensed::thresholds::{EVENT_SHARE, RESTLESS};
 use crate::effects::{History, OverTime, Setting};
 
@@ -31,7 +31,7 @@ pub struct Event {
 
 /// What does not last in recordings of one machine. Each is held against itself; one that is far more restless than
 /// another is held against that: what acts on it half of the time is no ground to judge it by.
-pub fn events(all: &[Series]) -> Vec<Event> {
+pub fn events(all: &[FreedomSeries]) -> Vec<Event> {
     let efforts: Vec<Vec<Vec<f64>>> = all.iter().map(low).collect();
     let lasting: Vec<Lasting> =
         all.iter().zip(&efforts).map(|(series, low)| Lasting::of(series, low)).collect();
@@ -62,7 +62,7 @@ pub fn events(all: &[Series]) -> Vec<Event> {
     found
 }
 
-fn event(series: &Series, cleared: &[Vec<f64>], peak: &Peak, others: f64) -> Event {
+fn event(series: &FreedomSeries, cleared: &[Vec<f64>], peak: &Peak, others: f64) -> Event {
     let freedom = &series.freedoms[peak.freedom];
     let effort = &cleared[peak.freedom];
     let [first, last] = [peak.first, peak.first + peak.width];

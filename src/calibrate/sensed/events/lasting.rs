@@ -1,7 +1,7 @@
 //! What a model misses again and again, as functions of the motion: friction of another form, a centre of mass a
 //! little off. Against that an event has to stand out.
 
-use super::series::{Freedom, Series, means, scatter};
+use super::series::{Freedom, FreedomSeries, means, scatter};
 use crate::calibrate::sensed::thresholds::{EVENT_CORNER, RESTING, ROWS_A_FEATURE};
 use crate::measure::filter::ZeroPhase;
 use nalgebra::{DMatrix, DVector};
@@ -35,7 +35,7 @@ pub struct Lasting {
 
 impl Lasting {
     /// Of a recording's efforts below [`EVENT_CORNER`].
-    pub fn of(series: &Series, low: &[Vec<f64>]) -> Self {
+    pub fn of(series: &FreedomSeries, low: &[Vec<f64>]) -> Self {
         let rates: Vec<f64> = moving(series).map(|(_, [_, rate, _])| rms(rate)).collect();
         let all = features(series, &rates);
         let moving = series.count() >= ROWS_A_FEATURE * all.len();
@@ -45,7 +45,7 @@ impl Lasting {
     }
 
     /// Efforts of a recording below [`EVENT_CORNER`] without it.
-    pub fn cleared(&self, series: &Series, low: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    pub fn cleared(&self, series: &FreedomSeries, low: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let features = match self.moving {
             true => features(series, &self.rates),
             false => vec![vec![1.0; series.count()]],
@@ -62,7 +62,7 @@ impl Lasting {
 }
 
 /// Efforts of each freedom below [`EVENT_CORNER`].
-pub fn low(series: &Series) -> Vec<Vec<f64>> {
+pub fn low(series: &FreedomSeries) -> Vec<Vec<f64>> {
     let nyquist = 0.5 / series.interval;
     let filter = (EVENT_CORNER < 0.9 * nyquist)
         .then(|| ZeroPhase::butterworth(4, EVENT_CORNER, series.interval));
@@ -74,7 +74,7 @@ pub fn low(series: &Series) -> Vec<Vec<f64>> {
 }
 
 /// Where joints rest, freedom by freedom: 1 there, 0 where they move.
-pub fn rests(series: &Series) -> Vec<Vec<f64>> {
+pub fn rests(series: &FreedomSeries) -> Vec<Vec<f64>> {
     let of = |freedom: &Freedom| {
         let Some([_, rate, _]) = &freedom.motion else { return vec![0.0; series.count()] };
         let still = RESTING * rms(rate);
@@ -85,7 +85,7 @@ pub fn rests(series: &Series) -> Vec<Vec<f64>> {
 }
 
 /// Freedoms whose motion was measured.
-fn moving(series: &Series) -> impl Iterator<Item = (&Freedom, &[Vec<f64>; 3])> {
+fn moving(series: &FreedomSeries) -> impl Iterator<Item = (&Freedom, &[Vec<f64>; 3])> {
     series.freedoms.iter().filter_map(|freedom| Some((freedom, freedom.motion.as_ref()?)))
 }
 
@@ -95,7 +95,7 @@ fn rms(values: &[f64]) -> f64 {
 }
 
 /// Means over [`SLOW`] at every instant, ends repeated.
-fn slowed(values: &[f64], series: &Series) -> Vec<f64> {
+fn slowed(values: &[f64], series: &FreedomSeries) -> Vec<f64> {
     let width = series.instants(SLOW).min(values.len());
     let inner = means(values, width);
     let last = inner.len().saturating_sub(1);
@@ -105,7 +105,7 @@ fn slowed(values: &[f64], series: &Series) -> Vec<f64> {
 
 /// Functions of the motion at all instants: of each joint its direction at several speeds, its rate, drag, place
 /// and acceleration; of each pair the product of rates, and of angles their sum.
-fn features(series: &Series, rates: &[f64]) -> Vec<Vec<f64>> {
+fn features(series: &FreedomSeries, rates: &[f64]) -> Vec<Vec<f64>> {
     let mut features = vec![vec![1.0; series.count()]];
     let moving: Vec<_> = moving(series).collect();
     let map = |values: &[f64], by: &dyn Fn(f64) -> f64| values.iter().map(|v| by(*v)).collect();

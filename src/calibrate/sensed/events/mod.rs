@@ -13,4 +13,4 @@ pub mod series;
 mod spread;
 
 pub use found::{Event, events};
-pub use series::Series;
+pub use series::FreedomSeries;

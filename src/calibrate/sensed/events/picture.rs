@@ -1,7 +1,7 @@
 //! Pictures of events.
 
 use super::found::Event;
-use crate::calibrate::charts::{POINTS, panel, thinned};
+use crate::calibrate::results::charts::{POINTS, panel, thinned};
 use crate::report::{Curve, Picture, ReportError, Style, panels_svg};
 
 /// For each event the effort at its joint that the model does not know of, over the whole recording, and the part

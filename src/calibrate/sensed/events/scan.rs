@@ -1,8 +1,8 @@
 //! Every stretch of time held against the rest of a recording.
 
 use super::lasting::rests;
-use super::series::{Series, means};
-use super::spread::{Measured, Ruler, grounds, sizes};
+use super::series::{FreedomSeries, means};
+use super::spread::{MeasuredFreedom, Ruler, grounds, sizes};
 use crate::calibrate::sensed::thresholds::{
     EVENT_BLOCK, EVENT_CORNER, EVENT_MARGIN, EVENT_RATIO, EVENT_SCORE, EVENT_STAYS, EVENT_WIDTHS,
     EVENTS,
@@ -34,7 +34,7 @@ pub struct Rulers {
 
 impl Rulers {
     /// Of a recording's efforts cleared of what lasts.
-    pub fn of(series: &Series, cleared: &[Vec<f64>]) -> Self {
+    pub fn of(series: &FreedomSeries, cleared: &[Vec<f64>]) -> Self {
         let sizes = sizes(series);
         let grounds = grounds(series, &sizes);
         let block = series.instants(EVENT_BLOCK);
@@ -44,7 +44,7 @@ impl Rulers {
 }
 
 /// Widths of stretches in instants: each 1.4 times the one before, up to an eighth of the recording.
-fn widths(series: &Series) -> Vec<usize> {
+fn widths(series: &FreedomSeries) -> Vec<usize> {
     let [shortest, longest] = EVENT_WIDTHS.map(|width| series.instants(width));
     let first = shortest.max(5);
     let next = |width: &usize| Some((*width as f64 * 1.4).ceil() as usize);
@@ -55,12 +55,12 @@ fn widths(series: &Series) -> Vec<usize> {
 /// Statistics of all stretches of one width.
 struct Level {
     width: usize,
-    freedoms: Vec<Measured>,
+    freedoms: Vec<MeasuredFreedom>,
 }
 
 /// Stretches that stand out of efforts cleared of what lasts, the clearest first, apart from each other, and how far
 /// the clearest of all others stands out.
-pub fn scan(series: &Series, cleared: &[Vec<f64>], rulers: &Rulers) -> (Vec<Peak>, f64) {
+pub fn scan(series: &FreedomSeries, cleared: &[Vec<f64>], rulers: &Rulers) -> (Vec<Peak>, f64) {
     let margin = series.instants(EVENT_MARGIN);
     let grounds = grounds(series, &rulers.sizes);
     let rests = rests(series);
@@ -105,7 +105,7 @@ fn highest(levels: &[Level], but: &[Peak], margin: usize) -> Option<Peak> {
             };
             but.iter().any(touches)
         };
-        for (f, Measured { deviations, usual, .. }) in level.freedoms.iter().enumerate() {
+        for (f, MeasuredFreedom { deviations, usual, .. }) in level.freedoms.iter().enumerate() {
             for (first, value) in deviations.iter().enumerate() {
                 let score = value.abs() / usual;
                 if best.is_none_or(|(most, ..)| score > most) && !near(&first) {
@@ -127,7 +127,7 @@ fn highest(levels: &[Level], but: &[Peak], margin: usize) -> Option<Peak> {
 /// Whether the impulse of a peak stays when its surroundings are counted in. A reading that came late or a lost step
 /// of an encoder shows as a jump of the position and back, or of the position alone: its accelerations add up to
 /// nothing.
-fn stays(peak: &Peak, effort: &[f64], series: &Series) -> bool {
+fn stays(peak: &Peak, effort: &[f64], series: &FreedomSeries) -> bool {
     let skirt = peak.width.max(series.instants(1.0 / EVENT_CORNER));
     let sum = |from: usize, until: usize| effort[from..until].iter().sum::<f64>();
     let end = peak.first + peak.width;

@@ -1,11 +1,11 @@
 //! What does not last in the recordings of a rig whose joints have clearance.
 
 use super::found::{Event, events};
-use super::series::Series;
-use crate::calibrate::sensed::estimate::View;
-use crate::calibrate::sensed::problem::{Problem, Stopped};
-use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::start::machine;
+use super::series::FreedomSeries;
+use crate::calibrate::sensed::motion::start::machine;
+use crate::calibrate::sensed::recorded::estimate::View;
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Stopped};
 use crate::effects::Setting;
 
 /// Events beside the effects of a model; `simulated` are noiseless recordings of that model, run by run, which say what
@@ -14,7 +14,7 @@ use crate::effects::Setting;
 /// # Errors
 /// An effect that the machine cannot take.
 pub fn beside(
-    problem: &Problem,
+    problem: &RigProblem,
     effects: &[Setting],
     simulated: &[Vec<Recording>],
 ) -> Result<Vec<Event>, Stopped> {
@@ -23,8 +23,8 @@ pub fn beside(
     for (run, simulated) in problem.runs.iter().zip(simulated) {
         let machine = machine(&problem.rig, effects, &run.recording)?;
         let name = &run.recording.name;
-        let look = |view: &View| Series::of(name, view, &machine, &problem.basis);
-        let own: Option<Vec<Series>> =
+        let look = |view: &View| FreedomSeries::of(name, view, &machine, &problem.basis);
+        let own: Option<Vec<FreedomSeries>> =
             simulated.iter().map(|recording| look(&View::new(recording, sensors))).collect();
         // Where the motion leads this model where it cannot be nothing is looked for.
         let (Some(series), Some(own)) = (look(&run.view), own) else { continue };

@@ -1,9 +1,9 @@
 //! Efforts that a recorded motion takes beside what a model knows of, over time.
 
-use crate::calibrate::sensed::basis::Basis;
-use crate::calibrate::sensed::estimate::{View, position_sensor};
-use crate::calibrate::sensed::motions::Motions;
-use crate::calibrate::sensed::residual::{Kind, residuals};
+use crate::calibrate::sensed::motion::basis::Basis;
+use crate::calibrate::sensed::motion::motions::Motions;
+use crate::calibrate::sensed::recorded::estimate::{View, position_sensor};
+use crate::calibrate::sensed::residuals::residual::{ResidualKind, residuals};
 use crate::measure::filter::derivative;
 use crate::mechanism::{JointIndex, Mechanism};
 
@@ -22,7 +22,7 @@ pub struct Freedom {
 
 /// All freedoms at the same instants.
 #[derive(Clone, Debug)]
-pub struct Series {
+pub struct FreedomSeries {
     /// The recording.
     pub run: String,
     /// Time of the first instant in s, from the first row of the recording on.
@@ -33,7 +33,7 @@ pub struct Series {
     pub freedoms: Vec<Freedom>,
 }
 
-impl Series {
+impl FreedomSeries {
     /// Of a view of a recording under a machine that moves along it; none where the machine cannot be as it was
     /// measured, or nobody knows the efforts of its drives.
     pub fn of(run: &str, view: &View, mechanism: &Mechanism, basis: &Basis) -> Option<Self> {
@@ -41,7 +41,7 @@ impl Series {
         let found = residuals(view, mechanism, basis, rows.clone(), &Motions::default())?;
         let dynamics = found.names.iter().zip(found.signals);
         let freedoms: Vec<Freedom> = dynamics
-            .filter(|(name, _)| name.kind == Kind::Dynamics)
+            .filter(|(name, _)| name.kind == ResidualKind::Dynamics)
             .filter_map(|(name, signal)| {
                 let (_, joint) = mechanism.joints().find(|(known, _)| *known == name.of)?;
                 let effort = signal.values.iter().map(|value| -value).collect();

@@ -1,6 +1,6 @@
 //! How much the means of stretches scatter, where: a machine that moves fast misses more than one that creeps.
 
-use super::series::{Series, means, median, scatter};
+use super::series::{FreedomSeries, means, median, scatter};
 use nalgebra::{DMatrix, DVector};
 
 /// Passes in which large values are cut off at [`CUT`] deviations, and sweeps of each solution.
@@ -22,7 +22,7 @@ const USUAL: f64 = 2.0;
 
 /// What the variance of residuals may grow with: a constant, the squared rates and their square (centrifugal
 /// terms), the squared accelerations, in units of `sizes`, the mean squares of rates and accelerations.
-pub fn grounds(series: &Series, sizes: &[[f64; 2]]) -> Vec<Vec<f64>> {
+pub fn grounds(series: &FreedomSeries, sizes: &[[f64; 2]]) -> Vec<Vec<f64>> {
     let count = series.count();
     let mut grounds = vec![vec![1.0; count]];
     if sizes.is_empty() {
@@ -44,7 +44,7 @@ pub fn grounds(series: &Series, sizes: &[[f64; 2]]) -> Vec<Vec<f64>> {
 }
 
 /// Mean squares of the rates and accelerations of freedoms that are measured.
-pub fn sizes(series: &Series) -> Vec<[f64; 2]> {
+pub fn sizes(series: &FreedomSeries) -> Vec<[f64; 2]> {
     let moving = series.freedoms.iter().filter_map(|f| f.motion.as_ref());
     let mean = |values: &[f64]| {
         let squares: f64 = values.iter().map(|v| v * v).sum();
@@ -93,12 +93,12 @@ impl Ruler {
 
     /// Of a recording, freedom by freedom: what belongs to it alone in deviations, by how far such goes now and then,
     /// and means in deviations.
-    pub fn measure(&self, cleared: &[Vec<f64>], grounds: &[Vec<f64>]) -> Vec<Measured> {
+    pub fn measure(&self, cleared: &[Vec<f64>], grounds: &[Vec<f64>]) -> Vec<MeasuredFreedom> {
         let units = self.units(cleared, &averaged(grounds, self.width));
         let apart = self.apart(&units);
         let own = |((mut own, units), [scatter, usual]): ((Vec<f64>, Vec<f64>), &[f64; 2])| {
             own.iter_mut().for_each(|value| *value /= scatter);
-            Measured { deviations: own, usual: *usual, units }
+            MeasuredFreedom { deviations: own, usual: *usual, units }
         };
         apart.into_iter().zip(units).zip(&self.apart).map(own).collect()
     }
@@ -128,7 +128,7 @@ impl Ruler {
 
 /// One freedom under a ruler.
 #[derive(Clone, Debug)]
-pub struct Measured {
+pub struct MeasuredFreedom {
     /// What belongs to it alone, in deviations.
     pub deviations: Vec<f64>,
     /// How many deviations the largest of a block usually is.

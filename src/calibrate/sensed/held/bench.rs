@@ -1,14 +1,15 @@
 //! A machine that sampled controllers hold, its recordings, and what is left of its efforts along the measured motion.
 
-use super::terms::{Term, is_sought};
-use crate::calibrate::sensed::basis::Basis;
-use crate::calibrate::sensed::estimate::{View, output_sensor, position_sensor};
-use crate::calibrate::sensed::motions::Motions;
-use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::residual::{Kind, residuals};
-use crate::calibrate::sensed::start::machine;
+use super::terms::{HeldTerm, is_sought};
+use crate::calibrate::sensed::intake::noise;
+use crate::calibrate::sensed::motion::basis::Basis;
+use crate::calibrate::sensed::motion::motions::Motions;
+use crate::calibrate::sensed::motion::simulate;
+use crate::calibrate::sensed::motion::start::machine;
+use crate::calibrate::sensed::recorded::estimate::{View, output_sensor, position_sensor};
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::residuals::residual::{ResidualKind, residuals};
 use crate::calibrate::sensed::thresholds::{OUTPUT_FILTER, OUTPUT_TRIM, RATE};
-use crate::calibrate::sensed::{noise, simulate};
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
 use crate::measure::filter::{ZeroPhase, derivative};
@@ -32,7 +33,7 @@ pub fn suits(mechanism: &Mechanism) -> bool {
 
 /// A machine and its recordings.
 #[derive(Debug)]
-pub struct Bench {
+pub struct HeldBench {
     /// What its file says, with those of its effects whose values are not sought.
     pub rig: Scenario,
     /// The others, as declared.
@@ -40,7 +41,7 @@ pub struct Bench {
     /// The machine without what is sought.
     pub machine: Mechanism,
     /// What was recorded.
-    pub runs: Vec<Run>,
+    pub runs: Vec<HeldRun>,
     /// How to step.
     pub control: StepControl,
     /// Sensors of the outputs of joints, and the size of each in N or N·m: its root mean square in the first run.
@@ -53,7 +54,7 @@ pub struct Bench {
 
 /// A recorded run.
 #[derive(Debug)]
-pub struct Run {
+pub struct HeldRun {
     /// What was recorded.
     pub recording: Recording,
     view: View,
@@ -66,7 +67,7 @@ pub struct Run {
     columns: Mutex<HashMap<String, Arc<Vec<f64>>>>,
 }
 
-impl Bench {
+impl HeldBench {
     /// A rig, declared or calibrated, and recordings of it; `at_once` where drives are to give at once what they are
     /// asked for.
     ///
@@ -96,7 +97,8 @@ impl Bench {
             let recorded = |sensor: &usize| recordings.iter().all(|r| r.get(*sensor).is_some());
             outputs.push((sensor.filter(recorded).ok_or_else(unknown)?, 1.0));
         }
-        let runs = recordings.into_iter().map(|recording| Run::new(recording, &built)).collect();
+        let runs =
+            recordings.into_iter().map(|recording| HeldRun::new(recording, &built)).collect();
         let simulations = AtomicUsize::new(0);
         let machine = built;
         let mut bench = Self {
@@ -140,7 +142,7 @@ impl Bench {
     }
 
     /// Filtered samples joint by joint, at the rows that are looked at, in sizes: row after row, joint after joint.
-    fn in_sizes(&self, run: &Run, joints: &[Vec<f64>]) -> Vec<f64> {
+    fn in_sizes(&self, run: &HeldRun, joints: &[Vec<f64>]) -> Vec<f64> {
         let of = |row: usize| {
             joints.iter().zip(&self.outputs).map(move |(values, (_, size))| values[row] / size)
         };
@@ -149,7 +151,7 @@ impl Bench {
 
     /// What a machine with these effects leaves of what was asked of its drives along the measured motion; none where it
     /// cannot move so.
-    fn look(&self, run: &Run, effects: &[Setting]) -> Option<Vec<f64>> {
+    fn look(&self, run: &HeldRun, effects: &[Setting]) -> Option<Vec<f64>> {
         let mut machine = machine(&self.rig, effects, &run.recording).ok()?;
         for drive in machine.actuators.iter_mut().filter(|_| self.at_once) {
             if let Drive::Sampled(cascade) = &mut drive.drive {
@@ -159,7 +161,7 @@ impl Bench {
         let rows = 0..run.recording.samples;
         let found = residuals(&run.view, &machine, &self.basis, rows, &run.motions)?;
         let named = found.names.iter().zip(&found.signals);
-        let dynamics = named.filter(|(name, _)| name.kind == Kind::Dynamics);
+        let dynamics = named.filter(|(name, _)| name.kind == ResidualKind::Dynamics);
         let filtered: Vec<Vec<f64>> =
             dynamics.map(|(_, signal)| run.filter.apply(&signal.values)).collect();
         let seen = self.in_sizes(run, &filtered);
@@ -168,7 +170,7 @@ impl Bench {
 
     /// What a unit of a term takes of the efforts that are left of a run, which is linear in it; nothing where the
     /// machine cannot have it.
-    pub fn column(&self, run: usize, term: &Term) -> Arc<Vec<f64>> {
+    pub fn column(&self, run: usize, term: &HeldTerm) -> Arc<Vec<f64>> {
         let run = &self.runs[run];
         let key = term.to_string();
         let kept = || run.columns.lock().unwrap_or_else(PoisonError::into_inner);
@@ -187,7 +189,7 @@ impl Bench {
     }
 
     /// Looks at the columns of many terms in a run at once, to be asked for later.
-    pub fn look_at(&self, run: usize, terms: &[Term]) {
+    pub fn look_at(&self, run: usize, terms: &[HeldTerm]) {
         terms.par_iter().for_each(|term| drop(self.column(run, term)));
     }
 
@@ -244,7 +246,7 @@ impl Bench {
     pub fn simulated(&self, run: usize, effects: &[Setting]) -> Result<Recording, Broken> {
         let recording = &self.runs[run].recording;
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        let released = crate::calibrate::sensed::released::released(
+        let released = crate::calibrate::sensed::motion::released::released(
             &self.rig,
             effects,
             recording,
@@ -287,7 +289,7 @@ impl Bench {
     }
 }
 
-impl Run {
+impl HeldRun {
     fn new(recording: Recording, machine: &Mechanism) -> Self {
         let (order, corner) = OUTPUT_FILTER;
         let filter = ZeroPhase::butterworth(order, corner, recording.interval);
@@ -321,7 +323,7 @@ impl Run {
 pub enum Broken {
     /// Its start.
     #[error(transparent)]
-    Start(#[from] crate::calibrate::sensed::released::StartError),
+    Start(#[from] crate::calibrate::sensed::motion::released::StartError),
     /// What follows.
     #[error(transparent)]
     Halted(#[from] Halt),

@@ -1,14 +1,14 @@
 //! Terms of a machine: those that it declares, and those that may be added to a model of it.
 
-use super::bench::Bench;
-use super::terms::{BODY, Term, WAYS, given, linear};
+use super::bench::HeldBench;
+use super::terms::{BODY, HeldTerm, WAYS, given, linear};
 use crate::calibrate::sensed::thresholds::{BUILDS_UP, SIGN_AT};
-use crate::effects::{Kind, Range as Tried, Setting, Target, named};
+use crate::effects::{Kind, ScanRange as Tried, Setting, Target, named};
 use crate::mechanism::JointIndex;
 use std::f64::consts::FRAC_PI_2;
 
 /// Terms that a declared effect stands for, each with its declared value: what is not nothing.
-pub fn of_declared(bench: &Bench, effect: &Setting) -> Vec<(Term, f64)> {
+pub fn of_declared(bench: &HeldBench, effect: &Setting) -> Vec<(HeldTerm, f64)> {
     let there = |name: &&&'static str| given(effect, name).is_some_and(|value| value != 0.0);
     let own = || linear(effect.kind).iter().filter(there);
     let fixed: Vec<(&'static str, f64)> =
@@ -33,7 +33,7 @@ pub fn of_declared(bench: &Bench, effect: &Setting) -> Vec<(Term, f64)> {
     };
     let term = |name: &&'static str| {
         (
-            Term::new(effect.kind, effect.target.clone(), name, &fixed),
+            HeldTerm::new(effect.kind, effect.target.clone(), name, &fixed),
             effect.value(name).unwrap_or_default(),
         )
     };
@@ -46,12 +46,12 @@ fn waves(
     target: Target,
     amplitude: &'static str,
     fixed: &[(&'static str, f64)],
-) -> [Term; 2] {
+) -> [HeldTerm; 2] {
     let phase = kind.scan.map_or("phase_rad", |scan| scan.phase);
     let rest: Vec<_> = fixed.iter().copied().filter(|(name, _)| *name != phase).collect();
     [0.0, FRAC_PI_2].map(|at| {
         let fixed = [rest.as_slice(), &[(phase, at)]].concat();
-        Term::new(kind, target.clone(), amplitude, &fixed)
+        HeldTerm::new(kind, target.clone(), amplitude, &fixed)
     })
 }
 
@@ -65,10 +65,10 @@ pub struct Candidate {
     /// Its form.
     pub what: String,
     /// Terms of the model with it.
-    pub terms: Vec<Term>,
+    pub terms: Vec<HeldTerm>,
 }
 
-impl Bench {
+impl HeldBench {
     /// Joints whose efforts are looked at, by name.
     fn joints(&self) -> impl Iterator<Item = (String, JointIndex)> + '_ {
         self.machine.joints().map(|(name, joint)| (name.to_owned(), joint))
@@ -82,7 +82,7 @@ impl Bench {
     }
 
     /// Friction of a joint by the names of its values.
-    pub fn friction(&self, joint: &str, names: &[&'static str]) -> Vec<Term> {
+    pub fn friction(&self, joint: &str, names: &[&'static str]) -> Vec<HeldTerm> {
         let Some((_, index)) = self.joints().find(|(name, _)| name == joint) else {
             return Vec::new();
         };
@@ -98,17 +98,17 @@ impl Bench {
         });
         let fixed: Vec<(&'static str, f64)> = fixed.into_iter().collect();
         let of = |kind: &'static Kind| {
-            names.iter().map(|name| Term::new(kind, target.clone(), name, &fixed)).collect()
+            names.iter().map(|name| HeldTerm::new(kind, target.clone(), name, &fixed)).collect()
         };
         kind.map_or_else(Vec::new, of)
     }
 
     /// Viscous friction of each measured joint, masses of bodies and the lag of drives: what every machine has.
-    pub fn common(&self) -> Vec<Term> {
+    pub fn common(&self) -> Vec<HeldTerm> {
         let mut terms = Vec::new();
         let mut add = |kind: &str, target: Target, names: &[&'static str]| {
             let Some(kind) = named(kind) else { return };
-            terms.extend(names.iter().map(|name| Term::new(kind, target.clone(), name, &[])));
+            terms.extend(names.iter().map(|name| HeldTerm::new(kind, target.clone(), name, &[])));
         };
         for body in &self.machine.bodies {
             add("mass-properties", Target::Body(body.name.clone()), &BODY);
@@ -121,27 +121,27 @@ impl Bench {
             JointIndex::Prismatic(_) => self.friction(&name, &["viscous_Ns_m"]),
             JointIndex::Revolute(_) => self.friction(&name, &["viscous"]),
         };
-        let viscous: Vec<Term> = friction.flat_map(viscous).collect();
+        let viscous: Vec<HeldTerm> = friction.flat_map(viscous).collect();
         terms.extend(viscous);
         terms
     }
 
     /// Friction that builds up with speed, or falls, over a rate (m/s).
-    pub fn over(&self, kind: &str, joint: &str, speed: f64) -> Vec<Term> {
+    pub fn over(&self, kind: &str, joint: &str, speed: f64) -> Vec<HeldTerm> {
         let target = Target::Joints(vec![joint.to_owned()]);
         let Some(kind) = named(kind) else { return Vec::new() };
         if kind.name == "film-friction" {
-            return vec![Term::new(kind, target, "force_N", &[("speed_m_s", speed)])];
+            return vec![HeldTerm::new(kind, target, "force_N", &[("speed_m_s", speed)])];
         }
         // What falls away over v_s from the top of nothing.
         let steep = self.steep(&target).unwrap_or(SIGN_AT);
         let velocity = kind.parameter("velocity_m_s").map_or(steep, |p| p.clamped(steep));
         let fixed = [("coulomb_N", 0.0), ("stribeck_m_s", speed), ("velocity_m_s", velocity)];
-        vec![Term::new(kind, target, "static_N", &fixed)]
+        vec![HeldTerm::new(kind, target, "static_N", &fixed)]
     }
 
     /// A force that repeats with each turn of a screw of some pitch in m.
-    pub fn ripple(&self, joint: &str, pitch: f64) -> Vec<Term> {
+    pub fn ripple(&self, joint: &str, pitch: f64) -> Vec<HeldTerm> {
         let target = Target::Joints(vec![joint.to_owned()]);
         let of = |kind| waves(kind, target, "amplitude_N", &[("pitch_m", pitch)]).to_vec();
         named("screw-ripple").map_or_else(Vec::new, of)
@@ -149,7 +149,7 @@ impl Bench {
 
     /// Everything that can be added to a model with these terms, but for kinds `without`. Forms that differ in a number
     /// only follow each other.
-    pub fn candidates(&self, terms: &[Term], without: &[&str]) -> Vec<Candidate> {
+    pub fn candidates(&self, terms: &[HeldTerm], without: &[&str]) -> Vec<Candidate> {
         let mut forms: Vec<Form> = Vec::new();
         for (name, joint) in self.joints() {
             let Some(rate) = self.rate(joint) else { continue };
@@ -157,7 +157,7 @@ impl Bench {
                 JointIndex::Prismatic(_) => forms.extend(self.of_slide(&name, rate, terms)),
                 JointIndex::Revolute(_) => {
                     let dry =
-                        |t: &Term| t.target().names().contains(&name) && t.sought == "coulomb";
+                        |t: &HeldTerm| t.target().names().contains(&name) && t.sought == "coulomb";
                     if !terms.iter().any(dry) {
                         let dry = self.friction(&name, &["coulomb"]);
                         forms.push(("dry friction".to_owned(), dry, terms.to_vec()));
@@ -167,9 +167,9 @@ impl Bench {
         }
         for body in &self.machine.bodies {
             let target = Target::Body(body.name.clone());
-            let is = |t: &Term| *t.target() == target && t.kind().name == "air-drag";
+            let is = |t: &HeldTerm| *t.target() == target && t.kind().name == "air-drag";
             if let (false, Some(kind)) = (terms.iter().any(is), named("air-drag")) {
-                let drag = Term::new(kind, target, "force_Ns2_m2", &[]);
+                let drag = HeldTerm::new(kind, target, "force_Ns2_m2", &[]);
                 let what = "drag with the square of the speed".to_owned();
                 forms.push((what, vec![drag], terms.to_vec()));
             }
@@ -184,13 +184,13 @@ impl Bench {
     }
 
     /// The same of a prismatic joint that moves at some rate (m/s, root mean square).
-    fn of_slide(&self, name: &str, rate: f64, terms: &[Term]) -> Vec<Form> {
-        let at = |term: &Term| term.target().names().iter().any(|joint| joint == name);
+    fn of_slide(&self, name: &str, rate: f64, terms: &[HeldTerm]) -> Vec<Form> {
+        let at = |term: &HeldTerm| term.target().names().iter().any(|joint| joint == name);
         let has = |sought: &[&str]| terms.iter().any(|t| at(t) && sought.contains(&t.sought));
         let is = |kind: &str| terms.iter().any(|t| at(t) && t.kind().name == kind);
         let mut forms: Vec<Form> = Vec::new();
         let mut add =
-            |what: &str, own: Vec<Term>| forms.push((what.to_owned(), own, terms.to_vec()));
+            |what: &str, own: Vec<HeldTerm>| forms.push((what.to_owned(), own, terms.to_vec()));
         let (ways, dry) = (has(&WAYS), has(&["coulomb_N", "coulomb_pos_N", "coulomb_neg_N"]));
         if !ways && !dry {
             add("dry friction", self.friction(name, &["coulomb_N"]));
@@ -215,7 +215,7 @@ impl Bench {
             }
         }
         if !ways && dry {
-            let slides = |t: &Term| at(t) && t.kind().name == "actuator-friction";
+            let slides = |t: &HeldTerm| at(t) && t.kind().name == "actuator-friction";
             let others = terms.iter().filter(|t| !slides(t)).cloned().collect();
             let what = "friction that differs with direction".to_owned();
             forms.push((what, self.friction(name, &WAYS), others));
@@ -225,4 +225,4 @@ impl Bench {
 }
 
 /// A form of an effect in words, its terms, and the terms that stay beside it.
-type Form = (String, Vec<Term>, Vec<Term>);
+type Form = (String, Vec<HeldTerm>, Vec<HeldTerm>);

@@ -1,11 +1,11 @@
 //! How good a model of a held machine is on stretches that it was not fitted to, by its inverse model and as controllers
 //! hold it in a simulation.
 
-use super::bench::{Bench, Broken};
+use super::bench::{Broken, HeldBench};
 use super::candidates::Candidate;
-use super::model::{Model, squares};
+use super::model::{HeldModel, squares};
 use super::paired::Ratio;
-use super::terms::Term;
+use super::terms::HeldTerm;
 use crate::calibrate::sensed::thresholds::{STRETCH, WORTH};
 use crate::effects::Setting;
 use std::ops::Range;
@@ -14,7 +14,7 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug)]
 pub struct Judge<'a> {
     /// The machine and its recordings.
-    pub bench: &'a Bench,
+    pub bench: &'a HeldBench,
 }
 
 /// Root mean square over each of some stretches.
@@ -26,17 +26,17 @@ fn sizes(left: &[f64], stretches: &[Range<usize>]) -> Vec<f64> {
 
 impl Judge<'_> {
     /// A model with these terms, fitted to rows of the first run; none where it means nothing.
-    pub fn fit(&self, rows: Range<usize>, terms: &[Term]) -> Option<Model> {
-        Model::fit(self.bench, 0, rows, terms, &[]).filter(Model::is_physical)
+    pub fn fit(&self, rows: Range<usize>, terms: &[HeldTerm]) -> Option<HeldModel> {
+        HeldModel::fit(self.bench, 0, rows, terms, &[]).filter(HeldModel::is_physical)
     }
 
     /// The same of the whole run.
-    pub fn fitted(&self, terms: &[Term]) -> Option<Model> {
+    pub fn fitted(&self, terms: &[HeldTerm]) -> Option<HeldModel> {
         self.fit(self.bench.rows(0), terms)
     }
 
     /// What a model with these terms leaves on stretches that it was not fitted to; none where it means nothing.
-    pub fn left(&self, terms: &[Term]) -> Option<Vec<f64>> {
+    pub fn left(&self, terms: &[HeldTerm]) -> Option<Vec<f64>> {
         let bench = self.bench;
         if bench.runs.len() > 1 {
             let model = self.fitted(terms)?;
@@ -45,7 +45,7 @@ impl Judge<'_> {
         }
         let halves = bench.halves(0);
         let models = [self.fit(halves[0].clone(), terms)?, self.fit(halves[1].clone(), terms)?];
-        let other = |(rows, model): (&Range<usize>, &Model)| {
+        let other = |(rows, model): (&Range<usize>, &HeldModel)| {
             let inside = |b: &Range<usize>| b.start >= rows.start && b.end <= rows.end;
             let stretches: Vec<_> =
                 bench.stretches(0, STRETCH).into_iter().filter(inside).collect();
@@ -75,20 +75,21 @@ impl Judge<'_> {
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    pub fn corrected(&self, model: Model) -> Result<Model, Broken> {
+    pub fn corrected(&self, model: HeldModel) -> Result<HeldModel, Broken> {
         let bench = self.bench;
         let simulated = bench.simulated(0, &model.settings())?;
         let missed = squares(&bench.missed(0, &simulated));
-        let seen = Bench::new(&bench.rig, vec![simulated], bench.control, false).ok();
+        let seen = HeldBench::new(&bench.rig, vec![simulated], bench.control, false).ok();
         let seen = seen.and_then(|seen| {
             seen.look_at(0, &model.names());
-            Model::fit(&seen, 0, seen.rows(0), &model.names(), &[])
+            HeldModel::fit(&seen, 0, seen.rows(0), &model.names(), &[])
         });
         let Some(seen) = seen else { return Ok(model) };
-        let moved = |((term, value), (_, seen)): (&(Term, f64), &(Term, f64))| {
+        let moved = |((term, value), (_, seen)): (&(HeldTerm, f64), &(HeldTerm, f64))| {
             (term.clone(), 2.0 * value - seen)
         };
-        let corrected = Model { terms: model.terms.iter().zip(&seen.terms).map(moved).collect() };
+        let corrected =
+            HeldModel { terms: model.terms.iter().zip(&seen.terms).map(moved).collect() };
         if !corrected.is_physical() {
             return Ok(model);
         }
@@ -103,17 +104,22 @@ impl Judge<'_> {
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    pub fn drop_idle(&self, terms: &mut Vec<Term>, base: &[Term]) -> Result<Vec<Term>, Broken> {
+    pub fn drop_idle(
+        &self,
+        terms: &mut Vec<HeldTerm>,
+        base: &[HeldTerm],
+    ) -> Result<Vec<HeldTerm>, Broken> {
         let mut dropped = Vec::new();
-        let same = |a: &Term, b: &Term| a.kind().name == b.kind().name && a.target() == b.target();
-        let mut effects: Vec<Term> = Vec::new();
+        let same =
+            |a: &HeldTerm, b: &HeldTerm| a.kind().name == b.kind().name && a.target() == b.target();
+        let mut effects: Vec<HeldTerm> = Vec::new();
         for term in terms.iter().rev().filter(|term| !base.contains(term)) {
             if !effects.iter().any(|known| same(known, term)) {
                 effects.push(term.clone());
             }
         }
         for effect in effects {
-            let (idle, rest): (Vec<Term>, Vec<Term>) =
+            let (idle, rest): (Vec<HeldTerm>, Vec<HeldTerm>) =
                 terms.iter().cloned().partition(|t| !base.contains(t) && same(t, &effect));
             let (Some(with), Some(less)) = (self.fitted(terms), self.fitted(&rest)) else {
                 continue;
@@ -134,7 +140,7 @@ impl Judge<'_> {
     /// Of candidates of one form that differ in a number only (a speed, a pitch), the one that fits the first run best:
     /// numbers are fitted there, and only forms compete elsewhere.
     pub fn by_form(&self, candidates: Vec<Candidate>) -> Vec<Candidate> {
-        let mut all: Vec<Term> = Vec::new();
+        let mut all: Vec<HeldTerm> = Vec::new();
         for term in candidates.iter().flat_map(|candidate| &candidate.terms) {
             if !all.contains(term) {
                 all.push(term.clone());

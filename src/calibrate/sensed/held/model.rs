@@ -4,9 +4,9 @@
 //! robots with power model*, ICRA 1997). Whatever filters both sides alike leaves the values alone; what differs between
 //! sides does not, so the filter belongs to the figure: one for all.
 
-use super::bench::Bench;
-use super::terms::{Term, given};
-use crate::calibrate::report::Fitted;
+use super::bench::HeldBench;
+use super::terms::{HeldTerm, given};
+use crate::calibrate::results::report::Fitted;
 use crate::calibrate::sensed::thresholds::APART;
 use crate::effects::{Kind, Setting};
 use nalgebra::{DMatrix, DVector};
@@ -15,21 +15,21 @@ use std::sync::Arc;
 
 /// Terms and their values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Model {
+pub struct HeldModel {
     /// Summands with their values.
-    pub terms: Vec<(Term, f64)>,
+    pub terms: Vec<(HeldTerm, f64)>,
 }
 
-impl Model {
+impl HeldModel {
     /// The least-squares values of `terms` over `rows` of a run, beside those of `fixed`, which stay; none where the
     /// run does not tell the terms apart.
     pub fn fit(
-        bench: &Bench,
+        bench: &HeldBench,
         run: usize,
         rows: Range<usize>,
-        terms: &[Term],
-        fixed: &[(Term, f64)],
-    ) -> Option<Model> {
+        terms: &[HeldTerm],
+        fixed: &[(HeldTerm, f64)],
+    ) -> Option<HeldModel> {
         let columns: Vec<Arc<Vec<f64>>> =
             terms.iter().map(|term| bench.column(run, term)).collect();
         let mut rest = DVector::from_column_slice(&bench.left(run)[rows.clone()]);
@@ -54,16 +54,16 @@ impl Model {
         }
         let solved = factor.solve(&matrix.tr_mul(&rest));
         let found = terms.iter().cloned().zip(solved.iter().zip(&scales).map(|(x, s)| x / s));
-        Some(Model { terms: found.chain(fixed.iter().cloned()).collect() })
+        Some(HeldModel { terms: found.chain(fixed.iter().cloned()).collect() })
     }
 
     /// The value of a term; 0 where the model has none.
-    pub fn value(&self, term: &Term) -> f64 {
+    pub fn value(&self, term: &HeldTerm) -> f64 {
         self.terms.iter().find(|(own, _)| own == term).map_or(0.0, |(_, value)| *value)
     }
 
     /// Its terms alone.
-    pub fn names(&self) -> Vec<Term> {
+    pub fn names(&self) -> Vec<HeldTerm> {
         self.terms.iter().map(|(term, _)| term.clone()).collect()
     }
 
@@ -73,7 +73,7 @@ impl Model {
     }
 
     /// What it leaves of a run.
-    pub fn left(&self, bench: &Bench, run: usize) -> Vec<f64> {
+    pub fn left(&self, bench: &HeldBench, run: usize) -> Vec<f64> {
         let mut left = bench.left(run).to_vec();
         for (term, value) in &self.terms {
             for (left, x) in left.iter_mut().zip(bench.column(run, term).iter()) {
@@ -84,13 +84,18 @@ impl Model {
     }
 
     /// Norm of what it leaves over norm of what was asked, over `rows` of a run.
-    pub fn error(&self, bench: &Bench, run: usize, rows: Range<usize>) -> f64 {
+    pub fn error(&self, bench: &HeldBench, run: usize, rows: Range<usize>) -> f64 {
         share(&self.left(bench, run)[rows.clone()], &bench.asked(run)[rows])
     }
 
     /// Standard deviations of the values by `stretches` of a run, in their order: what is left is coloured, so it
     /// counts stretch by stretch, `(XᵀX)⁻¹ (Σ_b Xᵀ_b e_b eᵀ_b X_b) (XᵀX)⁻¹` (Liang, Zeger, Biometrika 73 (1986) 13–22).
-    pub fn deviations(&self, bench: &Bench, run: usize, stretches: &[Range<usize>]) -> Vec<f64> {
+    pub fn deviations(
+        &self,
+        bench: &HeldBench,
+        run: usize,
+        stretches: &[Range<usize>],
+    ) -> Vec<f64> {
         let columns: Vec<Arc<Vec<f64>>> =
             self.terms.iter().map(|(term, _)| bench.column(run, term)).collect();
         let left = self.left(bench, run);
@@ -159,7 +164,7 @@ fn phase(kind: &Kind) -> Option<&'static str> {
 }
 
 /// Whether a term is a value of an effect that others of it have made already.
-fn belongs(term: &Term, known: &Setting) -> bool {
+fn belongs(term: &HeldTerm, known: &Setting) -> bool {
     let same = |(name, value): (&'static str, f64)| {
         Some(name) == phase(term.kind()) || given(known, name).is_none_or(|own| own == value)
     };
@@ -180,7 +185,7 @@ fn wave(
 }
 
 /// Those of `terms`, in their order, that a run tells from the ones before.
-pub fn told(bench: &Bench, run: usize, terms: Vec<Term>) -> Vec<Term> {
+pub fn told(bench: &HeldBench, run: usize, terms: Vec<HeldTerm>) -> Vec<HeldTerm> {
     let mut directions: Vec<DVector<f64>> = Vec::new();
     let mut kept = Vec::new();
     for term in terms {

@@ -2,10 +2,10 @@
 //! units.
 
 use super::bench::suits;
-use crate::calibrate::sensed::estimate::{output_sensor, position_sensor};
-use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::simulate::outputs;
-use crate::calibrate::sensed::start::told_by;
+use crate::calibrate::sensed::motion::simulate::outputs;
+use crate::calibrate::sensed::motion::start::told_by;
+use crate::calibrate::sensed::recorded::estimate::{output_sensor, position_sensor};
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds::{CLOCK, FACTORS, TOLERATED};
 use crate::calibrate::sensed::windows::plausible::{scaled_by, spliced};
 use crate::mechanism::{Cascade, Drive, Mechanism, Reads};

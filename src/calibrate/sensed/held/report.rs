@@ -1,18 +1,18 @@
 //! What is written of a calibration of a machine that sampled controllers hold.
 
-use super::bench::{Bench, Broken};
-use super::search::{Failed, Found, Outcome, search};
-use crate::calibrate::errors::{ChannelError, judged};
-use crate::calibrate::outcome::Verdict;
-use crate::calibrate::recording::stem_of;
-use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
-use crate::calibrate::result::{CalibrateError, control};
-use crate::calibrate::sensed::charts::{Drawn, of_run};
-use crate::calibrate::sensed::errors;
-use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::report::Report;
+use super::bench::{Broken, HeldBench};
+use super::search::{Failed, HeldEffect, HeldOutcome, search};
+use crate::calibrate::measured::recording::stem_of;
+use crate::calibrate::results::outcome::Verdict;
+use crate::calibrate::results::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
+use crate::calibrate::results::result::{CalibrateError, control};
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::results::charts::{DrawnRun, of_run};
+use crate::calibrate::sensed::results::report::Report;
+use crate::calibrate::sensed::results::written::{SensedCalibration, names_of_files, written};
 use crate::calibrate::sensed::thresholds::MET;
-use crate::calibrate::sensed::written::{Calibrated, names_of_files, written};
+use crate::calibrate::sensed::values::errors;
+use crate::calibrate::values::errors::{ChannelError, judged};
 use crate::effects::Setting;
 use crate::report::{Picture, Style};
 use crate::scenario::Scenario;
@@ -51,10 +51,10 @@ pub fn into_folder(
     without: &[&str],
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Calibrated, CalibrateError> {
+) -> Result<SensedCalibration, CalibrateError> {
     let started = Clock::now();
     let control = control(rig);
-    let bench = Bench::new(rig, recordings, control, false)?;
+    let bench = HeldBench::new(rig, recordings, control, false)?;
     let outcome = search(&bench, without, tell)?;
     let sought: Vec<Setting> = match outcome.effects.is_empty() {
         true => bench.declared.clone(),
@@ -70,7 +70,7 @@ pub fn into_folder(
         let after = bench.simulated(index, &sought)?;
         let models =
             [("declared", Style::Reference, &before), ("calibrated", Style::Solid, &after)];
-        let drawn = Drawn { index, role, caption: CAPTION };
+        let drawn = DrawnRun { index, role, caption: CAPTION };
         let own = of_run(&bench.machine, &run.recording, drawn, &models);
         pictures.extend(own.map_err(RunError::from)?);
         let name = format!("predicted-{}.csv", stem_of(&run.recording.name));
@@ -110,7 +110,7 @@ pub fn into_folder(
 }
 
 /// On data not used for fits where there are any: whether every column is at its noise.
-fn verdict(errors: &[ChannelError], outcome: &Outcome) -> Verdict {
+fn verdict(errors: &[ChannelError], outcome: &HeldOutcome) -> Verdict {
     if !judged(errors).iter().all(|e| e.after <= MET * e.floor) {
         Verdict::Unexplained
     } else if outcome.lacking.is_empty() {
@@ -120,7 +120,7 @@ fn verdict(errors: &[ChannelError], outcome: &Outcome) -> Verdict {
     }
 }
 
-fn summary(verdict: Verdict, outcome: &Outcome) -> String {
+fn summary(verdict: Verdict, outcome: &HeldOutcome) -> String {
     let list = outcome.lacking.join(", ");
     match (verdict, list.is_empty()) {
         (Verdict::NothingMissing, _) => {
@@ -141,7 +141,7 @@ fn summary(verdict: Verdict, outcome: &Outcome) -> String {
     }
 }
 
-fn effect(found: &Found) -> EffectReport {
+fn effect(found: &HeldEffect) -> EffectReport {
     EffectReport {
         kind: found.effect.kind.name,
         on: ActsOn::of(&found.effect),
@@ -153,7 +153,7 @@ fn effect(found: &Found) -> EffectReport {
     }
 }
 
-fn ranking(outcome: &Outcome) -> Vec<Ranked> {
+fn ranking(outcome: &HeldOutcome) -> Vec<Ranked> {
     let tried = outcome.tried.iter().map(|tried| Ranked {
         kind: tried.kind.name,
         on: ActsOn::at(&tried.target),

@@ -1,20 +1,20 @@
 //! What a held machine lacks: terms of its efforts, one after another, as long as data that they were not fitted to say
 //! so.
 
-use super::bench::{Bench, Broken};
+use super::bench::{Broken, HeldBench};
 use super::candidates::{Candidate, of_declared};
 use super::judge::Judge;
-use super::model::{Model, squares, told};
+use super::model::{HeldModel, squares, told};
 use super::paired::Ratio;
-use super::terms::Term;
-use crate::calibrate::report::Fitted;
+use super::terms::HeldTerm;
+use crate::calibrate::results::report::Fitted;
 use crate::calibrate::sensed::thresholds::{BETTER, STRETCH, WORTH};
 use crate::effects::{Kind, Setting, Target};
 use crate::scenario::Problem;
 
 /// A candidate in a round.
 #[derive(Clone, Debug)]
-pub struct Tried {
+pub struct HeldTried {
     /// Its kind.
     pub kind: &'static Kind,
     /// What it acts on.
@@ -31,7 +31,7 @@ pub struct Tried {
 
 /// An effect of the calibrated model: its values that were fitted, and what it rests on.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct HeldEffect {
     /// The effect.
     pub effect: Setting,
     /// The values.
@@ -42,13 +42,13 @@ pub struct Found {
 
 /// What a search comes to.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct HeldOutcome {
     /// The model's effects whose values were sought; as declared where nothing is certainly better.
-    pub effects: Vec<Found>,
+    pub effects: Vec<HeldEffect>,
     /// Names of those that the rig does not declare, or not so.
     pub lacking: Vec<String>,
     /// Candidates, round by round.
-    pub tried: Vec<Tried>,
+    pub tried: Vec<HeldTried>,
 }
 
 /// Why there is none.
@@ -63,11 +63,11 @@ pub enum Failed {
 }
 
 /// What the rig declares and what every machine has, as terms that the first run tells apart.
-fn base(bench: &Bench, without: &[&str]) -> Vec<Term> {
+fn base(bench: &HeldBench, without: &[&str]) -> Vec<HeldTerm> {
     let declared = bench.declared.iter().flat_map(|effect| of_declared(bench, effect));
-    let mut terms: Vec<Term> = declared.map(|(term, _)| term).collect();
+    let mut terms: Vec<HeldTerm> = declared.map(|(term, _)| term).collect();
     let common = bench.common().into_iter().filter(|term| {
-        let both = |own: &Term| {
+        let both = |own: &HeldTerm| {
             let way = |way: &str| own.sought.starts_with("viscous_") && way.starts_with("viscous_");
             own.kind().name == term.kind().name
                 && own.target() == term.target()
@@ -75,7 +75,7 @@ fn base(bench: &Bench, without: &[&str]) -> Vec<Term> {
         };
         !terms.iter().any(both) && !without.contains(&term.kind().name)
     });
-    let common: Vec<Term> = common.collect();
+    let common: Vec<HeldTerm> = common.collect();
     terms.extend(common);
     told(bench, 0, terms)
 }
@@ -84,7 +84,11 @@ fn base(bench: &Bench, without: &[&str]) -> Vec<Term> {
 ///
 /// # Errors
 /// A recording that does not tell the terms apart, a machine that cannot be simulated.
-pub fn search(bench: &Bench, without: &[&str], tell: &dyn Fn(&str)) -> Result<Outcome, Failed> {
+pub fn search(
+    bench: &HeldBench,
+    without: &[&str],
+    tell: &dyn Fn(&str),
+) -> Result<HeldOutcome, Failed> {
     let judge = Judge { bench };
     let unfit = || {
         let message = format!(
@@ -97,8 +101,8 @@ pub fn search(bench: &Bench, without: &[&str], tell: &dyn Fn(&str)) -> Result<Ou
     let base = base(bench, without);
     let mut terms = base.clone();
     let mut left = judge.left(&terms).ok_or_else(unfit)?;
-    let mut tried: Vec<Tried> = Vec::new();
-    let mut added: Vec<(Term, String)> = Vec::new();
+    let mut tried: Vec<HeldTried> = Vec::new();
+    let mut added: Vec<(HeldTerm, String)> = Vec::new();
     for round in 1.. {
         tell(&format!("round {round}: looking for what is left"));
         let Some(taken) = best(&judge, &terms, &left, without, round, &mut tried) else { break };
@@ -110,13 +114,13 @@ pub fn search(bench: &Bench, without: &[&str], tell: &dyn Fn(&str)) -> Result<Ou
     let dropped = judge.drop_idle(&mut terms, &base)?;
     added.retain(|(term, _)| terms.contains(term));
     for tried in &mut tried {
-        let went = |t: &Term| t.kind().name == tried.kind.name && *t.target() == tried.target;
+        let went = |t: &HeldTerm| t.kind().name == tried.kind.name && *t.target() == tried.target;
         tried.kept &= !dropped.iter().any(went);
     }
-    let declared: Vec<(Term, f64)> =
+    let declared: Vec<(HeldTerm, f64)> =
         bench.declared.iter().flat_map(|effect| of_declared(bench, effect)).collect();
-    let is_declared = |term: &Term| declared.iter().any(|(own, _)| own == term);
-    let kept = |term: &Term| is_declared(term) || added.iter().any(|(own, _)| own == term);
+    let is_declared = |term: &HeldTerm| declared.iter().any(|(own, _)| own == term);
+    let kept = |term: &HeldTerm| is_declared(term) || added.iter().any(|(own, _)| own == term);
     tell("looking at what was found like at the recording");
     let (model, deviations) = certain(&judge, terms, &kept)?.ok_or_else(unfit)?;
     // Values that are not certainly better than the declared ones stay as declared.
@@ -125,24 +129,25 @@ pub fn search(bench: &Bench, without: &[&str], tell: &dyn Fn(&str)) -> Result<Ou
     let fitted = judge.simulated(&model.settings())?;
     if added.is_empty() && Ratio::of(&as_declared, &fitted).ci95[0] <= 1.0 {
         let effects = Vec::new();
-        return Ok(Outcome { effects, lacking: Vec::new(), tried });
+        return Ok(HeldOutcome { effects, lacking: Vec::new(), tried });
     }
     let (effects, lacking) = reported(&model, &deviations, &added, &is_declared);
-    Ok(Outcome { effects, lacking, tried })
+    Ok(HeldOutcome { effects, lacking, tried })
 }
 
 /// A model's effects with what they rest on, and the names of those that the rig does not declare, or not so.
 fn reported(
-    model: &Model,
+    model: &HeldModel,
     deviations: &[f64],
-    added: &[(Term, String)],
-    is_declared: &dyn Fn(&Term) -> bool,
-) -> (Vec<Found>, Vec<String>) {
+    added: &[(HeldTerm, String)],
+    is_declared: &dyn Fn(&HeldTerm) -> bool,
+) -> (Vec<HeldEffect>, Vec<String>) {
     let mut found = Vec::new();
     let mut lacking = Vec::new();
     for (effect, params) in model.effects(deviations) {
-        let of =
-            |term: &Term| term.kind().name == effect.kind.name && *term.target() == effect.target;
+        let of = |term: &HeldTerm| {
+            term.kind().name == effect.kind.name && *term.target() == effect.target
+        };
         let mut reasons: Vec<&str> = Vec::new();
         for (_, reason) in added.iter().filter(|(term, _)| of(term)) {
             if !reasons.contains(&reason.as_str()) {
@@ -165,20 +170,20 @@ fn reported(
         });
         let scanned = scanned.map(|(name, value)| (name, Fitted::new(value, f64::NAN)));
         let params = params.iter().copied().chain(scanned).collect();
-        found.push(Found { effect: effect.clone(), params, evidence });
+        found.push(HeldEffect { effect: effect.clone(), params, evidence });
     }
     (found, lacking)
 }
 
 /// A candidate that is taken, what it leaves, and how much better that is.
-struct Taken {
+struct TakenCandidate {
     candidate: Candidate,
     left: Vec<f64>,
     share: f64,
     ratio: Ratio,
 }
 
-impl Taken {
+impl TakenCandidate {
     fn evidence(&self) -> String {
         let Ratio { mean, ci95: [low, high] } = self.ratio;
         format!(
@@ -194,17 +199,22 @@ impl Taken {
 /// none where none is certainly better.
 fn best(
     judge: &Judge,
-    terms: &[Term],
+    terms: &[HeldTerm],
     left: &[f64],
     without: &[&str],
     round: usize,
-    listed: &mut Vec<Tried>,
-) -> Option<Taken> {
-    let mut tried: Vec<Taken> = Vec::new();
+    listed: &mut Vec<HeldTried>,
+) -> Option<TakenCandidate> {
+    let mut tried: Vec<TakenCandidate> = Vec::new();
     for candidate in judge.by_form(judge.bench.candidates(terms, without)) {
         let Some(after) = judge.left(&candidate.terms) else { continue };
         let share = 1.0 - squares(&after) / squares(left);
-        tried.push(Taken { ratio: Ratio::of(&after, left), candidate, left: after, share });
+        tried.push(TakenCandidate {
+            ratio: Ratio::of(&after, left),
+            candidate,
+            left: after,
+            share,
+        });
     }
     tried.sort_by(|a, b| b.share.total_cmp(&a.share));
     let certain = |ratio: &Ratio| {
@@ -219,7 +229,7 @@ fn best(
         own.share > 0.0 && certain(&own.ratio) && (near || first == Some(*i))
     };
     let taken = (0..tried.len()).filter(as_good).min_by_key(|i| tried[*i].candidate.terms.len());
-    listed.extend(tried.iter().enumerate().map(|(i, own)| Tried {
+    listed.extend(tried.iter().enumerate().map(|(i, own)| HeldTried {
         kind: own.candidate.kind,
         target: own.candidate.target.clone(),
         round,
@@ -234,9 +244,9 @@ fn best(
 /// every machine has may be as it is declared. None where the recording does not tell.
 fn certain(
     judge: &Judge,
-    mut terms: Vec<Term>,
-    kept: &dyn Fn(&Term) -> bool,
-) -> Result<Option<(Model, Vec<f64>)>, Broken> {
+    mut terms: Vec<HeldTerm>,
+    kept: &dyn Fn(&HeldTerm) -> bool,
+) -> Result<Option<(HeldModel, Vec<f64>)>, Broken> {
     let bench = judge.bench;
     loop {
         let Some(model) = judge.fitted(&terms) else { return Ok(None) };

@@ -55,13 +55,13 @@ pub(super) fn given(effect: &Setting, name: &str) -> Option<f64> {
 
 /// One value of an effect, the others of which stay.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Term {
+pub struct HeldTerm {
     effect: Setting,
     /// The value.
     pub sought: &'static str,
 }
 
-impl fmt::Display for Term {
+impl fmt::Display for HeldTerm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} of {}", self.sought, self.effect)?;
         let fixed = self.effect.values().filter(|(name, _)| *name != self.sought);
@@ -69,7 +69,7 @@ impl fmt::Display for Term {
     }
 }
 
-impl Term {
+impl HeldTerm {
     /// The value `sought` of an effect on a target, others as they are `fixed`.
     pub fn new(
         kind: &'static Kind,

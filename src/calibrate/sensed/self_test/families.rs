@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// What moves a machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Moves {
+pub(super) enum MovedBy {
     /// Each drive turns on and on.
     Turns,
     /// Each drive waves about its start by so much (rad, or m at size one).
@@ -23,7 +23,7 @@ pub(super) struct Family {
     /// Its rig file, in pieces.
     pub text: &'static [&'static str],
     /// What moves it.
-    pub moves: Moves,
+    pub moves: MovedBy,
     /// Whether it can do without gravity.
     pub floats: bool,
 }
@@ -38,7 +38,7 @@ pub(super) const FAMILIES: &[Family] = &[
             include_str!("../../../../assets/rigs-planar/planar-1/rig.toml"),
             "\n[[sensor]]\ncolumn = \"q_slide\"\nquantity = \"position\"\nof = \"slide\"\nresolution = 5e-6\n",
         ],
-        moves: Moves::Turns,
+        moves: MovedBy::Turns,
         floats: true,
     },
     Family {
@@ -48,26 +48,26 @@ pub(super) const FAMILIES: &[Family] = &[
             "\n[[sensor]]\ncolumn = \"x_B\"\nquantity = \"x\"\nof = \"coupler.B\"\nstd = 1e-5\n",
             "\n[[sensor]]\ncolumn = \"y_B\"\nquantity = \"y\"\nof = \"coupler.B\"\nstd = 1e-5\n",
         ],
-        moves: Moves::Turns,
+        moves: MovedBy::Turns,
         floats: true,
     },
     Family {
         name: "six-bar",
         text: &[FOUR_BAR, include_str!("six-bar.toml")],
-        moves: Moves::Turns,
+        moves: MovedBy::Turns,
         floats: true,
     },
     Family {
         name: "five-bar",
         text: &[include_str!("../../../../assets/rigs-planar/planar-3/rig.toml")],
-        moves: Moves::Waves(0.3),
+        moves: MovedBy::Waves(0.3),
         floats: true,
     },
     Family {
         name: "3-rpr",
         text: &[include_str!("../../self_test/rig.toml")],
         // Legs that all grow by 25 mm turn the platform by 45°, past a pose in which they meet in a point.
-        moves: Moves::Waves(0.01),
+        moves: MovedBy::Waves(0.01),
         floats: true,
     },
     Family {
@@ -77,7 +77,7 @@ pub(super) const FAMILIES: &[Family] = &[
             "\n[[sensor]]\ncolumn = \"x_T\"\nquantity = \"x\"\nof = \"lower.T\"\nstd = 2e-5\n",
             "\n[[sensor]]\ncolumn = \"y_T\"\nquantity = \"y\"\nof = \"lower.T\"\nstd = 2e-5\n",
         ],
-        moves: Moves::Falls(0.9),
+        moves: MovedBy::Falls(0.9),
         floats: false,
     },
 ];
@@ -98,7 +98,7 @@ impl Family {
     /// Coordinates in rad from which a machine that falls is let go, joint by joint: the first hangs, the others
     /// are straight where they are 0. None of one that drives move.
     pub fn let_go_at(&self, dice: &mut Dice, joints: usize) -> Vec<f64> {
-        let Moves::Falls(most) = self.moves else { return Vec::new() };
+        let MovedBy::Falls(most) = self.moves else { return Vec::new() };
         let rest = |joint: usize| if joint == 0 { -FRAC_PI_2 } else { 0.0 };
         (0..joints).map(|joint| rest(joint) + dice.between(-most, most)).collect()
     }

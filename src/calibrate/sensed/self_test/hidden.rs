@@ -1,7 +1,7 @@
 //! What an effect of the catalogue looks like in a trial: its target, and how its values grow from neutral.
 
 use super::dice::Dice;
-use crate::effects::{Parameter, Range, Setting};
+use crate::effects::{Parameter, ScanRange, Setting};
 use crate::mechanism::Sensor;
 use std::f64::consts::TAU;
 
@@ -31,14 +31,14 @@ const WAVES: f64 = 16.0;
 
 /// An effect without its size.
 #[derive(Clone, Debug)]
-pub(super) struct Shape {
+pub(super) struct HiddenShape {
     /// The effect where it changes nothing, but with all values that have no size: places, phases, frequencies.
     neutral: Setting,
     /// Change of each value at a size of one; none of a value that has no size.
     growing: Vec<f64>,
 }
 
-impl Shape {
+impl HiddenShape {
     /// Draws where an effect sits and which way its values go, by what the catalogue says of them: what a search
     /// scans, where it starts, and what is neutral.
     pub fn draw(effect: &Setting, dice: &mut Dice) -> Self {
@@ -107,20 +107,20 @@ fn placed(parameter: &Parameter, start: f64, dice: &mut Dice) -> f64 {
 }
 
 /// Where something repeats: a frequency, a period or a number of waves in a turn.
-fn repeating(range: Range, dice: &mut Dice) -> f64 {
+fn repeating(range: ScanRange, dice: &mut Dice) -> f64 {
     match range {
-        Range::Frequencies => dice.log_between(FREQUENCIES[0], FREQUENCIES[1]),
-        Range::WaveNumbers([from, to, _]) => 1.0 / dice.log_between(2.0 * from, 0.5 * to),
-        Range::Orders([from, to, _]) => dice.log_between(from, to.min(WAVES)).round(),
+        ScanRange::Frequencies => dice.log_between(FREQUENCIES[0], FREQUENCIES[1]),
+        ScanRange::WaveNumbers([from, to, _]) => 1.0 / dice.log_between(2.0 * from, 0.5 * to),
+        ScanRange::Orders([from, to, _]) => dice.log_between(from, to.min(WAVES)).round(),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::Bench;
+    use super::super::record::TrialBench;
     use super::super::{NOISE, Trial};
     use super::*;
-    use crate::calibrate::sensed::candidates::candidates;
+    use crate::calibrate::sensed::values::candidates::candidates;
 
     /// Every effect that a search has for a machine can be hidden in it: a size of nothing changes nothing, and a
     /// small one gives a machine.
@@ -129,9 +129,9 @@ mod tests {
         let mut dice = Dice::new(1, 0);
         for seed in 0..12 {
             let trial = Trial::draw(seed);
-            let Ok(bench) = Bench::new(&trial) else { continue };
+            let Ok(bench) = TrialBench::new(&trial) else { continue };
             for effect in candidates(&bench.declared, &[]) {
-                let shape = Shape::draw(&effect, &mut dice);
+                let shape = HiddenShape::draw(&effect, &mut dice);
                 let small = shape.at(1e-3).unwrap_or_else(|| panic!("{effect}: out of bounds"));
                 assert!(small != shape.neutral, "{effect} has no size");
                 let mut machine = bench.declared.clone();

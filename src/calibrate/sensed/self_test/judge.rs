@@ -1,12 +1,12 @@
 //! Whether an answer is right.
 
 use super::hidden::Hidden;
-use super::{Answer, Case, Trial};
-use crate::calibrate::outcome::Verdict;
-use crate::calibrate::self_test::Value;
-use crate::calibrate::sensed::certainty::Estimated;
-use crate::calibrate::sensed::outcome::Outcome;
-use crate::calibrate::sensed::problem::{Problem, Stopped};
+use super::{Case, Trial, TrialAnswer};
+use crate::calibrate::results::outcome::Verdict;
+use crate::calibrate::self_test::HiddenValue;
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Stopped};
+use crate::calibrate::sensed::results::outcome::SensedOutcome;
+use crate::calibrate::sensed::values::certainty::Estimated;
 use crate::effects::{Setting, Target};
 use crate::mechanism::Mechanism;
 use std::collections::BTreeSet;
@@ -16,9 +16,9 @@ use std::f64::consts::{PI, TAU};
 pub(super) fn judge(
     trial: &Trial,
     hidden: &Hidden,
-    problem: &Problem,
-    outcome: &Outcome,
-) -> Answer {
+    problem: &RigProblem,
+    outcome: &SensedOutcome,
+) -> TrialAnswer {
     let mechanism = &problem.declared;
     let found: Vec<Setting> = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
     let (said, true_names) = (names(&found, mechanism), names(&hidden.effects, mechanism));
@@ -37,7 +37,7 @@ pub(super) fn judge(
         found.iter().any(|found| found.is(effect))
             || outcome.rounds.iter().any(|r| r.as_good.iter().any(|other| other.is(effect)))
     };
-    Answer {
+    TrialAnswer {
         lacks: lacks(hidden),
         verdict: outcome.verdict,
         found: answer(outcome),
@@ -55,8 +55,8 @@ pub(super) fn judge(
 }
 
 /// The answer of a method that stopped: none.
-pub(super) fn stopped_short(hidden: &Hidden, stopped: &Stopped) -> Answer {
-    Answer {
+pub(super) fn stopped_short(hidden: &Hidden, stopped: &Stopped) -> TrialAnswer {
+    TrialAnswer {
         lacks: lacks(hidden),
         verdict: Verdict::Unexplained,
         found: format!("stopped: {stopped}"),
@@ -111,7 +111,7 @@ fn lacks(hidden: &Hidden) -> String {
 }
 
 /// What was found in words, and where nothing explains what was tried and what it left.
-fn answer(outcome: &Outcome) -> String {
+fn answer(outcome: &SensedOutcome) -> String {
     let noises = outcome.noises.iter().map(|noise| format!("; noise of {}", noise.column));
     let noises: String = noises.collect();
     if outcome.verdict != Verdict::Unexplained {
@@ -119,15 +119,16 @@ fn answer(outcome: &Outcome) -> String {
             outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
         return list(&found) + &noises;
     }
-    let most = |score: &dyn Fn(&crate::calibrate::sensed::left::Left) -> f64| {
+    let most = |score: &dyn Fn(&crate::calibrate::sensed::judged::left::Left) -> f64| {
         let left = outcome.after.iter().max_by(|a, b| score(a).total_cmp(&score(b)));
         left.map_or_else(String::new, |left| {
             format!("{} of {} {:.2}", left.residual.word(), left.of, score(left))
         })
     };
-    let worst = crate::calibrate::errors::worst(&outcome.errors).map_or_else(String::new, |e| {
-        format!("{} of {} by {:.2} floors", e.channel, e.run, e.after / e.floor)
-    });
+    let worst = crate::calibrate::values::errors::worst(&outcome.errors)
+        .map_or_else(String::new, |e| {
+            format!("{} of {} by {:.2} floors", e.channel, e.run, e.after / e.floor)
+        });
     let rest = outcome.rest.as_ref().map_or_else(String::new, |rest| format!("; {}", rest.words()));
     format!(
         "tried {}; leaves mean square {}, largest {}; misses {worst}{rest}{noises}",
@@ -138,7 +139,7 @@ fn answer(outcome: &Outcome) -> String {
 }
 
 /// Values of a hidden effect beside those that were found of it, phases on the same turn.
-fn values(lacking: &Setting, found: &[Estimated]) -> Vec<Value> {
+fn values(lacking: &Setting, found: &[Estimated]) -> Vec<HiddenValue> {
     let Some((_, estimates)) = found.iter().find(|(effect, _)| effect.is(lacking)) else {
         return Vec::new();
     };
@@ -161,7 +162,7 @@ fn values(lacking: &Setting, found: &[Estimated]) -> Vec<Value> {
             fitted.value
         };
         let std = Some(fitted.std).filter(|std| std.is_finite());
-        Some(Value { name: format!("{}.{name}", lacking.kind.name), truth, value, std })
+        Some(HiddenValue { name: format!("{}.{name}", lacking.kind.name), truth, value, std })
     };
     lacking.values().filter_map(one).collect()
 }
@@ -169,7 +170,7 @@ fn values(lacking: &Setting, found: &[Estimated]) -> Vec<Value> {
 #[cfg(test)]
 mod tests {
     use super::super::Trial;
-    use super::super::record::Bench;
+    use super::super::record::TrialBench;
     use super::*;
     use crate::effects::{Kind, named};
 
@@ -177,7 +178,7 @@ mod tests {
     #[test]
     fn a_common_cause_goes_by_the_names_of_its_joints() {
         let seed = (0..).find(|seed| Trial::draw(*seed).machine == "five-bar").unwrap();
-        let mechanism = Bench::new(&Trial::draw(seed)).unwrap().declared;
+        let mechanism = TrialBench::new(&Trial::draw(seed)).unwrap().declared;
         let kind: &'static Kind = named("journal-friction").unwrap();
         let at = |joints: &[&str]| {
             let target = Target::Joints(joints.iter().map(|&joint| joint.to_owned()).collect());

@@ -20,32 +20,32 @@ mod trial;
 pub use draw::trials;
 pub use families::machines;
 pub use rates::rates;
-pub use trial::{Answer, Case, NOISE, Trial, Tried};
+pub use trial::{Case, NOISE, Trial, TrialAnswer, TriedTrial};
 
-use super::outcome::calibrate;
-use super::problem::{Problem, Stopped};
+use super::residuals::problem::{RigProblem, Stopped};
+use super::results::outcome::calibrate;
 use judge::{judge, stopped_short};
-use record::Bench;
+use record::TrialBench;
 use sized::hide;
 use std::time::Instant;
 
 /// Hides, calibrates, judges; `version` of the program goes into the row. `show` sees rig and recordings before they are
 /// calibrated.
-pub fn run(trial: &Trial, version: &str, show: &dyn Fn(&Problem)) -> Tried {
+pub fn run(trial: &Trial, version: &str, show: &dyn Fn(&RigProblem)) -> TriedTrial {
     let (answer, unasked) = match asked(trial, show) {
         Ok(Some(answer)) => (Some(answer), None),
         Ok(None) => (None, Some("shows in no size".to_owned())),
         Err(stopped) => (None, Some(stopped.to_string())),
     };
-    Tried { trial: trial.clone(), version: version.to_owned(), unasked, answer }
+    TriedTrial { trial: trial.clone(), version: version.to_owned(), unasked, answer }
 }
 
 /// What the method answers; none where what is hidden shows in no size. A method that stops has answered wrong.
 ///
 /// # Errors
 /// A rig that cannot be recorded.
-fn asked(trial: &Trial, show: &dyn Fn(&Problem)) -> Result<Option<Answer>, Stopped> {
-    let bench = Bench::new(trial)?;
+fn asked(trial: &Trial, show: &dyn Fn(&RigProblem)) -> Result<Option<TrialAnswer>, Stopped> {
+    let bench = TrialBench::new(trial)?;
     let Some(hidden) = hide(trial, &bench)? else { return Ok(None) };
     let mut problem = bench.problem(&hidden)?;
     show(&problem);
@@ -60,5 +60,5 @@ fn asked(trial: &Trial, show: &dyn Fn(&Problem)) -> Result<Option<Answer>, Stopp
         Ok(outcome) => judge(trial, &hidden, &problem, outcome),
         Err(stopped) => stopped_short(&hidden, stopped),
     };
-    Ok(Some(Answer { seconds, simulations: problem.simulations(), ..answer }))
+    Ok(Some(TrialAnswer { seconds, simulations: problem.simulations(), ..answer }))
 }

@@ -2,9 +2,9 @@
 
 use super::Trial;
 use super::dice::Dice;
-use super::families::Moves;
+use super::families::MovedBy;
 use crate::calibrate::record::passed;
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::mechanism::{JointIndex, Mechanism, Reads};
 use std::f64::consts::TAU;
 
@@ -13,22 +13,22 @@ use std::f64::consts::TAU;
 const FREQUENCIES: [f64; 2] = [0.7, 2.2];
 
 /// A drive's way: a rate of turning and two waves.
-struct Way {
+struct DriveWaves {
     middle: f64,
     turning: f64,
     waves: [[f64; 3]; 2],
 }
 
-impl Way {
-    fn draw(dice: &mut Dice, moves: Moves, middle: f64, length: f64, pace: f64) -> Self {
+impl DriveWaves {
+    fn draw(dice: &mut Dice, moves: MovedBy, middle: f64, length: f64, pace: f64) -> Self {
         let [low, high] = FREQUENCIES.map(|frequency| TAU * frequency * pace);
         let (turning, size) = match moves {
-            Moves::Turns => {
+            MovedBy::Turns => {
                 let sign = if dice.chance(0.5) { 1.0 } else { -1.0 };
                 (sign * dice.between(low, high), 0.3)
             }
-            Moves::Waves(size) => (0.0, size * length),
-            Moves::Falls(_) => (0.0, 0.0),
+            MovedBy::Waves(size) => (0.0, size * length),
+            MovedBy::Falls(_) => (0.0, 0.0),
         };
         let mut wave = |share: f64| {
             let amplitude = share * size * dice.between(0.5, 1.0);
@@ -54,7 +54,7 @@ pub(super) fn like(trial: &Trial, mechanism: &Mechanism, run: usize) -> Recordin
     let samples = (trial.duration_s * trial.rate).round() as usize + 1;
     let family = trial.family();
     let pace = trial.size.sqrt().recip();
-    let ways: Vec<Way> = mechanism
+    let ways: Vec<DriveWaves> = mechanism
         .actuators
         .iter()
         .map(|drive| {
@@ -63,7 +63,7 @@ pub(super) fn like(trial: &Trial, mechanism: &Mechanism, run: usize) -> Recordin
                 JointIndex::Revolute(_) => 1.0,
             };
             let middle = mechanism.start_coordinate(drive.joint);
-            Way::draw(&mut dice, family.moves, middle, length, pace)
+            DriveWaves::draw(&mut dice, family.moves, middle, length, pace)
         })
         .collect();
     let angles = family.let_go_at(&mut dice, mechanism.revolutes.len());

@@ -1,7 +1,7 @@
 //! What trials come to: rates by requirement and by machine, each with what chance leaves open.
 
-use super::{Answer, Case, Tried};
-use crate::calibrate::outcome::Verdict;
+use super::{Case, TrialAnswer, TriedTrial};
+use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::self_test::{covered, is_phase, near, share};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -10,10 +10,10 @@ use std::fmt::Write as _;
 const LARGE: f64 = 3.0;
 
 /// A requirement: its words, what is asked, and what counts of a trial.
-type Row = (&'static str, &'static str, fn(&Tried, &Answer) -> Vec<bool>);
+type Requirement = (&'static str, &'static str, fn(&TriedTrial, &TrialAnswer) -> Vec<bool>);
 
 /// What is asked of the method.
-const ROWS: &[Row] = &[
+const ROWS: &[Requirement] = &[
     ("one effect above three floors: named, and nothing beside it", "≥ 90 %", |t, a| {
         when(t.trial.case == Case::One && a.floors > LARGE, a.right)
     }),
@@ -74,15 +74,15 @@ fn when(counts: bool, answer: bool) -> Vec<bool> {
 }
 
 /// Whether nothing is missing in a trial: at most noise is not as declared.
-fn lacks_none(tried: &Tried) -> bool {
+fn lacks_none(tried: &TriedTrial) -> bool {
     tried.trial.hidden.iter().all(|kind| kind == super::NOISE)
 }
 
 /// Markdown tables of rates with their 95 % intervals and of times, over all machines and for each; below them all
 /// trials whose answer was wrong.
-pub fn rates(all: &[Tried]) -> String {
+pub fn rates(all: &[TriedTrial]) -> String {
     let machines: BTreeSet<&str> = all.iter().map(|tried| tried.trial.machine.as_str()).collect();
-    let answered = |machine: Option<&str>| -> Vec<(&Tried, &Answer)> {
+    let answered = |machine: Option<&str>| -> Vec<(&TriedTrial, &TrialAnswer)> {
         let own = all.iter().filter(|t| machine.is_none_or(|name| t.trial.machine == name));
         own.filter_map(|tried| tried.answer.as_ref().map(|answer| (tried, answer))).collect()
     };
@@ -109,7 +109,7 @@ pub fn rates(all: &[Tried]) -> String {
     });
     let versions: BTreeSet<&str> = all.iter().map(|tried| tried.version.as_str()).collect();
     let versions: Vec<&str> = versions.into_iter().collect();
-    let unasked: Vec<&Tried> = all.iter().filter(|tried| tried.answer.is_none()).collect();
+    let unasked: Vec<&TriedTrial> = all.iter().filter(|tried| tried.answer.is_none()).collect();
     let asked = all.len() - unasked.len();
     // Writing to a string cannot fail, here and below.
     let _ = writeln!(text, "\n{asked} trials of {}.", versions.join(", "));
@@ -138,7 +138,7 @@ fn middle_and_most(numbers: impl Iterator<Item = f64>) -> String {
 }
 
 /// Every trial whose answer was wrong.
-fn wrong(all: &[Tried]) -> String {
+fn wrong(all: &[TriedTrial]) -> String {
     let wrong = all.iter().filter_map(|tried| {
         let answer = tried.answer.as_ref().filter(|answer| !answer.right)?;
         let trial = &tried.trial;

@@ -5,11 +5,11 @@ use super::hidden::Hidden;
 use super::motion::like;
 use super::rig::rig;
 use crate::calibrate::record::clean;
-use crate::calibrate::result::control;
-use crate::calibrate::sensed::problem::{Problem, Stopped};
-use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::simulate::with_noise;
-use crate::calibrate::sensed::start::machine;
+use crate::calibrate::results::result::control;
+use crate::calibrate::sensed::motion::simulate::with_noise;
+use crate::calibrate::sensed::motion::start::machine;
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Stopped};
 use crate::effects::Setting;
 use crate::engine::StepControl;
 use crate::mechanism::{Mechanism, Sensor};
@@ -17,7 +17,7 @@ use crate::model::parts_of;
 use crate::scenario::Scenario;
 
 /// A rig and what its runs are recorded like.
-pub(super) struct Bench {
+pub(super) struct TrialBench {
     /// What its maker declares.
     pub rig: Scenario,
     /// The machine as declared at the first row of a run.
@@ -27,7 +27,7 @@ pub(super) struct Bench {
     seed: u64,
 }
 
-impl Bench {
+impl TrialBench {
     /// The bench of a trial.
     ///
     /// # Errors
@@ -69,15 +69,15 @@ impl Bench {
     ///
     /// # Errors
     /// Sensors that do not say how the machine stands.
-    pub fn of(&self, recordings: Vec<Recording>) -> Result<Problem, Stopped> {
-        Problem::new(self.rig.clone(), recordings, self.control)
+    pub fn of(&self, recordings: Vec<Recording>) -> Result<RigProblem, Stopped> {
+        RigProblem::new(self.rig.clone(), recordings, self.control)
     }
 
     /// What a user would calibrate: both runs with what is hidden.
     ///
     /// # Errors
     /// A run that broke down.
-    pub fn problem(&self, hidden: &Hidden) -> Result<Problem, Stopped> {
+    pub fn problem(&self, hidden: &Hidden) -> Result<RigProblem, Stopped> {
         let recorded = |run: usize| {
             let clean = self.clean(&hidden.effects, run, 1)?;
             Ok::<_, Stopped>(self.noisy(&clean[0], &hidden.sensors, run))

@@ -1,14 +1,14 @@
 //! How large what is hidden is: so that the declared model misses the validation run by as many floors as drawn.
 
 use super::dice::Dice;
-use super::hidden::{Hidden, Shape};
-use super::record::Bench;
+use super::hidden::{Hidden, HiddenShape};
+use super::record::TrialBench;
 use super::{Case, NOISE, Trial};
-use crate::calibrate::sensed::candidates::candidates;
-use crate::calibrate::sensed::errors::of_run;
-use crate::calibrate::sensed::problem::{Problem, Stopped};
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Stopped};
 use crate::calibrate::sensed::thresholds::SEEN;
+use crate::calibrate::sensed::values::candidates::candidates;
+use crate::calibrate::sensed::values::errors::of_run;
 use crate::effects::Setting;
 use crate::mechanism::Sensor;
 
@@ -38,14 +38,14 @@ const VALIDATION: usize = 1;
 ///
 /// # Errors
 /// A rig that cannot be simulated.
-pub(super) fn hide(trial: &Trial, bench: &Bench) -> Result<Option<Hidden>, Stopped> {
+pub(super) fn hide(trial: &Trial, bench: &TrialBench) -> Result<Option<Hidden>, Stopped> {
     let mut dice = Dice::new(trial.seed, 1);
     let mut sensors = bench.declared.sensors.clone();
     let noisier = match trial.hidden.first() {
         Some(kind) if kind == NOISE => Some(make_noisy(&mut sensors, &mut dice)),
         _ => None,
     };
-    let look = Look::new(bench)?;
+    let look = MissedLook::new(bench)?;
     let mut effects = Vec::new();
     let mut floors: Vec<f64> = Vec::new();
     for (kind, wanted) in trial.hidden.iter().zip(&trial.wanted) {
@@ -79,7 +79,7 @@ fn make_noisy(sensors: &mut [Sensor], dice: &mut Dice) -> String {
 
 /// An effect of a kind, somewhere on the machine, that shows by so many floors; and by how many it does.
 fn sized(
-    look: &Look,
+    look: &MissedLook,
     kind: &str,
     wanted: f64,
     dice: &mut Dice,
@@ -88,7 +88,7 @@ fn sized(
     all.retain(|effect| effect.kind.name == kind);
     for _ in 0..DRAWS {
         let Some(effect) = drawn(&all, dice) else { return Ok(None) };
-        let shape = Shape::draw(&effect, dice);
+        let shape = HiddenShape::draw(&effect, dice);
         if let Some(found) = grown(look, &shape, wanted)? {
             return Ok(Some(found));
         }
@@ -110,7 +110,11 @@ fn drawn(all: &[Setting], dice: &mut Dice) -> Option<Setting> {
 }
 
 /// A shape in the size in which it shows by so many floors, if there is one.
-fn grown(look: &Look, shape: &Shape, wanted: f64) -> Result<Option<(Setting, f64)>, Stopped> {
+fn grown(
+    look: &MissedLook,
+    shape: &HiddenShape,
+    wanted: f64,
+) -> Result<Option<(Setting, f64)>, Stopped> {
     // Beside the noise, whose square is one.
     let beyond = |floors: f64| (floors * floors - 1.0).max(0.04).sqrt();
     let (mut size, mut largest) = (1.0, f64::INFINITY);
@@ -139,16 +143,16 @@ fn grown(look: &Look, shape: &Shape, wanted: f64) -> Result<Option<(Setting, f64
 }
 
 /// Looks at what the declared model misses.
-struct Look<'a> {
-    bench: &'a Bench,
+struct MissedLook<'a> {
+    bench: &'a TrialBench,
     /// Replicas of each model.
     replicas: u64,
     /// What the declared model shows; none of a machine that falls, whose start is fitted to each recording.
     declared: Option<Vec<Recording>>,
 }
 
-impl<'a> Look<'a> {
-    fn new(bench: &'a Bench) -> Result<Self, Stopped> {
+impl<'a> MissedLook<'a> {
+    fn new(bench: &'a TrialBench) -> Result<Self, Stopped> {
         let clean = bench.clean(&[], VALIDATION, 1)?;
         let mut problem = bench.of(clean)?;
         let rattles = problem.look_for_rattle(&[])? > SEEN;
@@ -185,6 +189,6 @@ impl<'a> Look<'a> {
 }
 
 /// What a model with these effects shows of a problem's one run, as many replicas as the problem takes.
-fn shown(problem: &Problem, effects: &[Setting]) -> Result<Vec<Recording>, Stopped> {
+fn shown(problem: &RigProblem, effects: &[Setting]) -> Result<Vec<Recording>, Stopped> {
     Ok(problem.simulated(&problem.let_go(effects)?, problem.replicas)?.swap_remove(0))
 }

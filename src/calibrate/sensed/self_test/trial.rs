@@ -1,7 +1,7 @@
 //! A trial, and what became of it.
 
-use crate::calibrate::outcome::Verdict;
-use crate::calibrate::self_test::Value;
+use crate::calibrate::results::outcome::Verdict;
+use crate::calibrate::self_test::HiddenValue;
 use serde::{Deserialize, Serialize};
 
 /// What is hidden.
@@ -59,7 +59,7 @@ pub const NOISE: &str = "noise";
 
 /// What became of a trial: a row of the self-test's table.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Tried {
+pub struct TriedTrial {
     /// The trial.
     #[serde(flatten)]
     pub trial: Trial,
@@ -70,12 +70,12 @@ pub struct Tried {
     pub unasked: Option<String>,
     /// What was hidden and what was answered.
     #[serde(flatten)]
-    pub answer: Option<Answer>,
+    pub answer: Option<TrialAnswer>,
 }
 
 /// What was hidden in a trial, and what the method said.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Answer {
+pub struct TrialAnswer {
     /// Hidden effects with their targets and values, in words.
     pub lacks: String,
     /// The verdict.
@@ -89,7 +89,7 @@ pub struct Answer {
     /// Whether what is hidden was held for as good as what was found.
     pub as_good: bool,
     /// Hidden values that were found by name.
-    pub values: Vec<Value>,
+    pub values: Vec<HiddenValue>,
     /// Largest error of the declared model on the validation run, in floors of the true model.
     pub floors: f64,
     /// The same of the hidden effect that shows least; none of a single effect.

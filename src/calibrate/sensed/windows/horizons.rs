@@ -1,7 +1,7 @@
 //! What reports say of windows: by how much predictions miss over each horizon.
 
 use super::score::Horizon;
-use crate::calibrate::errors::ChannelError;
+use crate::calibrate::values::errors::ChannelError;
 use serde::Serialize;
 
 /// What a report says of windows.

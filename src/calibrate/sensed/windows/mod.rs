@@ -5,20 +5,14 @@
 //! effects, zeros of runs and starts together; [`sought`] says which values; [`fits`] goes from
 //! short windows to long ones, and [`eliminate`] leaves out what is not certain; [`score`] by how much predictions
 //! miss; [`plausible`] refuses recordings that cannot be right; [`outcome`] is the whole way, [`predict`] that of
-//! a prediction; [`report`] is what is written, [`horizons`] what it says of windows.
+//! a prediction; [`report`] is what is written, [`horizons`] what it says of windows. `fitting` holds all that fits.
 
-pub mod bench;
-pub mod eliminate;
-pub mod fits;
+mod fitting;
 pub mod horizons;
-pub mod inputs;
 pub mod outcome;
 pub mod plausible;
-pub mod pose;
 pub mod predict;
 pub mod report;
-pub mod roll;
 pub mod score;
-pub mod shooting;
-pub mod sought;
-pub mod window;
+
+pub use fitting::{bench, eliminate, fits, inputs, pose, roll, shooting, sought, window};

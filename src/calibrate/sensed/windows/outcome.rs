@@ -1,15 +1,15 @@
 //! The whole way of a calibration by windows: everything that may be wrong is fitted at once, what is not certain
 //! is left out, and the rest is fitted again.
 
-use super::bench::Bench;
-use super::eliminate::{Kept, eliminated, is_nothing};
-use super::fits::Search;
+use super::fitting::bench::Bench;
+use super::fitting::eliminate::{KeptValues, eliminated, is_nothing};
+use super::fitting::fits::WindowFits;
+use super::fitting::sought::sought;
 use super::score::{Horizon, Score, score};
-use super::sought::sought;
-use crate::calibrate::outcome::Verdict;
-use crate::calibrate::report::Fitted as Estimate;
+use crate::calibrate::results::outcome::Verdict;
+use crate::calibrate::results::report::Fitted as Estimate;
 use crate::calibrate::sensed::events::Event;
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds::{CERTAIN, HORIZONS, MET, OWN, WINDOWS};
 use crate::effects::{Setting, Target, UNNAMED, named};
 use crate::scenario::{Problem, Scenario};
@@ -36,7 +36,7 @@ pub struct LeftOut {
 
 /// One run under the declared and the calibrated model.
 #[derive(Clone, Debug)]
-pub struct Judged {
+pub struct JudgedRun {
     /// Index of the run.
     pub run: usize,
     /// Windows.
@@ -49,7 +49,7 @@ pub struct Judged {
 
 /// A calibration.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct WindowsOutcome {
     /// What it comes to.
     pub verdict: Verdict,
     /// What was found.
@@ -61,7 +61,7 @@ pub struct Outcome {
     /// What was fitted in vain.
     pub left_out: Vec<LeftOut>,
     /// Runs by horizons.
-    pub judged: Vec<Judged>,
+    pub judged: Vec<JudgedRun>,
     /// Zeros of each run's sensors by its first seconds, beside what the model says, with their deviations.
     pub zeros: Vec<Vec<[f64; 2]>>,
     /// Lengths in s of the windows that were fitted.
@@ -80,7 +80,7 @@ pub fn calibrate(
     fits: usize,
     without: &[&str],
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<(Bench, Outcome), Problem> {
+) -> Result<(Bench, WindowsOutcome), Problem> {
     let all = Bench::new(rig, runs)?;
     let bench = Bench::new(rig, all.runs[..fits].to_vec())?;
     let mut names = bench.unknown_zeros();
@@ -88,7 +88,7 @@ pub fn calibrate(
         names.fill(0.0);
     }
     let priors = vec![names.iter().map(|std| [0.0, *std]).collect(); fits];
-    let mut search = Search::new(&bench, priors, tell);
+    let mut search = WindowFits::new(&bench, priors, tell);
     let Fits { mut effects, mut model, left_out, known, fitted } =
         fit_and_leave_out(&bench, &mut search, without);
     tell("finding the zeros of runs");
@@ -109,16 +109,25 @@ pub fn calibrate(
         calibrated = Bench::new(&with(rig, &model), calibrated.runs)?;
     }
     let (judged, zeros) = judge(&calibrated, rig)?;
-    let held = |j: &&Judged| j.run >= fits || fits == calibrated.runs.len();
-    let held: Vec<&Judged> = judged.iter().filter(held).collect();
+    let held = |j: &&JudgedRun| j.run >= fits || fits == calibrated.runs.len();
+    let held: Vec<&JudgedRun> = judged.iter().filter(held).collect();
     let verdict = verdict(&held, &events);
     if verdict == Verdict::NothingMissing {
         effects.clear();
         model.clone_from(&bench.declared);
     }
     let lengths = search.lengths;
-    let outcome =
-        Outcome { verdict, effects, events, model, left_out, judged, zeros, lengths, fitted };
+    let outcome = WindowsOutcome {
+        verdict,
+        effects,
+        events,
+        model,
+        left_out,
+        judged,
+        zeros,
+        lengths,
+        fitted,
+    };
     Ok((calibrated, outcome))
 }
 
@@ -134,7 +143,7 @@ struct Fits {
 }
 
 /// Fits everything that may be wrong at once, leaves out what is not certain, and fits the rest again.
-fn fit_and_leave_out(bench: &Bench, search: &mut Search, without: &[&str]) -> Fits {
+fn fit_and_leave_out(bench: &Bench, search: &mut WindowFits, without: &[&str]) -> Fits {
     let everything = sought(&bench.mechanism, &bench.declared, &bench.runs, without);
     let first = search.stages(&everything, everything.start.clone(), &WINDOWS);
     let mut fits = Fits {
@@ -145,8 +154,8 @@ fn fit_and_leave_out(bench: &Bench, search: &mut Search, without: &[&str]) -> Fi
         fitted: first.is_some(),
     };
     let Some(values) = first else { return fits };
-    let Search { covariance, information, .. } = &*search;
-    let Kept { fixed, values, gains } =
+    let WindowFits { covariance, information, .. } = &*search;
+    let KeptValues { fixed, values, gains } =
         eliminated(&everything, values, covariance.clone(), information);
     let named = everything.settings(&values);
     fits.left_out.extend(gains.iter().map(|&(i, gain)| LeftOut { effect: named[i].clone(), gain }));
@@ -177,8 +186,8 @@ fn fit_and_leave_out(bench: &Bench, search: &mut Search, without: &[&str]) -> Fi
 }
 
 /// What runs that count say of the declared model and the calibrated one.
-fn verdict(held: &[&Judged], events: &[Event]) -> Verdict {
-    let met = |score: &dyn Fn(&Judged) -> &Score| {
+fn verdict(held: &[&JudgedRun], events: &[Event]) -> Verdict {
+    let met = |score: &dyn Fn(&JudgedRun) -> &Score| {
         held.iter().all(|j| {
             let s = score(j);
             s.errors.iter().zip(&s.floors).all(|(e, f)| *e <= MET * f)
@@ -210,7 +219,7 @@ pub fn horizons(bench: &Bench) -> Vec<Horizon> {
 }
 
 /// All runs under the model of a bench and under the rig as declared, and the zeros of runs.
-fn judge(bench: &Bench, rig: &Scenario) -> Result<(Vec<Judged>, Zeros), Problem> {
+fn judge(bench: &Bench, rig: &Scenario) -> Result<(Vec<JudgedRun>, Zeros), Problem> {
     let problem =
         || rig.problem("mechanism", "cannot be rolled along its runs", "check its masses");
     let zeros = bench.own_zeros(&bench.declared, &bench.zeros_of_runs()).ok_or_else(problem)?;
@@ -222,7 +231,7 @@ fn judge(bench: &Bench, rig: &Scenario) -> Result<(Vec<Judged>, Zeros), Problem>
     for run in 0..bench.runs.len() {
         let own: Vec<f64> = zeros[run].iter().map(|[zero, _]| *zero).collect();
         for horizon in horizons(bench) {
-            judged.push(Judged {
+            judged.push(JudgedRun {
                 run,
                 horizon,
                 before: score(&declared, &before[run], &none, run, horizon),

@@ -2,12 +2,12 @@
 //! units. Of machines with drives nothing is refused: their readings jump where a controller loses rows, and wrong
 //! units of efforts are not told from wrong drives.
 
-use super::bench::Bench;
+use super::fitting::bench::Bench;
 use super::outcome::horizons;
 use super::score::score;
-use crate::calibrate::sensed::recording::Recording;
+use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds::{ASTRAY, FACTORS, FOLLOWED};
-use crate::measure::splice::{Samples, one_run};
+use crate::measure::splice::{PositionSamples, one_run};
 use crate::mechanism::{Mechanism, Reads};
 use crate::scenario::{Problem, Scenario};
 
@@ -37,7 +37,7 @@ pub(in crate::calibrate::sensed) fn spliced(machine: &Mechanism, run: &Recording
             sensor.reads,
             Reads::Position(_) | Reads::X(_) | Reads::Y(_) | Reads::Angle(..)
         );
-        let samples = Samples {
+        let samples = PositionSamples {
             place: &run.path,
             column: &sensor.column,
             unit: sensor.unit(machine),

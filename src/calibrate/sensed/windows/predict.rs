@@ -1,19 +1,19 @@
 //! A model of a machine that nothing holds beside a recording: predictions over windows.
 
-use super::bench::{Bench, suits};
+use super::fitting::bench::{Bench, suits};
 use super::horizons::{HorizonErrors, RunZero};
 use super::outcome::{horizons, with};
 use super::plausible;
 use super::report::{channel_errors, input_columns, pictures, predicted, remarks, run_zeros};
 use super::score::{Horizon, score};
-use crate::calibrate::errors::ChannelError;
-use crate::calibrate::predicted::{ERRORS_FILE, PREDICTED_FILE};
-use crate::calibrate::report::EffectReport;
-use crate::calibrate::result::{CalibrateError, publish, refuse, to_json};
+use crate::calibrate::results::predicted::{ERRORS_FILE, PREDICTED_FILE};
+use crate::calibrate::results::report::EffectReport;
+use crate::calibrate::results::result::{CalibrateError, publish, refuse, to_json};
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::events::{Event, found};
-use crate::calibrate::sensed::recording::Recording;
-use crate::report::{Part, Style, Table, document, number};
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::values::errors::ChannelError;
+use crate::report::{PagePart, PageTable, Style, document, number};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError};
@@ -23,7 +23,7 @@ use std::time::Instant as Clock;
 
 /// What a user asks for in place of the usual windows, in s.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Asked {
+pub struct AskedWindows {
     /// Length of windows.
     pub window: Option<f64>,
     /// The first part, which starts are fitted to.
@@ -34,7 +34,7 @@ pub struct Asked {
 
 /// `errors.json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Prediction {
+pub struct WindowsPrediction {
     /// Which program made this of which model.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -63,9 +63,9 @@ pub struct Prediction {
 
 /// A finished prediction.
 #[derive(Debug)]
-pub struct Predicted {
+pub struct WindowsPredicted {
     /// What it came to.
-    pub prediction: Prediction,
+    pub prediction: WindowsPrediction,
     /// The text of `errors.json`.
     pub json: String,
     /// Where all files are.
@@ -74,7 +74,7 @@ pub struct Predicted {
 
 /// A model and a recording that nothing speaks against.
 #[derive(Debug)]
-pub struct Prepared {
+pub struct PreparedWindows {
     bench: Bench,
     horizons: Vec<Horizon>,
 }
@@ -86,8 +86,8 @@ pub struct Prepared {
 pub fn prepare(
     model: &Scenario,
     path: &Path,
-    asked: Asked,
-) -> Result<Option<Prepared>, CalibrateError> {
+    asked: AskedWindows,
+) -> Result<Option<PreparedWindows>, CalibrateError> {
     let parts = crate::model::parts_of(model)?;
     if !suits(&parts) {
         return Ok(None);
@@ -120,7 +120,7 @@ pub fn prepare(
         wrong.push(format!("{}: no window fits into its {duration:.3} s", path.display()));
     }
     refuse(wrong)?;
-    Ok(Some(Prepared { bench, horizons }))
+    Ok(Some(PreparedWindows { bench, horizons }))
 }
 
 /// Predicts and writes everything about it into `folder`.
@@ -129,12 +129,12 @@ pub fn prepare(
 /// A model that cannot be rolled along the recording, files that cannot be written.
 pub fn into_folder(
     model: &Scenario,
-    prepared: &Prepared,
+    prepared: &PreparedWindows,
     folder: Folder,
     tell: &dyn Fn(&str),
-) -> Result<Predicted, CalibrateError> {
+) -> Result<WindowsPredicted, CalibrateError> {
     let started = Clock::now();
-    let Prepared { bench, horizons } = prepared;
+    let PreparedWindows { bench, horizons } = prepared;
     let problem =
         || model.problem("mechanism", "cannot be rolled along this run", "check its masses");
     tell("finding what belongs to the run");
@@ -171,10 +171,10 @@ pub fn into_folder(
     let mut drawn = pictures(bench, 0, "prediction", &models)?;
     drawn.extend(events_drawn(&events).map_err(RunError::from)?);
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
-    let prediction = Prediction {
+    let prediction = WindowsPrediction {
         provenance: Provenance::of(model),
         run: bench.runs[0].name.clone(),
-        effects: model.effects.iter().map(crate::calibrate::way::name).collect(),
+        effects: model.effects.iter().map(crate::calibrate::rounds::way::name).collect(),
         errors: windows[0].errors.clone(),
         windows,
         events: events.iter().map(Event::report).collect(),
@@ -189,11 +189,11 @@ pub fn into_folder(
     let page = page(&prediction, &found::sentence(&events), &drawn);
     let texts = [(ERRORS_FILE, &json), (PREDICTED_FILE, &rows), (PAGE_FILE, &page)];
     let folder = publish(folder, &texts, &drawn)?;
-    Ok(Predicted { prediction, json, folder })
+    Ok(WindowsPredicted { prediction, json, folder })
 }
 
 /// The page.
-fn page(p: &Prediction, events: &str, pictures: &[crate::report::Picture]) -> String {
+fn page(p: &WindowsPrediction, events: &str, pictures: &[crate::report::Picture]) -> String {
     let effects = if p.effects.is_empty() {
         "without effects".to_owned()
     } else {
@@ -211,7 +211,7 @@ fn page(p: &Prediction, events: &str, pictures: &[crate::report::Picture]) -> St
             times.into_iter().chain(of).chain(errors).collect()
         })
     });
-    let errors = Table {
+    let errors = PageTable {
         id: "errors",
         title: "Errors over windows".into(),
         header: head.iter().map(|name| (*name).to_owned()).collect(),
@@ -224,13 +224,13 @@ fn page(p: &Prediction, events: &str, pictures: &[crate::report::Picture]) -> St
         ("Time of computing", format!("{} s", number(p.wall_s))),
     ];
     let provenance = p.provenance.lines("model", None, more);
-    let mut parts = vec![Part::Table(errors), Part::Pictures(pictures)];
+    let mut parts = vec![PagePart::Table(errors), PagePart::Pictures(pictures)];
     if !p.remarks.is_empty() {
         parts.insert(
             1,
-            Part::Text { id: "remarks", title: "The recording", paragraphs: &p.remarks },
+            PagePart::Text { id: "remarks", title: "The recording", paragraphs: &p.remarks },
         );
     }
-    parts.push(Part::Provenance(&provenance));
+    parts.push(PagePart::Provenance(&provenance));
     document(&format!("Prediction of {}", p.run), &lead, &parts)
 }

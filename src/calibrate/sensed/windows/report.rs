@@ -1,21 +1,21 @@
 //! What is written of a calibration by windows.
 
-use super::bench::Bench;
+use super::fitting::bench::Bench;
 use super::horizons::{HorizonErrors, RunZero, Windows};
-use super::outcome::{Certain, Judged, LeftOut, Outcome, calibrate, with};
+use super::outcome::{Certain, JudgedRun, LeftOut, WindowsOutcome, calibrate, with};
 use super::score::Score;
-use crate::calibrate::charts::{POINTS, panel, thinned};
-use crate::calibrate::errors::ChannelError;
-use crate::calibrate::outcome::Verdict;
-use crate::calibrate::recording::stem_of;
-use crate::calibrate::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
-use crate::calibrate::result::CalibrateError;
+use crate::calibrate::measured::recording::stem_of;
+use crate::calibrate::results::charts::{POINTS, panel, thinned};
+use crate::calibrate::results::outcome::Verdict;
+use crate::calibrate::results::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
+use crate::calibrate::results::result::CalibrateError;
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::events::{self, Event};
-use crate::calibrate::sensed::recording::Recording;
-use crate::calibrate::sensed::report::Report;
-use crate::calibrate::sensed::words::name;
-use crate::calibrate::sensed::written::{Calibrated, names_of_files, written};
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::results::report::Report;
+use crate::calibrate::sensed::results::written::{SensedCalibration, names_of_files, written};
+use crate::calibrate::sensed::rounds::words::name;
+use crate::calibrate::values::errors::ChannelError;
 use crate::report::{Curve, Picture, Style, panels_svg};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -85,7 +85,7 @@ pub(in crate::calibrate::sensed) fn remarks(runs: &[Recording]) -> Vec<String> {
 pub(super) fn input_columns(bench: &Bench) -> Vec<String> {
     let first = bench.runs.first();
     (0..bench.mechanism.actuators.len())
-        .filter_map(|drive| super::inputs::input_sensor(&bench.mechanism, first?, drive))
+        .filter_map(|drive| super::fitting::inputs::input_sensor(&bench.mechanism, first?, drive))
         .map(|sensor| bench.mechanism.sensors[sensor].column.clone())
         .collect()
 }
@@ -160,14 +160,14 @@ pub fn into_folder(
     without: &[&str],
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
-) -> Result<Calibrated, CalibrateError> {
+) -> Result<SensedCalibration, CalibrateError> {
     let started = Clock::now();
     let (bench, outcome) = calibrate(rig, recordings, fits, without, tell)?;
     tell("drawing and writing");
     let (mut files, mut drawn) = (Vec::new(), Vec::new());
     let (mut errors, mut horizons) = (Vec::new(), Vec::new());
     let main = outcome.judged.first().map(|j| j.horizon);
-    for Judged { run, horizon, before, after } in &outcome.judged {
+    for JudgedRun { run, horizon, before, after } in &outcome.judged {
         let role = role(*run, fits);
         let of = channel_errors(&bench, *run, role, Some(before), after);
         if Some(*horizon) == main {
@@ -219,7 +219,7 @@ pub fn into_folder(
     written(report, &with(rig, &outcome.model), &files, &drawn, folder)
 }
 
-fn summary(outcome: &Outcome) -> String {
+fn summary(outcome: &WindowsOutcome) -> String {
     let list = outcome.effects.iter().map(|c| name(&c.effect)).collect::<Vec<_>>().join(", ");
     match (outcome.verdict, outcome.fitted) {
         (_, false) => "No values could be fitted: the declared model does not follow these recordings even over \
@@ -246,7 +246,7 @@ fn summary(outcome: &Outcome) -> String {
 }
 
 /// What lasts, then what does not.
-fn effects(outcome: &Outcome) -> Vec<EffectReport> {
+fn effects(outcome: &WindowsOutcome) -> Vec<EffectReport> {
     let lasting = outcome.effects.iter().map(effect);
     lasting.chain(outcome.events.iter().map(Event::report)).collect()
 }
@@ -266,7 +266,7 @@ fn effect(certain: &Certain) -> EffectReport {
     }
 }
 
-fn ranking(outcome: &Outcome) -> Vec<Ranked> {
+fn ranking(outcome: &WindowsOutcome) -> Vec<Ranked> {
     let kept = outcome.effects.iter().map(|c| (&c.effect, c.gain, true));
     let left = outcome.left_out.iter().map(|LeftOut { effect, gain }| (effect, *gain, false));
     let mut all: Vec<_> = kept.chain(left).collect();

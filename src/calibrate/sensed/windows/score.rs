@@ -1,8 +1,8 @@
 //! By how much predictions over windows miss a run.
 
-use super::bench::Bench;
-use super::window::{Window, cut};
-use crate::calibrate::sensed::simulate::deviation;
+use super::fitting::bench::Bench;
+use super::fitting::window::{Window, cut};
+use crate::calibrate::sensed::motion::simulate::deviation;
 use crate::mechanism::Mechanism;
 use nalgebra::DMatrix;
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! Every law with the parameter by which it returns as much of a hit as the scenario's own.
 
 use crate::contact::impact;
-use crate::contact::laws::{HERTZ_STEP, Kind, Losses};
+use crate::contact::laws::{HERTZ_STEP, LawKind, Losses};
 use crate::mechanism::{Bearing, Mechanism};
 use crate::scenario::{self, Joint, Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, assemble};
@@ -23,7 +23,7 @@ const MATCHED: f64 = 1e-3;
 #[derive(Clone, Debug)]
 pub struct Matched {
     /// The law.
-    pub kind: &'static Kind,
+    pub kind: &'static LawKind,
     /// The scenario.
     pub scenario: Scenario,
     /// The parameter that was chosen, and its value.
@@ -50,7 +50,7 @@ pub fn own(scenario: &Scenario) -> Result<Matched, Problem> {
 ///
 /// # Errors
 /// A machine that cannot be put together.
-pub fn under(scenario: &Scenario, kind: &'static Kind, asked: f64) -> Result<Matched, Problem> {
+pub fn under(scenario: &Scenario, kind: &'static LawKind, asked: f64) -> Result<Matched, Problem> {
     let (key, range): (_, [f64; 2]) = match kind.losses {
         // What is returned rises with the first of them and falls with the second.
         Losses::Restitution => ("restitution", [LEAST, 1.0]),
@@ -80,7 +80,7 @@ pub fn under(scenario: &Scenario, kind: &'static Kind, asked: f64) -> Result<Mat
 
 /// The scenario with a law in all joints that have one, and its parameter. Parameters of other laws, and a
 /// stiffness in another law's unit, are left out.
-fn with(scenario: &Scenario, kind: &'static Kind, value: Option<f64>) -> Scenario {
+fn with(scenario: &Scenario, kind: &'static LawKind, value: Option<f64>) -> Scenario {
     let mut scenario = scenario.clone();
     let linear = !kind.takes("exponent");
     let contact = &mut scenario.contact;

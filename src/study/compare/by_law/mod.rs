@@ -9,10 +9,10 @@ pub use result::{Dependence, LawRow, LawsCompared};
 
 use super::CompareError;
 use super::plan::{machine, no_contacts, tolerance};
-use super::probe::{Measured, measure};
+use super::probe::{CompareMeasured, measure};
 use super::quantities::{COUNT, QUANTITIES};
 use super::statistics::Mean;
-use crate::contact::laws::Kind;
+use crate::contact::laws::LawKind;
 use crate::measure::student::t95;
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
@@ -40,7 +40,7 @@ const LEAST_DIFFERENCE: f64 = 0.01;
 
 /// A finished comparison and its files.
 #[derive(Debug)]
-pub struct Done {
+pub struct FinishedByLaw {
     /// All figures.
     pub compared: LawsCompared,
     /// The text of [`LAWS_COMPARED_FILE`].
@@ -56,11 +56,11 @@ pub struct Done {
 /// [`CompareError`]; the folder is left as it was.
 pub fn compare_laws(
     scenario: &Scenario,
-    kinds: &[&'static Kind],
+    kinds: &[&'static LawKind],
     starts: usize,
     folder: Folder,
     watch: &Watch,
-) -> Result<Done, CompareError> {
+) -> Result<FinishedByLaw, CompareError> {
     let started = Clock::now();
     let base = own(scenario)?;
     let others = others(kinds, base.kind)
@@ -97,7 +97,7 @@ pub fn compare_laws(
     }
     write(PAGE_FILE, &page::page(&compared, &pictures))?;
     let folder = folder.finish().map_err(crate::study::run_error::RunError::from)?;
-    Ok(Done { compared, json, folder })
+    Ok(FinishedByLaw { compared, json, folder })
 }
 
 /// Simulated time of a comparison in s, by which its progress counts.
@@ -106,7 +106,7 @@ pub fn compare_laws(
 /// A machine without a joint that a law acts in.
 pub fn simulated_time(
     scenario: &Scenario,
-    kinds: &[&'static Kind],
+    kinds: &[&'static LawKind],
     starts: usize,
 ) -> Result<f64, Problem> {
     let base = own(scenario)?;
@@ -118,7 +118,7 @@ pub fn simulated_time(
 }
 
 /// The laws of a list beside the first one.
-fn others(kinds: &[&'static Kind], first: &Kind) -> Vec<&'static Kind> {
+fn others(kinds: &[&'static LawKind], first: &LawKind) -> Vec<&'static LawKind> {
     kinds.iter().copied().filter(|kind| *kind != first).collect()
 }
 
@@ -127,7 +127,7 @@ fn simulate(
     laws: &[Matched],
     starts: usize,
     watch: &Watch,
-) -> Result<Vec<Vec<Measured>>, CompareError> {
+) -> Result<Vec<Vec<CompareMeasured>>, CompareError> {
     let jobs: Vec<(usize, usize)> =
         (0..laws.len()).flat_map(|law| (0..starts).map(move |start| (law, start))).collect();
     let results = jobs
@@ -138,12 +138,12 @@ fn simulate(
             let mut machine = machine(&law.scenario, Law::of(law.kind), control, start, starts)?;
             Ok(measure(&law.scenario, &mut machine, watch))
         })
-        .collect::<Result<Vec<Measured>, Problem>>()?;
+        .collect::<Result<Vec<CompareMeasured>, Problem>>()?;
     watch.ended()?;
-    Ok(results.chunks(starts).map(<[Measured]>::to_vec).collect())
+    Ok(results.chunks(starts).map(<[CompareMeasured]>::to_vec).collect())
 }
 
-fn row(law: &Matched, runs: &[Measured]) -> LawRow {
+fn row(law: &Matched, runs: &[CompareMeasured]) -> LawRow {
     let good = || runs.iter().filter(|run| run.halted.is_none());
     LawRow {
         law: law.kind.name,

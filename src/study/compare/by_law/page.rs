@@ -2,10 +2,10 @@
 
 use super::result::{LawRow, LawsCompared};
 use crate::report::{
-    Curve, Label, Panel, Part, Picture, Style, Table, document, number, panels_svg,
+    Curve, Label, PagePart, PageTable, Panel, Picture, Style, document, number, panels_svg,
 };
-use crate::study::compare::probe::Measured;
-use crate::study::compare::quantities::{QUANTITIES, Quantity, index};
+use crate::study::compare::probe::CompareMeasured;
+use crate::study::compare::quantities::{ComparedQuantity, QUANTITIES, index};
 use crate::study::compare::statistics::Mean;
 use crate::study::compare::verdict::in_words;
 use crate::study::files::SCENARIO_FILE;
@@ -40,11 +40,11 @@ pub(super) fn page(compared: &LawsCompared, pictures: &[Picture]) -> String {
     ];
     let provenance = compared.provenance.lines("scenario", Some(SCENARIO_FILE), more);
     let parts = [
-        Part::Table(dependences(compared)),
-        Part::Text { id: "method", title: "How it was compared", paragraphs: &[method] },
-        Part::Table(laws(compared)),
-        Part::Pictures(pictures),
-        Part::Provenance(&provenance),
+        PagePart::Table(dependences(compared)),
+        PagePart::Text { id: "method", title: "How it was compared", paragraphs: &[method] },
+        PagePart::Table(laws(compared)),
+        PagePart::Pictures(pictures),
+        PagePart::Provenance(&provenance),
     ];
     document(&title, &answer(compared), &parts)
 }
@@ -69,11 +69,11 @@ fn answer(compared: &LawsCompared) -> String {
 }
 
 /// The chosen quantities with their places in the list.
-fn shown() -> impl Iterator<Item = (usize, &'static Quantity)> {
+fn shown() -> impl Iterator<Item = (usize, &'static ComparedQuantity)> {
     SHOWN.into_iter().filter_map(|key| index(key).map(|i| (i, &QUANTITIES[i])))
 }
 
-fn with_error(quantity: &Quantity, mean: Mean) -> String {
+fn with_error(quantity: &ComparedQuantity, mean: Mean) -> String {
     format!("{} ± {}", in_words(quantity, mean.mean), in_words(quantity, mean.sem))
 }
 
@@ -85,7 +85,7 @@ fn parameter(row: &LawRow) -> String {
     }
 }
 
-fn laws(compared: &LawsCompared) -> Table {
+fn laws(compared: &LawsCompared) -> PageTable {
     let rows = compared.rows.iter().map(|row| {
         let matched = if row.matched { "" } else { ", cannot be matched" };
         let halted = match row.halted {
@@ -97,7 +97,7 @@ fn laws(compared: &LawsCompared) -> Table {
         [row.law.to_owned(), parameter(row), returned].into_iter().chain(figures).collect()
     });
     let header = ["law", "parameter", "returned"].map(str::to_owned).into_iter();
-    Table {
+    PageTable {
         id: "laws",
         title: "Law by law".into(),
         header: header.chain(shown().map(|(_, quantity)| quantity.label.to_owned())).collect(),
@@ -107,7 +107,7 @@ fn laws(compared: &LawsCompared) -> Table {
     }
 }
 
-fn dependences(compared: &LawsCompared) -> Table {
+fn dependences(compared: &LawsCompared) -> PageTable {
     let value = |law: Option<&str>, i: usize| {
         let row = compared.rows.iter().find(|row| Some(row.law) == law);
         row.map_or_else(String::new, |row| {
@@ -124,7 +124,7 @@ fn dependences(compared: &LawsCompared) -> Table {
             found.differing.join(", "),
         ]
     });
-    Table {
+    PageTable {
         id: "dependences",
         title: "What depends on the law".into(),
         header: ["quantity", "depends", "smallest", "largest", "differ from the first law"]
@@ -140,9 +140,9 @@ fn dependences(compared: &LawsCompared) -> Table {
 /// Every start under every law, so that the scatter shows beside the difference.
 pub(super) fn pictures(
     compared: &LawsCompared,
-    runs: &[Vec<Measured>],
+    runs: &[Vec<CompareMeasured>],
 ) -> Result<Vec<Picture>, RunError> {
-    let panel = |(i, quantity): (usize, &Quantity)| {
+    let panel = |(i, quantity): (usize, &ComparedQuantity)| {
         let curves = compared.rows.iter().zip(runs).enumerate().map(|(k, (row, runs))| Curve {
             name: format!("{} {}", k + 1, row.law),
             points: runs.iter().map(|run| ((k + 1) as f64, run.values[i])).collect(),

@@ -1,0 +1,166 @@
+//! A rig and its recordings, and everything that speaks against them, before anything is simulated or written.
+
+use super::followed;
+use super::noise;
+use crate::calibrate::results::result::{CalibrateError, refuse};
+use crate::calibrate::sensed::held;
+use crate::calibrate::sensed::motion::start::machine;
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::windows::bench::{Bench, suits};
+use crate::calibrate::sensed::windows::plausible;
+use crate::measure::log::LogError;
+use crate::mechanism::{Mechanism, Reads};
+use crate::scenario::Scenario;
+use std::path::Path;
+
+/// A rig and recordings that nothing speaks against.
+#[derive(Debug)]
+pub struct Prepared {
+    pub(in crate::calibrate) rig: Scenario,
+    pub(in crate::calibrate) recordings: Vec<Recording>,
+    /// How many of them, the first ones, values are fitted to.
+    pub(in crate::calibrate::sensed) fits: usize,
+    /// How.
+    pub(in crate::calibrate::sensed) way: CalibratedAs,
+}
+
+/// How a machine is calibrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::calibrate) enum CalibratedAs {
+    /// Nothing holds it: by windows.
+    Windows,
+    /// Sampled controllers hold it: by what they ask of their drives.
+    Held,
+    /// By residuals in units of noise and simulations.
+    Residuals,
+}
+
+impl CalibratedAs {
+    /// The way of a machine.
+    pub(in crate::calibrate) fn of(machine: &Mechanism) -> Self {
+        if suits(machine) {
+            Self::Windows
+        } else if held::bench::suits(machine) {
+            Self::Held
+        } else {
+            Self::Residuals
+        }
+    }
+}
+
+/// Reads recordings of a rig whose sensors its file describes, the first `fits` to calibrate on, the others to
+/// validate on.
+///
+/// # Errors
+/// Everything that is wrong with them.
+pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<Prepared, CalibrateError> {
+    let built: Mechanism = crate::model::parts_of(&rig)?;
+    let way = CalibratedAs::of(&built);
+    refuse(against_rig(&rig, &built, way, fits))?;
+    let mut recordings = read(&rig, &built, way, paths)?;
+    called_apart(&mut recordings);
+    through_common_sensors(&mut recordings, &built);
+    refuse(noise::wrong(&rig, &built, &recordings))?;
+    // What the machine cannot be at a recording's first row is told before anything is written.
+    if way == CalibratedAs::Windows {
+        let bench = Bench::new(&rig, recordings.clone())?;
+        refuse(plausible::wrong(&rig, &bench))?;
+    } else {
+        for recording in &recordings {
+            machine(&rig, &[], recording)?;
+        }
+    }
+    Ok(Prepared { rig, recordings, fits, way })
+}
+
+/// What speaks against a rig by itself.
+pub(in crate::calibrate) fn against_rig(
+    rig: &Scenario,
+    built: &Mechanism,
+    way: CalibratedAs,
+    fits: usize,
+) -> Vec<String> {
+    let mut wrong: Vec<String> = Vec::new();
+    if built.sensors.is_empty() {
+        let help = "describe each column of the recordings by a [[sensor]]";
+        let message = "is missing: nobody knows what the columns of the recordings are".to_owned();
+        return vec![rig.problem("sensor", message, help).to_string()];
+    }
+    if way == CalibratedAs::Residuals && !rig.effects.is_empty() {
+        let message = format!("holds {} effect(s)", rig.effects.len());
+        let help =
+            "calibrate starts from what a rig's maker declares: give it the rig without [[effect]]";
+        wrong.push(rig.problem("effect", message, help).to_string());
+    }
+    if way != CalibratedAs::Windows && fits > 1 {
+        let message =
+            "--data: several runs are fitted together of machines that nothing holds alone";
+        wrong.push(format!("{message}; give this one a --data and the others as --validate"));
+    }
+    wrong
+}
+
+/// The recordings, if each can be right by itself and beside the others.
+fn read(
+    rig: &Scenario,
+    built: &Mechanism,
+    way: CalibratedAs,
+    paths: &[&Path],
+) -> Result<Vec<Recording>, CalibrateError> {
+    let mut recordings: Vec<Recording> = Vec::new();
+    let mut errors: Vec<LogError> = Vec::new();
+    let efforts = way == CalibratedAs::Windows;
+    for path in paths {
+        match Recording::read_with_time(path, &built.sensors, efforts, rig.time_column()) {
+            Ok(recording) => {
+                let columns = rig.columns.as_ref();
+                errors.extend(columns.and_then(|named| recording.lacks(&built.sensors, named)));
+                recordings.push(recording);
+            }
+            Err(error) => errors.push(error),
+        }
+    }
+    let implausible = |recording| held::plausible::wrong(rig, built, recording);
+    if errors.is_empty() {
+        refuse(recordings.iter().flat_map(implausible).collect())?;
+    }
+    errors.extend(recordings.iter().filter_map(Recording::wrong));
+    errors.extend(recordings.iter().flat_map(|recording| followed::wrong(rig, built, recording)));
+    for (i, one) in recordings.iter().enumerate() {
+        for other in recordings[..i].iter().filter(|other| one.is_twin_of(other)) {
+            errors.push(LogError {
+                place: one.path.clone(),
+                message: format!("holds the same samples as {}", other.path),
+                help: "validate on another run: on the one that was fitted nothing is proved"
+                    .to_owned(),
+            });
+        }
+    }
+    refuse(errors)?;
+    Ok(recordings)
+}
+
+/// Files of one name in several folders are called by their paths.
+fn called_apart(recordings: &mut [Recording]) {
+    let names: Vec<String> = recordings.iter().map(|recording| recording.name.clone()).collect();
+    for recording in recordings {
+        if names.iter().filter(|name| **name == recording.name).count() > 1 {
+            recording.name.clone_from(&recording.path);
+        }
+    }
+}
+
+/// One look serves all runs: it is through the sensors that all of them have.
+fn through_common_sensors(recordings: &mut [Recording], built: &Mechanism) {
+    let everywhere = |i: usize| recordings.iter().all(|recording| recording.get(i).is_some());
+    // What was added to outputs in one run alone is known of the others: nothing was.
+    let added = |i: usize| matches!(built.sensors[i].reads, Reads::Added(_));
+    let common: Vec<bool> = (0..built.sensors.len()).map(|i| added(i) || everywhere(i)).collect();
+    for recording in recordings {
+        let columns = common
+            .iter()
+            .enumerate()
+            .map(|(i, common)| recording.get(i).filter(|_| *common).map(<[f64]>::to_vec));
+        *recording = recording.with(columns.collect());
+    }
+}

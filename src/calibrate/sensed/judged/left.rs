@@ -1,0 +1,78 @@
+//! What a model leaves unexplained.
+
+use crate::calibrate::sensed::residuals::residual::{Name, ResidualKind};
+use crate::calibrate::sensed::rounds::search::Search;
+use crate::calibrate::sensed::thresholds::{LARGEST, NOISE};
+use crate::calibrate::sensed::values::by_chance::squares_up_to;
+use crate::calibrate::sensed::values::model::Model;
+use nalgebra::DVector;
+use serde::Serialize;
+
+/// How much of a residual stands above noise, on the run where most does.
+#[derive(Clone, Debug, Serialize)]
+pub struct Left {
+    /// Which residual.
+    pub residual: ResidualKind,
+    /// Of which joint or column.
+    pub of: String,
+    /// Mean square in units of noise: 1 for noise.
+    pub mean_square: f64,
+    /// The mean square up to which that is noise on that run.
+    pub limit: f64,
+    /// Its largest coefficient in units of noise, on any run.
+    pub largest: f64,
+    /// Whether that is noise, on each run.
+    pub noise: bool,
+}
+
+impl Search<'_> {
+    /// Whether a model leaves nothing but noise.
+    pub fn is_noise(&self, model: &Model) -> bool {
+        is_noise(&self.left(model))
+    }
+
+    /// What is left of a model's residuals, on the run where most is: what a model leaves of the run that it was
+    /// fitted to it does not explain either.
+    pub fn left(&self, model: &Model) -> Vec<Left> {
+        let [on, hold] = [false, true].map(|held| self.left_on(model, held));
+        let above = |left: &Left| left.mean_square / left.limit;
+        let worse = |(on, hold): (Left, Left)| Left {
+            largest: on.largest.max(hold.largest),
+            noise: on.noise && hold.noise,
+            ..if above(&on) > above(&hold) { on } else { hold }
+        };
+        on.into_iter().zip(hold).map(worse).collect()
+    }
+
+    fn left_on(&self, model: &Model, held: bool) -> Vec<Left> {
+        let Some(fit) = self.target(&model.baseline, held).look(&model.fit.effects) else {
+            return Vec::new();
+        };
+        let segments = if held { &self.split.hold } else { &self.split.on };
+        let places = model.baseline.places(self.problem, segments);
+        let (draws, replicas) = (model.baseline.draws(segments), model.baseline.replicas);
+        let chance =
+            |k: usize| squares_up_to(draws.iter().map(|d| mean_square(d, &places, k)), replicas);
+        let of = |(k, name): (usize, &Name)| {
+            let own = fit.white.iter().zip(&places).filter(|(_, (c, _))| *c == k);
+            let largest = own.map(|(value, _)| value.abs()).fold(0.0, f64::max);
+            let mean_square = mean_square(&fit.white, &places, k);
+            let limit = NOISE[usize::from(!held)].max(chance(k));
+            let noise = mean_square < limit && largest < LARGEST;
+            Left { residual: name.kind, of: name.of.clone(), mean_square, limit, largest, noise }
+        };
+        self.names.iter().enumerate().map(of).collect()
+    }
+}
+
+/// Mean square of the numbers of residual `k` of a whitened look.
+fn mean_square(white: &DVector<f64>, places: &[(usize, f64)], k: usize) -> f64 {
+    let own = white.iter().zip(places).filter(|(_, (c, _))| *c == k);
+    let (sum, count) = own.fold((0.0, 0.0), |(sum, n), (value, _)| (sum + value * value, n + 1.0));
+    sum / f64::max(count, 1.0)
+}
+
+/// Whether residuals are noise. What cannot be looked at is not.
+pub fn is_noise(left: &[Left]) -> bool {
+    !left.is_empty() && left.iter().all(|left| left.noise)
+}

@@ -1,0 +1,192 @@
+//! What remains when no effect explains it: efforts in the measured joints as a table of what they depend on.
+
+use crate::calibrate::sensed::recorded::estimate::position_sensor;
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Split, Stopped};
+use crate::calibrate::sensed::residuals::residual::{Name, ResidualKind};
+use crate::calibrate::sensed::rounds::search::Search;
+use crate::calibrate::sensed::thresholds::{TABLE, TABLE_PASSES};
+use crate::calibrate::sensed::values::fit::FitTarget;
+use crate::calibrate::sensed::values::model::Model;
+use crate::effects::{Efforts, Over, Setting};
+use crate::mechanism::JointIndex;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// A table that stands in for what has no name.
+#[derive(Clone, Debug)]
+pub struct DescribedEfforts {
+    /// The table, as an effect.
+    pub effect: Setting,
+    /// Share of what was above noise on data that it was not fitted to that it removes, 0…1.
+    pub share: f64,
+    /// The same of every class, the best first.
+    pub others: Vec<(Over, f64)>,
+}
+
+impl DescribedEfforts {
+    /// What it depends on, in words.
+    pub fn words(&self) -> &'static str {
+        self.effect.efforts().map_or("something unknown", |table| table.depends_on.words())
+    }
+
+    /// What speaks for it.
+    pub fn evidence(&self) -> String {
+        let others = self.others.iter().skip(1).map(|(over, share)| {
+            format!("{} {:.0} %", over.words(), 100.0 * share.clamp(0.0, 1.0))
+        });
+        let others: Vec<String> = others.collect();
+        format!(
+            "efforts that vary with {} remove {:.0} % of what stands above noise on data that they were not \
+             fitted to ({})",
+            self.words(),
+            100.0 * self.share,
+            others.join(", ")
+        )
+    }
+}
+
+/// Ridges that are tried, as shares of the mean square of a joint's columns.
+const RIDGES: [f64; 6] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
+
+/// The table that removes most of a model's residuals on data that it was not fitted to, and the model with it;
+/// none where none removes more than [`TABLE`] of what stands above noise.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn describe(
+    search: &Search,
+    model: &Model,
+) -> Result<Option<(DescribedEfforts, Model)>, Stopped> {
+    let mut last = None;
+    let mut simulated = model.clone();
+    let mut others: Vec<(Over, f64)> = Vec::new();
+    for _ in 0..TABLE_PASSES {
+        let classes = others.first().map_or(Over::ALL.to_vec(), |(best, _)| vec![*best]);
+        let tables = best_tables(search, model, &simulated, &classes);
+        if others.is_empty() {
+            others = tables.iter().map(|(share, table)| (table.depends_on, *share)).collect();
+        }
+        let Some((share, table)) = tables.into_iter().next().filter(|(share, _)| *share > TABLE)
+        else {
+            break;
+        };
+        let effect = Setting::unnamed_efforts(table);
+        let effects = [model.fit.effects.as_slice(), std::slice::from_ref(&effect)].concat();
+        let Some(settled) = search.settle(&effects, 1)? else { break };
+        simulated = settled.clone();
+        let share = share.clamp(0.0, 1.0);
+        last = Some((DescribedEfforts { effect, share, others: others.clone() }, settled));
+    }
+    Ok(last)
+}
+
+/// The best table of each class with the share that it removes, the best first. Bias and noise are those of
+/// `simulated`, the effects those of `model`.
+fn best_tables(
+    search: &Search,
+    model: &Model,
+    simulated: &Model,
+    classes: &[Over],
+) -> Vec<(f64, Efforts)> {
+    let (problem, split) = (search.problem, search.split);
+    let [on, hold] =
+        [&split.on, &split.hold].map(|on| FitTarget { problem, baseline: &simulated.baseline, on });
+    let effects = &model.fit.effects;
+    let (Some(fitted), Some(held)) = (on.look(effects), hold.look(effects)) else {
+        return Vec::new();
+    };
+    let excess = (held.chi2 - held.white.len() as f64).max(1.0);
+    let Some((joints, ranges, sizes)) = motion(problem, split, &search.names) else {
+        return Vec::new();
+    };
+    let mut found: Vec<(f64, Efforts)> = Vec::new();
+    for depends_on in classes {
+        let empty = Efforts::empty(*depends_on, joints.clone(), &ranges);
+        let pair = [(&on, &fitted.white), (&hold, &held.white)]
+            .map(|(target, white)| columns(target, effects, white, &empty, &sizes));
+        let [Some(columns), Some(held_columns)] = pair else { continue };
+        let features = columns.ncols() / joints.len();
+        let normal = columns.transpose() * &columns;
+        let rhs = -(columns.transpose() * &fitted.white);
+        let scales: Vec<f64> = (0..joints.len())
+            .map(|i| normal.diagonal().rows(i * features, features).mean())
+            .collect();
+        let best = RIDGES
+            .into_iter()
+            .filter_map(|ridge| {
+                let ridges = DVector::from_fn(columns.ncols(), |i, _| ridge * scales[i / features]);
+                let ridged = &normal + DMatrix::from_diagonal(&ridges);
+                let weights: DVector<f64> = ridged.cholesky()?.solve(&rhs);
+                let left = (&held.white + &held_columns * &weights).norm_squared();
+                Some(((held.chi2 - left) / excess, weights))
+            })
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((share, weights)) = best {
+            let part = |(weights, size): (&[f64], &f64)| weights.iter().map(|w| w * size).collect();
+            let coefficients = weights.as_slice().chunks(features).zip(&sizes).map(part).collect();
+            found.push((share, Efforts { coefficients, ..empty }));
+        }
+    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found
+}
+
+/// Joints whose efforts are looked at, with the middle, the half range and the largest rate of each coordinate
+/// in the data that is fitted to, and the size of what is left of each.
+type MovedJoints = (Vec<String>, Vec<[f64; 3]>, Vec<f64>);
+
+fn motion(problem: &RigProblem, split: &Split, names: &[Name]) -> Option<MovedJoints> {
+    let dynamics: Vec<usize> =
+        (0..names.len()).filter(|&i| names[i].kind == ResidualKind::Dynamics).collect();
+    let joints: Vec<String> = dynamics.iter().map(|&i| names[i].of.clone()).collect();
+    let named = |name: &str| problem.declared.joints().find(|(known, _)| *known == name);
+    let mut ranges = Vec::new();
+    let mut sizes = Vec::new();
+    for (name, residual) in joints.iter().zip(&dynamics) {
+        let (_, joint) = named(name)?;
+        ranges.push(range(problem, &split.on, joint)?);
+        let first = split.on.first()?;
+        let view = &problem.runs[first.run].view;
+        let left = problem.residuals(view, &problem.declared, first)?;
+        let values = &left.signals.get(*residual)?.values;
+        let squares: f64 = values.iter().map(|value| value * value).sum();
+        sizes.push((squares / values.len().max(1) as f64).sqrt().max(f64::MIN_POSITIVE));
+    }
+    (!joints.is_empty()).then_some((joints, ranges, sizes))
+}
+
+/// Middle, half range and largest rate of a joint's coordinate as its own sensor shows it.
+fn range(problem: &RigProblem, on: &[Segment], joint: JointIndex) -> Option<[f64; 3]> {
+    let sensor = position_sensor(&problem.declared, joint)?;
+    let (mut low, mut high, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
+    for segment in on {
+        let view = &problem.runs[segment.run].view;
+        let values = view.smooth(sensor)?.get(segment.rows.clone())?;
+        for pair in values.windows(2) {
+            (low, high) = (low.min(pair[0]), high.max(pair[0]));
+            fastest = fastest.max((pair[1] - pair[0]).abs() / view.interval);
+        }
+    }
+    (low < high).then_some([0.5 * (low + high), 0.5 * (high - low), fastest])
+}
+
+/// Change of a target's residual by each coefficient of a table in units of `sizes`, joint by joint: it is
+/// linear in them.
+fn columns(
+    target: &FitTarget,
+    effects: &[Setting],
+    white: &DVector<f64>,
+    table: &Efforts,
+    sizes: &[f64],
+) -> Option<DMatrix<f64>> {
+    let joints = table.joints.len();
+    let still = vec![0.0; joints];
+    let features = table.features(0, &table.middle, &still).len();
+    let columns = (0..joints * features).into_par_iter().map(|i| {
+        let mut coefficients = vec![vec![0.0; features]; joints];
+        coefficients[i / features][i % features] = sizes[i / features];
+        let unit = Setting::unnamed_efforts(Efforts { coefficients, ..table.clone() });
+        Some(target.look(&[effects, &[unit]].concat())?.white - white)
+    });
+    Some(DMatrix::from_columns(&columns.collect::<Option<Vec<_>>>()?))
+}

@@ -1,0 +1,9 @@
+//! How a recorded machine moved: where it begins, driven ([`start`]) or let go ([`released`]); what says how it stands ([`basis`]) and
+//! along which motions ([`shown`], [`motions`]); what its sensors would have recorded ([`simulate`]).
+
+pub mod basis;
+pub(super) mod motions;
+pub mod released;
+pub(super) mod shown;
+pub mod simulate;
+pub mod start;

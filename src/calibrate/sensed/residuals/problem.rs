@@ -1,0 +1,336 @@
+//! A rig and the runs that it is held against.
+
+use super::residual::{Residuals, residuals};
+use crate::calibrate::measured::spectrum::transform;
+use crate::calibrate::sensed::motion::basis::Basis;
+use crate::calibrate::sensed::motion::motions::Motions;
+use crate::calibrate::sensed::motion::released::{
+    Released, StartError, let_go_at, released, released_near,
+};
+use crate::calibrate::sensed::motion::simulate;
+use crate::calibrate::sensed::motion::start::{machine, still};
+use crate::calibrate::sensed::recorded::estimate::View;
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::thresholds;
+use crate::effects::Setting;
+use crate::engine::{Halt, StepControl};
+use crate::mechanism::Mechanism;
+use crate::scenario::{Problem as Wrong, Scenario};
+use lru::LruCache;
+use rayon::prelude::*;
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Machines that are kept as they were let go: those of two models on eight runs each.
+const LET_GO: NonZeroUsize = NonZeroUsize::new(16).unwrap();
+
+/// A recorded run, ready to be explained.
+#[derive(Debug)]
+pub struct Run {
+    /// What was recorded.
+    pub recording: Recording,
+    /// The same, prepared.
+    pub view: View,
+}
+
+/// Where a run of a model begins.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// The machine as it was let go.
+    pub(in crate::calibrate::sensed) released: Released,
+    /// Effects that it has.
+    pub(in crate::calibrate::sensed) effects: Vec<Setting>,
+    /// The same without a swing; none of one that is held at the first row.
+    pub(in crate::calibrate::sensed) still: Option<Mechanism>,
+}
+
+impl Start {
+    /// Coordinates in m or rad from which a machine that nothing holds is let go.
+    pub fn coordinates(&self) -> &[f64] {
+        &self.released.coordinates
+    }
+
+    /// Whether it was fitted to the recording's first rows: nothing held the machine there.
+    pub fn is_fitted(&self) -> bool {
+        self.released.is_fitted()
+    }
+}
+
+/// A stretch of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Which run.
+    pub run: usize,
+    /// Which of its rows.
+    pub rows: Range<usize>,
+}
+
+/// Which data values are fitted on, and which candidates are judged on.
+#[derive(Clone, Debug)]
+pub struct Split {
+    /// Fitted on.
+    pub on: Vec<Segment>,
+    /// Judged on.
+    pub hold: Vec<Segment>,
+}
+
+/// A rig, its recorded runs, and how to simulate them.
+#[derive(Debug)]
+pub struct RigProblem {
+    /// What its maker declares.
+    pub rig: Scenario,
+    /// The machine as declared.
+    pub declared: Mechanism,
+    /// What was recorded.
+    pub runs: Vec<Run>,
+    /// The sensors that determine its pose.
+    pub basis: Basis,
+    /// How to step.
+    pub control: StepControl,
+    /// Simulations that a mean is taken of: one, or several where joints rattle.
+    pub replicas: usize,
+    pub(in crate::calibrate::sensed) simulations: AtomicUsize,
+    motions: Motions,
+    /// Machines as they were let go: the start of a free one costs more than a simulation.
+    released: Mutex<LruCache<String, Released>>,
+}
+
+/// Why a method cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum Stopped {
+    /// The rig cannot be simulated as declared.
+    #[error("{0}")]
+    Model(#[from] Wrong),
+    /// A simulation broke down.
+    #[error("{0}")]
+    Halted(#[from] Halt),
+}
+
+impl From<StartError> for Stopped {
+    fn from(error: StartError) -> Self {
+        match error {
+            StartError::Model(wrong) => wrong.into(),
+            StartError::Halted(halt) => halt.into(),
+        }
+    }
+}
+
+impl RigProblem {
+    /// A rig and its recordings.
+    ///
+    /// # Errors
+    /// A rig that cannot be put together, or whose sensors do not say how it stands.
+    pub fn new(
+        rig: Scenario,
+        recordings: Vec<Recording>,
+        control: StepControl,
+    ) -> Result<Self, Stopped> {
+        let declared = machine(&rig, &[], &recordings[0])?;
+        let basis = Basis::of(&declared, &recordings[0]).ok_or_else(|| {
+            let message = "do not say how the machine stands: no body's place and angle are measured, and \
+                           fewer joints than it has freedoms";
+            let help = "add a [[sensor]] of quantity \"position\" for each freedom";
+            rig.problem("sensor", message, help)
+        })?;
+        let sensors = declared.sensors.len();
+        let run = |recording: Recording| {
+            let view = View::new(&recording, sensors);
+            Run { recording, view }
+        };
+        let runs = recordings.into_iter().map(run).collect();
+        let simulations = AtomicUsize::new(0);
+        let motions = Motions::default();
+        let released = Mutex::new(LruCache::new(LET_GO));
+        let problem = Self {
+            rig,
+            declared,
+            runs,
+            basis,
+            control,
+            replicas: 1,
+            simulations,
+            motions,
+            released,
+        };
+        if problem.names().is_some_and(|names| names.is_empty()) {
+            let message = "say nothing that a model could get wrong: how the machine moves, and nothing beside it";
+            let help = "record an effort, an acceleration or a redundant position as well";
+            return Err(problem.rig.problem("sensor", message.to_owned(), help).into());
+        }
+        Ok(problem)
+    }
+
+    /// The first run to fit on and the others to judge on; the halves of one where there is one alone.
+    pub fn split(&self) -> Split {
+        let whole = |run: usize| Segment { run, rows: self.runs[run].view.rows() };
+        if self.runs.len() > 1 {
+            let hold = (1..self.runs.len()).map(whole).collect();
+            return Split { on: vec![whole(0)], hold };
+        }
+        let rows = self.runs[0].view.rows();
+        let stride = self.runs[0].view.stride;
+        let middle = rows.start + rows.len() / 2 / stride * stride;
+        let part = |rows| vec![Segment { run: 0, rows }];
+        Split { on: part(rows.start..middle), hold: part(middle..rows.end) }
+    }
+
+    /// Simulations so far.
+    pub fn simulations(&self) -> usize {
+        self.simulations.load(Ordering::Relaxed)
+    }
+
+    /// Where the runs of a model with these effects begin, as it was let go.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn starts(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
+        let start = |run: usize| -> Result<Start, Stopped> {
+            let released = self.released(effects, run)?;
+            let still = still(&released.machine, self.control)?;
+            Ok(Start { released, effects: effects.to_vec(), still })
+        };
+        (0..self.runs.len()).into_par_iter().map(start).collect()
+    }
+
+    /// The machine with these effects as it was let go in run `index`.
+    pub(in crate::calibrate::sensed) fn released(
+        &self,
+        effects: &[Setting],
+        index: usize,
+    ) -> Result<Released, Stopped> {
+        let key = self.key(effects, index);
+        let kept = || self.released.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(machine) = kept().get(&key) {
+            return Ok(machine.clone());
+        }
+        let machine = released(&self.rig, effects, &self.runs[index].recording, self.control)?;
+        kept().put(key, machine.clone());
+        Ok(machine)
+    }
+
+    /// Knows from now on where the machine with these effects was let go in run `index`: near `coordinates`, where that does
+    /// more of what was recorded.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn let_go_near(
+        &self,
+        effects: &[Setting],
+        index: usize,
+        coordinates: &[f64],
+    ) -> Result<(), Stopped> {
+        let known = (self.released(effects, index)?, coordinates);
+        let recording = &self.runs[index].recording;
+        let near = released_near(&self.rig, effects, recording, known, self.control)?;
+        let key = self.key(effects, index);
+        self.released.lock().unwrap_or_else(PoisonError::into_inner).put(key, near);
+        Ok(())
+    }
+
+    fn key(&self, effects: &[Setting], index: usize) -> String {
+        format!("{index} {:?} {effects:?}", self.rig.effects)
+    }
+
+    /// The machine with the `drawn` effects about where the model that begins at `start` was let go in run `index`, as
+    /// far as nobody knows that: it is as uncertain whatever their values, and costs more than a simulation to find.
+    pub(super) fn let_go_like(
+        &self,
+        start: &Start,
+        drawn: &[Setting],
+        index: usize,
+        replica: u64,
+    ) -> Result<Mechanism, Stopped> {
+        if start.released.coordinates.is_empty() {
+            return Ok(self.released(drawn, index)?.machine);
+        }
+        let coordinates = start.released.drawn(replica);
+        let recording = &self.runs[index].recording;
+        Ok(let_go_at(&self.rig, drawn, recording, &coordinates, self.control)?)
+    }
+
+    /// Finds out whether replicas of the machine with these effects differ by more than sensors see, and by how
+    /// much, in units of their noise. Where they do, means are taken of several simulations from now on.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn look_for_rattle(&mut self, effects: &[Setting]) -> Result<f64, Stopped> {
+        let logs = self.simulated(&self.let_go(effects)?, 2)?;
+        Ok(self.rattle(&logs))
+    }
+
+    /// Where the runs of a model with these effects begin as it is let go, whatever swing was recorded.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn let_go(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
+        let start = |run| {
+            let released = self.released(effects, run)?;
+            Ok(Start { released, effects: effects.to_vec(), still: None })
+        };
+        (0..self.runs.len()).into_par_iter().map(start).collect()
+    }
+
+    /// The same by simulations of two replicas or more of each run.
+    pub fn rattle(&mut self, logs: &[Vec<Recording>]) -> f64 {
+        let sensors = &self.declared.sensors;
+        let apart = |pair: &Vec<Recording>| simulate::apart(sensors, &pair[0], &pair[1]);
+        let largest = logs.iter().map(apart).fold(0.0, f64::max);
+        if largest > thresholds::SEEN {
+            self.replicas = thresholds::REPLICAS;
+        }
+        largest
+    }
+
+    /// Whether nothing holds the machine with these effects in some run.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn falls(&self, effects: &[Setting]) -> Result<bool, Stopped> {
+        Ok(self.let_go(effects)?.iter().any(Start::is_fitted))
+    }
+
+    /// Residuals of a view of run `segment.run` under a mechanism.
+    pub fn residuals(
+        &self,
+        view: &View,
+        mechanism: &Mechanism,
+        segment: &Segment,
+    ) -> Option<Residuals> {
+        residuals(view, mechanism, &self.basis, segment.rows.clone(), &self.motions)
+    }
+
+    /// Names of the residuals.
+    pub fn names(&self) -> Option<Vec<super::residual::Name>> {
+        let view = &self.runs.first()?.view;
+        let rows = view.rows().start..view.rows().start + 1;
+        Some(residuals(view, &self.declared, &self.basis, rows, &self.motions)?.names)
+    }
+
+    /// Their coefficients by frequency.
+    pub fn coefficients(
+        &self,
+        view: &View,
+        mechanism: &Mechanism,
+        segment: &Segment,
+    ) -> Option<Vec<Vec<f64>>> {
+        let found = self.residuals(view, mechanism, segment)?;
+        let finite = found.signals.iter().flat_map(|s| &s.values).all(|value| value.is_finite());
+        finite.then(|| transform(&found.signals, view.interval * view.stride as f64))
+    }
+}
+
+#[cfg(test)]
+impl RigProblem {
+    /// One of the `planar-…` rigs with its first recording.
+    pub fn planar(name: &str) -> Self {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let folder = root.join("assets/rigs-planar").join(name);
+        let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
+        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
+        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
+        let control = crate::calibrate::results::result::control(&rig);
+        Self::new(rig, vec![recording], control).unwrap()
+    }
+}

@@ -1,0 +1,354 @@
+//! What a recording says against a model without simulating it: residuals with names, as many as there are.
+//!
+//! * **law** of a drive: its measured effort less what its command and the measured coordinate make it;
+//! * **dynamics** of each joint of the [`Basis`]: the effort that acts on it less what the measured
+//!   motion takes by inverse dynamics; where no drive acts that is an effort of zero;
+//! * **closure**: each other measured position less where the bodies are, journals leaning on their rings;
+//! * **acceleration**: each measured one less that of the measured motion.
+
+use crate::calibrate::measured::spectrum::Signal;
+use crate::calibrate::sensed::motion::basis::Basis;
+use crate::calibrate::sensed::motion::motions::Motions;
+use crate::calibrate::sensed::recorded::estimate::{
+    View, effort_sensor, output_sensor, position_sensor,
+};
+use crate::calibrate::sensed::thresholds::{DYNAMICS_BAND, PLAIN_BAND};
+use crate::measure::filter::derivative;
+use crate::mechanism::{
+    Command, Drive, Evaluation, JointIndex, Mechanism, Posed, Reads, Sensor, Taken, angle_near,
+};
+use std::ops::Range;
+
+/// Which residual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ResidualKind {
+    /// A drive against its own command.
+    Law,
+    /// Efforts against the motion.
+    Dynamics,
+    /// A redundant position.
+    Closure,
+    /// A measured acceleration.
+    Acceleration,
+}
+
+impl ResidualKind {
+    /// As reports spell it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Law => "law",
+            Self::Dynamics => "dynamics",
+            Self::Closure => "closure",
+            Self::Acceleration => "acceleration",
+        }
+    }
+}
+
+/// A residual by name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Name {
+    /// Which.
+    pub kind: ResidualKind,
+    /// Of which joint or column.
+    pub of: String,
+    /// Unit.
+    pub unit: &'static str,
+}
+
+/// Residuals of a recording: names, and samples in the same order.
+#[derive(Clone, Debug, Default)]
+pub struct Residuals {
+    /// What they are.
+    pub names: Vec<Name>,
+    /// Their samples at the rows that were looked at.
+    pub signals: Vec<Signal>,
+}
+
+/// Where an effort along a coordinate comes from.
+enum EffortSource<'a> {
+    /// Samples of a sensor, plain and slow, to be corrected for its errors.
+    Measured(usize, &'a [f64], &'a [f64]),
+    /// What a sampled drive gives when it is asked for its recorded outputs.
+    Asked(usize),
+    /// The law of a drive.
+    Law(usize),
+    /// Nothing acts.
+    None,
+}
+
+/// A model beside a view of a recording.
+struct Look<'a> {
+    view: &'a View,
+    mechanism: &'a Mechanism,
+    basis: &'a Basis,
+    /// Rate of each driven joint's reading.
+    rates: Vec<Option<Vec<f64>>>,
+    /// What each drive with a sampled controller gives by its recorded outputs.
+    asked: Vec<Option<Vec<f64>>>,
+}
+
+/// The residuals of a view under a mechanism on some rows; none where the measured motion leads it where it
+/// cannot be.
+pub fn residuals(
+    view: &View,
+    mechanism: &Mechanism,
+    basis: &Basis,
+    rows: Range<usize>,
+    motions: &Motions,
+) -> Option<Residuals> {
+    let (rates, asked) = (rates(view, mechanism), asked(view, mechanism));
+    let look = Look { view, mechanism, basis, rates, asked };
+    let mut found = Residuals::default();
+    look.names(&mut found);
+    let poses = motions.of(view, mechanism, basis, rows.clone())?;
+    let mut angles: Vec<f64> = mechanism.bodies.iter().map(|body| body.angle).collect();
+    let mut now = Evaluation::new(mechanism);
+    for (row, pose) in rows.step_by(view.stride).zip(poses.iter()) {
+        look.row(pose, row, &mut angles, &mut now, &mut found.signals)?;
+    }
+    Some(found)
+}
+
+fn rates(view: &View, mechanism: &Mechanism) -> Vec<Option<Vec<f64>>> {
+    let rate = |drive: &crate::mechanism::Actuator| {
+        let sensor = position_sensor(mechanism, drive.joint)?;
+        Some(derivative(view.plain(sensor)?, view.interval))
+    };
+    mechanism.actuators.iter().map(rate).collect()
+}
+
+/// Efforts of drives with sampled controllers, out of what these were recorded to ask for.
+fn asked(view: &View, mechanism: &Mechanism) -> Vec<Option<Vec<f64>>> {
+    let of = |(index, drive): (usize, &crate::mechanism::Actuator)| {
+        let Drive::Sampled(cascade) = drive.drive else { return None };
+        let sensor = output_sensor(mechanism, index)?;
+        let (errors, read) = (&mechanism.sensors[sensor], view.plain(sensor)?);
+        let outputs: Vec<f64> = (0..read.len()).map(|row| view.shown(errors, read, row)).collect();
+        Some(cascade.forces(&outputs, view.interval))
+    };
+    mechanism.actuators.iter().enumerate().map(of).collect()
+}
+
+impl<'a> Look<'a> {
+    fn drive_of(&self, joint: JointIndex) -> Option<usize> {
+        self.mechanism.actuators.iter().position(|drive| drive.joint == joint)
+    }
+
+    /// Drives whose law can be held against their measured effort, with the sensors of effort and position.
+    fn laws(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        (0..self.mechanism.actuators.len()).filter_map(|drive| {
+            let known = match self.mechanism.actuators[drive].drive {
+                Drive::Servo { .. } => self.rates[drive].is_some(),
+                Drive::Effort => true,
+                Drive::Prescribed | Drive::Sampled(_) => false,
+            };
+            let effort = effort_sensor(self.mechanism, drive)?;
+            (known && self.view.plain(effort).is_some()).then_some((drive, effort))
+        })
+    }
+
+    /// Measured positions that the basis does not need, and accelerations, by sensor.
+    fn others(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.mechanism.sensors.len()).filter(|&i| {
+            let reads = self.mechanism.sensors[i].reads;
+            let position = !matches!(
+                reads,
+                Reads::Command(_) | Reads::Added(_) | Reads::Effort(_) | Reads::Output(_)
+            );
+            position && !self.basis.needs(i) && self.view.plain(i).is_some()
+        })
+    }
+
+    fn effort(&self, joint: JointIndex) -> Option<EffortSource<'a>> {
+        let Some(drive) = self.drive_of(joint) else { return Some(EffortSource::None) };
+        if let Some(sensor) = effort_sensor(self.mechanism, drive)
+            && let (Some(smooth), Some(slow)) = (self.view.smooth(sensor), self.view.slow(sensor))
+        {
+            return Some(EffortSource::Measured(sensor, smooth, slow));
+        }
+        match self.mechanism.actuators[drive].drive {
+            Drive::Servo { .. } if self.rates[drive].is_some() => Some(EffortSource::Law(drive)),
+            Drive::Effort => Some(EffortSource::Law(drive)),
+            Drive::Sampled(_) if self.asked[drive].is_some() => Some(EffortSource::Asked(drive)),
+            // What holds a prescribed coordinate is anything, a servo's effort is unknown without its error, and a
+            // sampled controller remembers what nobody recorded.
+            Drive::Servo { .. } | Drive::Prescribed | Drive::Sampled(_) => None,
+        }
+    }
+
+    fn names(&self, found: &mut Residuals) {
+        let unit = |joint| match joint {
+            JointIndex::Prismatic(_) => "N",
+            JointIndex::Revolute(_) => "N·m",
+        };
+        let mut add = |kind, of: &str, unit, band| {
+            found.names.push(Name { kind, of: of.to_owned(), unit });
+            found.signals.push(Signal { values: Vec::new(), band });
+        };
+        for (drive, _) in self.laws() {
+            let actuator = &self.mechanism.actuators[drive];
+            add(ResidualKind::Law, &actuator.name, unit(actuator.joint), PLAIN_BAND);
+        }
+        for &joint in &self.basis.joints {
+            if self.effort(joint).is_some() {
+                let name = self.mechanism.joint_name(joint);
+                add(ResidualKind::Dynamics, name, unit(joint), DYNAMICS_BAND);
+            }
+        }
+        for sensor in self.others() {
+            let of = &self.mechanism.sensors[sensor];
+            let (kind, band) = match of.reads {
+                Reads::Acceleration(..) => (ResidualKind::Acceleration, DYNAMICS_BAND),
+                _ => (ResidualKind::Closure, PLAIN_BAND),
+            };
+            add(kind, &of.column, of.unit(self.mechanism), band);
+        }
+    }
+
+    /// Effort of a drive by its own law in N or N·m, from its command and what its encoder shows.
+    fn law(&self, drive: usize, command: Command, row: usize) -> f64 {
+        let actuator = &self.mechanism.actuators[drive];
+        let read = || {
+            let sensor = position_sensor(self.mechanism, actuator.joint)?;
+            // What an encoder gets wrong its drive gets wrong, too.
+            let late = Sensor {
+                scale: 1.0,
+                offset: 0.0,
+                waves: Vec::new(),
+                ..self.mechanism.sensors[sensor].clone()
+            };
+            let rate = self.view.shown(&late, self.rates[drive].as_ref()?, row);
+            Some([self.view.shown(&late, self.view.plain(sensor)?, row), rate])
+        };
+        match actuator.drive {
+            Drive::Effort => command.position,
+            Drive::Servo { stiffness, damping } => read().map_or(0.0, |[position, rate]| {
+                stiffness * (command.position - position) + damping * (command.rate - rate)
+            }),
+            Drive::Prescribed | Drive::Sampled(_) => 0.0,
+        }
+    }
+
+    /// What a drive with a sampled controller gives at a row.
+    fn given(&self, drive: usize, row: usize) -> f64 {
+        self.asked[drive].as_ref().map_or(0.0, |asked| asked[row])
+    }
+
+    /// What a sensor looked at, at a row of one of its series.
+    fn looked_at(&self, sensor: usize, series: &[f64], row: usize) -> f64 {
+        self.view.shown(&self.mechanism.sensors[sensor], series, row)
+    }
+
+    fn row(
+        &self,
+        pose: &Posed,
+        row: usize,
+        angles: &mut [f64],
+        now: &mut Evaluation,
+        signals: &mut [Signal],
+    ) -> Option<()> {
+        let t = pose.time();
+        let mut commands = vec![Command::default(); self.mechanism.actuators.len()];
+        self.mechanism.commands.at(t, &mut commands);
+        let mut next = signals.iter_mut();
+        let mut push = |value: f64| {
+            if let Some(signal) = next.next() {
+                signal.values.push(value);
+            }
+        };
+        for (drive, sensor) in self.laws() {
+            let measured = self.looked_at(sensor, self.view.plain(sensor)?, row);
+            push(measured - self.law(drive, commands[drive], row));
+        }
+        let efforts: Vec<Option<[f64; 2]>> = self
+            .basis
+            .joints
+            .iter()
+            .map(|&joint| {
+                Some(match self.effort(joint)? {
+                    EffortSource::Measured(sensor, smooth, slow) => {
+                        [smooth, slow].map(|series| self.looked_at(sensor, series, row))
+                    }
+                    EffortSource::Asked(drive) => [self.given(drive, row); 2],
+                    EffortSource::Law(drive) => [self.law(drive, commands[drive], row); 2],
+                    EffortSource::None => [0.0; 2],
+                })
+            })
+            .collect();
+        let slow: Vec<Option<f64>> = efforts.iter().map(|e| e.map(|[_, slow]| slow)).collect();
+        let Taken { efforts: taken, leaning, .. } =
+            pose.taken(self.mechanism, t, &slow, &self.applied(&commands, row))?;
+        for (effort, taken) in efforts.iter().zip(taken) {
+            if let Some([effort, _]) = effort {
+                push(effort - taken);
+            }
+        }
+        for (angle, state) in angles.iter_mut().zip(&leaning) {
+            *angle = angle_near(state.rotation, *angle);
+        }
+        self.fill(pose, &leaning, angles, now);
+        let states = pose.states(self.mechanism);
+        for sensor in self.others() {
+            let of = &self.mechanism.sensors[sensor];
+            let states = match of.reads {
+                Reads::Acceleration(..) => &states,
+                _ => &leaning,
+            };
+            let reading = of.reading(self.mechanism, states, angles, now);
+            // Waves are among what it reads.
+            let errors = Sensor { waves: Vec::new(), ..of.clone() };
+            push(self.view.shown(&errors, self.view.plain(sensor)?, row) - reading);
+        }
+        Some(())
+    }
+
+    /// Efforts of drives that the basis does not read.
+    fn applied(&self, commands: &[Command], row: usize) -> Vec<(JointIndex, f64)> {
+        let outside = |drive: &usize| {
+            let joint = self.mechanism.actuators[*drive].joint;
+            !self.basis.joints.contains(&joint)
+        };
+        let drives = (0..self.mechanism.actuators.len()).filter(outside);
+        drives
+            .map(|drive| {
+                let joint = self.mechanism.actuators[drive].joint;
+                let effort = match self.effort(joint) {
+                    Some(EffortSource::Measured(sensor, smooth, _)) => {
+                        self.looked_at(sensor, smooth, row)
+                    }
+                    Some(EffortSource::Asked(drive)) => self.given(drive, row),
+                    Some(EffortSource::Law(drive)) => self.law(drive, commands[drive], row),
+                    Some(EffortSource::None) | None => 0.0,
+                };
+                (joint, effort)
+            })
+            .collect()
+    }
+
+    /// What sensors look at beside states.
+    fn fill(
+        &self,
+        pose: &Posed,
+        leaning: &[crate::mechanism::BodyState],
+        angles: &[f64],
+        now: &mut Evaluation,
+    ) {
+        for (i, acceleration) in now.accelerations.iter_mut().enumerate() {
+            *acceleration = pose.acceleration(self.mechanism, i);
+        }
+        for (length, joint) in now.lengths.iter_mut().zip(&self.mechanism.prismatics) {
+            *length = joint.length(leaning);
+        }
+        for (i, drive) in self.mechanism.actuators.iter().enumerate() {
+            now.coordinates[i] = match drive.joint {
+                JointIndex::Prismatic(k) => now.lengths[k],
+                JointIndex::Revolute(k) => {
+                    let of = |body: Option<usize>| body.map_or(0.0, |body| angles[body]);
+                    let [ring, journal] = self.mechanism.revolutes[k].bodies();
+                    of(journal) - of(ring)
+                }
+            };
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Noiseless recordings of models of a problem.
+
+use super::problem::{RigProblem, Run, Start, Stopped};
+use crate::calibrate::sensed::motion::released::let_go_at;
+use crate::calibrate::sensed::motion::simulate;
+use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::thresholds;
+use crate::calibrate::values::fit::{free, values, with_values};
+use crate::effects::Setting;
+use crate::engine::Halt;
+use crate::mechanism::Mechanism;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+impl RigProblem {
+    /// Noiseless recordings of a model that begins there, so many replicas of each run.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn simulated(
+        &self,
+        starts: &[Start],
+        replicas: usize,
+    ) -> Result<Vec<Vec<Recording>>, Stopped> {
+        self.simulated_about(&[], &[], starts, 0..replicas)
+    }
+
+    /// The same of a model with these effects, these of its replicas: the first one with exactly these values, the others
+    /// with values as far away as `deviations` say that nobody knows them (none: all exactly), as they are let go.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn simulated_about(
+        &self,
+        effects: &[Setting],
+        deviations: &[f64],
+        starts: &[Start],
+        replicas: Range<usize>,
+    ) -> Result<Vec<Vec<Recording>>, Stopped> {
+        let numbers = || replicas.clone().map(|replica| replica as u64);
+        let about: Vec<Option<Vec<Setting>>> =
+            numbers().map(|replica| drawn(effects, deviations, replica)).collect();
+        let jobs: Vec<(usize, u64)> = (0..starts.len())
+            .flat_map(|run| numbers().map(move |replica| (run, replica)))
+            .collect();
+        self.simulations.fetch_add(jobs.len(), Ordering::Relaxed);
+        let recorded = jobs
+            .into_par_iter()
+            .map(|(run, replica)| {
+                let like = &self.runs[run].recording;
+                let record =
+                    |machine: &Mechanism| simulate::record(machine, self.control, like, replica);
+                let start = &starts[run];
+                // Where joints rattle a hair at the start is another run soon, and what nobody knows of it no hair.
+                let open = self.replicas > 1 && replica > 0 && start.released.is_fitted();
+                Ok(match &about[replica as usize - replicas.start] {
+                    Some(drawn) => record(&self.let_go_like(start, drawn, run, replica)?)?,
+                    None if open => {
+                        record(&self.let_go_like(start, &start.effects, run, replica)?)?
+                    }
+                    None => record(&start.released.machine)?,
+                })
+            })
+            .collect::<Result<Vec<Recording>, Stopped>>()?;
+        Ok(recorded.chunks(replicas.len()).map(<[Recording]>::to_vec).collect())
+    }
+
+    /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it: a replica.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn one(
+        &self,
+        effects: &[Setting],
+        index: usize,
+        until: usize,
+        replica: u64,
+    ) -> Result<Recording, Stopped> {
+        let machine = self.released(effects, index)?.machine;
+        Ok(self.recorded(&machine, index, until, replica)?)
+    }
+
+    /// The same of the first replica where the machine, which nothing holds, is let go at these coordinates.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn from(
+        &self,
+        effects: &[Setting],
+        index: usize,
+        until: usize,
+        coordinates: &[f64],
+    ) -> Result<Recording, Stopped> {
+        let recording = &self.runs[index].recording;
+        let machine = let_go_at(&self.rig, effects, recording, coordinates, self.control)?;
+        Ok(self.recorded(&machine, index, until, 0)?)
+    }
+
+    fn recorded(
+        &self,
+        machine: &Mechanism,
+        index: usize,
+        until: usize,
+        replica: u64,
+    ) -> Result<Recording, Halt> {
+        let recording = &self.runs[index].recording;
+        // Filters see a little beyond the last row.
+        let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
+        self.simulations.fetch_add(1, Ordering::Relaxed);
+        simulate::record(machine, self.control, &recording.first(seconds), replica)
+    }
+
+    /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held
+    /// before they begin.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn still(&self, starts: &[Start]) -> Result<Vec<Option<Recording>>, Stopped> {
+        let still = |(run, start): (&Run, &Start)| {
+            let Some(machine) = &start.still else { return Ok(None) };
+            self.simulations.fetch_add(1, Ordering::Relaxed);
+            Ok(Some(simulate::record(machine, self.control, &run.recording, 0)?))
+        };
+        self.runs.par_iter().zip(starts).map(still).collect()
+    }
+}
+
+/// Effects with values drawn about their own, within bounds; none where they are exact, as of the first replica.
+fn drawn(effects: &[Setting], deviations: &[f64], replica: u64) -> Option<Vec<Setting>> {
+    let own = values(effects);
+    if replica == 0 || own.is_empty() || deviations.len() != own.len() {
+        return None;
+    }
+    let mut random = ChaCha8Rng::seed_from_u64(replica);
+    let drawn = own.iter().zip(deviations).zip(free(effects)).map(|((value, deviation), free)| {
+        let normal: f64 = StandardNormal.sample(&mut random);
+        let away = if deviation.is_finite() { normal * deviation } else { 0.0 };
+        (value + away).clamp(free.bounds[0], free.bounds[1])
+    });
+    Some(with_values(effects, &drawn.collect::<Vec<f64>>()))
+}

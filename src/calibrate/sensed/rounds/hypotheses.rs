@@ -1,0 +1,113 @@
+//! Models with one effect more than another one has, simulated.
+
+use super::round::{Round, Tried};
+use super::search::Search;
+use super::words::names;
+use crate::calibrate::sensed::residuals::problem::Stopped;
+use crate::calibrate::sensed::thresholds::{GAIN, MOSTLY, PROMISING, SIMULATED};
+use crate::calibrate::sensed::values::model::{Model, price};
+use crate::effects::Setting;
+
+impl Search<'_> {
+    /// The best models with one effect more than this one has, simulated, the best first.
+    pub(in crate::calibrate::sensed) fn beside(
+        &self,
+        model: &Model,
+    ) -> Result<(Round, Vec<Model>), Stopped> {
+        (self.tell)(&format!("trying every effect{}", beside(&model.fit.effects)));
+        let mut tried = self.screened(model);
+        let mut found: Vec<Model> = Vec::new();
+        for candidate in tried.iter_mut() {
+            if found.len() >= SIMULATED || candidate.gain < 0.5 * GAIN[0] {
+                break;
+            }
+            // Variants of one effect are one hypothesis; a simpler one may be led astray less.
+            let same =
+                |model: &&Model| model.fit.effects.last().is_some_and(|e| e.is(&candidate.effect));
+            let count = |effect: &Setting| effect.values().count();
+            let simpler = |model: &Model| {
+                model.fit.effects.last().is_some_and(|e| count(&candidate.effect) < count(e))
+            };
+            let known: Vec<&Model> = found.iter().filter(same).collect();
+            if known.len() > 1 || known.iter().any(|model| !simpler(model)) {
+                continue;
+            }
+            let effects =
+                [model.fit.effects.as_slice(), std::slice::from_ref(&candidate.effect)].concat();
+            (self.tell)(&format!("simulating with {}", names(&effects)));
+            if let Some(settled) = self.settle(&effects, 1)? {
+                candidate.simulated = true;
+                candidate.gain = model.cost() - settled.cost();
+                found.push(settled);
+            }
+        }
+        self.again(model, &mut found, &mut tried)?;
+        found.retain(|rival| !rival.fit.effects.last().is_some_and(at_a_limit));
+        // What residuals see is tried before what they hardly see.
+        let seen =
+            |tried: &Tried| tried.simulated && tried.gain > price(model) && tried.share > MOSTLY;
+        let noise = |model: &Model| self.is_noise(model);
+        if !tried.iter().any(seen) && !found.iter().any(noise) {
+            found.extend(self.unseen(model, &mut tried)?);
+        }
+        found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        Ok((Round { tried, ..Round::default() }, found))
+    }
+
+    /// Simulates rivals again at the values that their first simulations led to, those that promise nearly as much
+    /// as the best of them.
+    fn again(
+        &self,
+        model: &Model,
+        found: &mut [Model],
+        tried: &mut [Tried],
+    ) -> Result<(), Stopped> {
+        let best = found.iter().map(Model::cost).fold(model.cost(), f64::min);
+        let enough = model.cost() - PROMISING * (model.cost() - best);
+        for rival in found.iter_mut().filter(|rival| rival.cost() <= enough) {
+            let Some(settled) = self.settle(&rival.fit.effects, 1)? else { continue };
+            if !settled.baseline.rattles || settled.misfit < rival.misfit {
+                *rival = settled;
+            }
+            let last = rival.fit.effects.last();
+            let own = |tried: &&mut Tried| {
+                tried.simulated && last.is_some_and(|effect| effect.is(&tried.effect))
+            };
+            if let Some(tried) = tried.iter_mut().find(own) {
+                tried.gain = model.cost() - rival.cost();
+            }
+        }
+        Ok(())
+    }
+
+    /// The model with an effect that left nothing but noise beside another one, which may have been mistaken for
+    /// an effect of this one.
+    pub(in crate::calibrate::sensed) fn also(
+        &self,
+        model: &Model,
+        effect: &Setting,
+    ) -> Result<Vec<Model>, Stopped> {
+        if model.fit.effects.iter().any(|own| own.is(effect)) {
+            return Ok(Vec::new());
+        }
+        let effects = [model.fit.effects.as_slice(), std::slice::from_ref(effect)].concat();
+        (self.tell)(&format!("simulating with {}", names(&effects)));
+        Ok(self.settle(&effects, 2)?.into_iter().collect())
+    }
+}
+
+/// Whether a value of an effect lies at the end of what makes sense, where the effect is not its neutral self: it
+/// imitates another one.
+fn at_a_limit(effect: &Setting) -> bool {
+    let phase = effect.kind.scan.map(|scan| scan.phase);
+    effect.values().any(|(name, value)| {
+        let Some(parameter) = effect.kind.parameter(name) else { return false };
+        let near = |bound: f64| (value - bound).abs() < parameter.step;
+        let ends = parameter.bounds.into_iter().filter(|bound| *bound != 0.0);
+        Some(name) != phase && ends.into_iter().any(near)
+    })
+}
+
+fn beside(effects: &[Setting]) -> String {
+    if effects.is_empty() { String::new() } else { format!(" beside {}", names(effects)) }
+}

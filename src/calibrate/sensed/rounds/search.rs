@@ -1,0 +1,217 @@
+//! One effect after another, until what is left is noise; several hypotheses at once, for the first of two
+//! effects is often mistaken for a rival that also takes up a part of the second.
+
+use super::rest::Rest;
+use super::round::Round;
+use super::words::names;
+use crate::calibrate::sensed::residuals::baseline::Baseline;
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Split, Stopped};
+use crate::calibrate::sensed::residuals::residual::Name;
+use crate::calibrate::sensed::thresholds::{BUDGET, EFFECTS, HYPOTHESES, NEAR, TWINS};
+use crate::calibrate::sensed::values::fit::FitTarget;
+use crate::calibrate::sensed::values::model::{Model, price};
+use crate::effects::Setting;
+
+/// What a search found.
+#[derive(Debug)]
+pub struct Found {
+    /// The best model.
+    pub best: Model,
+    /// The model as declared.
+    pub declared: Model,
+    /// Round by round.
+    pub rounds: Vec<Round>,
+    /// What still stands out of what the best model leaves, however little that is.
+    pub rest: Option<Rest>,
+}
+
+/// What is searched in.
+pub struct Search<'a> {
+    /// The rig and its runs.
+    pub problem: &'a RigProblem,
+    /// Which data count for what.
+    pub split: &'a Split,
+    /// Effects at their neutral values.
+    pub candidates: &'a [Setting],
+    /// Names of the residuals.
+    pub names: Vec<Name>,
+    /// Hears what is being tried.
+    pub tell: &'a (dyn Fn(&str) + Sync),
+    /// Simulations before it began.
+    before: usize,
+}
+
+impl<'a> Search<'a> {
+    /// A search in a problem, and who hears what is being tried.
+    pub fn new(
+        problem: &'a RigProblem,
+        split: &'a Split,
+        candidates: &'a [Setting],
+        tell: &'a (dyn Fn(&str) + Sync),
+    ) -> Self {
+        let names = problem.names().unwrap_or_default();
+        Self { problem, split, candidates, names, tell, before: problem.simulations() }
+    }
+
+    /// Whether it has taken as many simulations as it may.
+    pub(super) fn is_spent(&self) -> bool {
+        self.problem.simulations() - self.before >= BUDGET
+    }
+
+    pub(in crate::calibrate::sensed) fn target<'b>(
+        &'b self,
+        baseline: &'b Baseline,
+        held: bool,
+    ) -> FitTarget<'b> {
+        let on = if held { &self.split.hold } else { &self.split.on };
+        FitTarget { problem: self.problem, baseline, on }
+    }
+
+    /// Searches for what the declared model lacks.
+    ///
+    /// # Errors
+    /// A rig that cannot be simulated.
+    pub fn run(&self) -> Result<Found, Stopped> {
+        (self.tell)("simulating the model as declared");
+        let declared = self.settle(&[], 1)?.ok_or_else(|| {
+            let message = "cannot move as it was measured".to_owned();
+            let help = "are these recordings of this machine?";
+            Stopped::Model(self.problem.rig.problem("mechanism", message, help))
+        })?;
+        let mut best = declared.clone();
+        let mut rounds = Vec::new();
+        let mut hypotheses = vec![declared.clone()];
+        // What is no larger than noise as a whole may still be an effect that stands out of it.
+        let mut lacks = !self.is_noise(&best) || self.rest(&best).is_some();
+        while best.fit.effects.len() < EFFECTS && !self.is_spent() && lacks {
+            let (mut round, mut next) = self.beside_all(&hypotheses)?;
+            let won = next.first().is_some_and(|first| first.cost() < best.cost() - price(&best));
+            if !won {
+                rounds.push(round);
+                break;
+            }
+            let cost = next[0].cost();
+            round.added = next[0].fit.effects.last().cloned();
+            let near = next
+                .iter()
+                .skip(1)
+                .filter(|model| model.cost() < cost + TWINS[usize::from(best.baseline.rattles)]);
+            round.as_good = near.filter_map(|model| model.fit.effects.last().cloned()).collect();
+            rounds.push(round);
+            let before = best.cost();
+            best = next[0].clone();
+            if !self.is_noise(&best) {
+                best = self.refined(best)?;
+                next[0] = best.clone();
+            }
+            // Of what explains nearly as much something else may come out in the end.
+            next.retain(|model| before - model.cost() > NEAR * (before - cost));
+            next.truncate(HYPOTHESES);
+            hypotheses = next;
+            lacks = !self.is_noise(&best);
+        }
+        // What is noise already is not explained any better; that recorded joints rattle less than a model's does
+        // not show in what is left, only in its size.
+        while best.baseline.rattles && best.fit.effects.len() < EFFECTS && self.is_noise(&best) {
+            let (round, calmer) = self.calmer(&best)?;
+            rounds.push(round);
+            let Some(calmer) = calmer else { break };
+            best = calmer;
+        }
+        let (best, rest) = self.borne_out(best, &mut rounds)?;
+        Ok(Found { best, declared, rounds, rest })
+    }
+
+    /// What is found beside several hypotheses, the best first, and the round of the first one. Once one effect leaves no more
+    /// than noise beside one of them, it alone is tried beside the others.
+    fn beside_all(&self, hypotheses: &[Model]) -> Result<(Round, Vec<Model>), Stopped> {
+        let mut next: Vec<Model> = Vec::new();
+        let mut round = Round::default();
+        let mut enough: Option<Setting> = None;
+        for (i, model) in hypotheses.iter().enumerate() {
+            let (own, found) = match &enough {
+                _ if i > 0 && self.is_spent() => break,
+                Some(effect) => (Round::default(), self.also(model, effect)?),
+                None => self.beside(model)?,
+            };
+            if i == 0 {
+                round = own;
+            }
+            if enough.is_none() {
+                let last = found.iter().find(|model| self.is_noise(model));
+                enough = last.and_then(|model| model.fit.effects.last().cloned());
+            }
+            next.extend(found);
+        }
+        next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        next.dedup_by(|a, b| same(&a.fit.effects, &b.fit.effects));
+        Ok((round, next))
+    }
+
+    /// A model that was found with its values settled, without what it does not need, held against its rivals; and, where it
+    /// leaves no more than noise, what still stands out of that.
+    fn borne_out(
+        &self,
+        mut best: Model,
+        rounds: &mut [Round],
+    ) -> Result<(Model, Option<Rest>), Stopped> {
+        if !best.fit.effects.is_empty() {
+            // Values that leave noise are left alone: looks alone do not find them as well again.
+            if !self.is_noise(&best) {
+                (self.tell)(&format!("settling {}", names(&best.fit.effects)));
+                let settled = self.settle(&best.fit.effects, 4)?;
+                let better = settled.filter(|model| model.misfit < best.misfit);
+                // What never settles is held against simulations of other values than its own.
+                let own = match better {
+                    Some(model) if !model.baseline.rattles => self.at(&model.fit.effects, &[])?,
+                    other => other,
+                };
+                best = own.filter(|model| model.misfit < best.misfit).unwrap_or(best);
+            }
+            best = self.simplified(best)?;
+            best = self.needed(best)?;
+            if !self.is_noise(&best) {
+                best = self.refined(best)?;
+            }
+            if !self.is_noise(&best) && best.baseline.rattles {
+                best = self.foretold(&best)?.unwrap_or(best);
+            }
+        }
+        credited(rounds, &best.fit.effects);
+        if !self.is_noise(&best) {
+            return Ok((best, None));
+        }
+        best = self.beside_rivals(best, rounds)?;
+        let mut rest = self.rest(&best);
+        if rest.is_some() && !best.baseline.rattles {
+            best = self.refined(best)?;
+            rest = self.rest(&best);
+        }
+        Ok((best, rest))
+    }
+}
+
+/// Gives each effect that was kept the round in which it was tried first, where another hypothesis was the better
+/// one at that time.
+fn credited(rounds: &mut [Round], kept: &[Setting]) {
+    let added = |rounds: &[Round], effect: &Setting| {
+        rounds.iter().any(|round| round.added.as_ref().is_some_and(|added| added.is(effect)))
+    };
+    for effect in kept {
+        if added(rounds, effect) {
+            continue;
+        }
+        let free = |round: &&mut Round| {
+            let own = |added: &Setting| kept.iter().any(|kept| kept.is(added));
+            let tried = round.tried.iter().any(|tried| tried.effect.is(effect));
+            tried && !round.added.as_ref().is_some_and(own)
+        };
+        if let Some(round) = rounds.iter_mut().find(free) {
+            round.added = Some(effect.clone());
+        }
+    }
+}
+
+fn same(a: &[Setting], b: &[Setting]) -> bool {
+    a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| a.is(b)))
+}

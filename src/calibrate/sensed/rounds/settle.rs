@@ -1,0 +1,218 @@
+//! Models whose values agree with simulations of themselves.
+
+use super::round::{Round, Tried};
+use super::search::Search;
+use super::words::{name, names};
+use crate::calibrate::sensed::residuals::baseline::Baseline;
+use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
+use crate::calibrate::sensed::thresholds::TWINS;
+use crate::calibrate::sensed::values::errors::{are_met, of_run};
+use crate::calibrate::sensed::values::fit::Fit;
+use crate::calibrate::sensed::values::model::{Model, price};
+use crate::calibrate::sensed::values::trajectory::{Far, fitted, followed, predicted, shorter};
+use crate::calibrate::sensed::values::whole::Whole;
+use crate::calibrate::values::fit::values;
+use crate::effects::Setting;
+
+/// A change of a value, in its standard deviations, that is none.
+const SETTLED: f64 = 0.3;
+
+impl Search<'_> {
+    /// Fits the values of a model, simulating it anew each time: what a look is wrong by depends on them.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub fn settle(&self, effects: &[Setting], times: usize) -> Result<Option<Model>, Stopped> {
+        let segments = [self.split.on.as_slice(), &self.split.hold].concat();
+        let mut effects = effects.to_vec();
+        let mut settled: Option<Model> = None;
+        for _ in 0..times.max(1) {
+            let deviations = settled.as_ref().map(|model| model.fit.deviations());
+            let deviations = deviations.unwrap_or_default();
+            let baseline = match Baseline::of(self.problem, &effects, &deviations, &segments) {
+                Ok(baseline) => baseline,
+                // What cannot be simulated is no model; what was so far may be one.
+                Err(_) if !effects.is_empty() => break,
+                Err(stopped) => return Err(stopped),
+            };
+            let steps = if effects.is_empty() { 0 } else { 6 };
+            let target = self.target(&baseline, false);
+            let Some(mut fit) = target.fit(&effects, steps) else { break };
+            fit.jacobian = target.jacobian(&fit);
+            let Some(held) = self.target(&baseline, true).look(&fit.effects) else { break };
+            let change = change(&effects, &fit);
+            effects.clone_from(&fit.effects);
+            let own = self.noisiness(&baseline, &self.split.hold);
+            let noise = own + baseline.lost(&self.split.hold);
+            let (rattles, known) = (baseline.rattles, !deviations.is_empty());
+            let model = Model { fit, held: held.chi2, misfit: held.chi2 + noise, baseline };
+            let worse = settled
+                .as_ref()
+                .is_some_and(|before| model.baseline.rattles && before.misfit < model.misfit);
+            if !worse {
+                settled = Some(model);
+            }
+            // Where joints rattle the second pass knows how far values may be off.
+            if change < SETTLED && (!rattles || known) {
+                break;
+            }
+        }
+        Ok(settled)
+    }
+
+    /// What models pay on segments for their noise, as logarithms of its determinant: where none rattles it is that of the
+    /// sensors, the same for all.
+    pub(in crate::calibrate::sensed) fn noisiness(
+        &self,
+        baseline: &Baseline,
+        segments: &[Segment],
+    ) -> f64 {
+        if self.problem.replicas > 1 { baseline.log_determinant(segments) } else { 0.0 }
+    }
+
+    /// The model with values from whole simulations, where these can be followed to their end and that is better.
+    pub(in crate::calibrate::sensed) fn refined(&self, model: Model) -> Result<Model, Stopped> {
+        let effects = &model.fit.effects;
+        let lost = || -> Result<bool, Stopped> {
+            let lengths = followed(self.problem, effects, &self.split.on)?;
+            Ok(lengths.last() != Some(&None))
+        };
+        if effects.is_empty() || model.baseline.rattles && lost()? {
+            return Ok(model);
+        }
+        (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
+        let refined = self.fitted(&model.fit.effects, Far::All)?;
+        Ok(refined.filter(|refined| refined.misfit < model.misfit).unwrap_or(model))
+    }
+
+    /// A model with values from whole simulations, from these on; none where it cannot be. Simulations say how well they are
+    /// known, too: looks may hardly depend on them.
+    pub(in crate::calibrate::sensed) fn fitted(
+        &self,
+        effects: &[Setting],
+        far: Far,
+    ) -> Result<Option<Model>, Stopped> {
+        let mut model = self.at(&fitted(self.problem, effects, &self.split.on, far)?, &[])?;
+        if let Some(Model { fit, baseline, .. }) = &mut model {
+            let length = followed(self.problem, &fit.effects, &self.split.on)?.pop().flatten();
+            let on = self.split.on.iter();
+            let on: Vec<_> = on.map(|segment| shorter(self.problem, segment, length)).collect();
+            let whole = Whole::of(self.problem, &fit.effects, &on, || Ok(baseline.clone()))?;
+            if whole.falls() || !baseline.rattles {
+                fit.told = whole.covariance(&fit.effects);
+            }
+        }
+        Ok(model)
+    }
+
+    /// A model whose predictions of the runs that values are fitted to are met, and the round that led to it, in place of
+    /// one that leaves no more than noise, and whose predictions miss: what residuals do not see may still lead whole
+    /// simulations astray. None where these are met already, and where no such model is found.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub(in crate::calibrate::sensed) fn predicting(
+        &self,
+        model: &Model,
+    ) -> Result<Option<(Model, Option<Round>)>, Stopped> {
+        if !self.misses(model)? {
+            return Ok(None);
+        }
+        let effects = &model.fit.effects;
+        let closer = if effects.is_empty() {
+            None
+        } else if model.baseline.rattles {
+            self.foretold(model)?
+        } else {
+            (self.tell)(&format!("fitting whole simulations with {}", names(effects)));
+            self.fitted(effects, Far::All).ok().flatten().filter(|closer| self.is_noise(closer))
+        };
+        if let Some(closer) = &closer
+            && !self.misses(closer)?
+        {
+            return Ok(Some((closer.clone(), None)));
+        }
+        let mut round = Round::default();
+        let found = self.unseen(closer.as_ref().unwrap_or(model), &mut round.tried)?;
+        for found in found.into_iter().filter(|found| self.is_noise(found)) {
+            if !self.misses(&found)? {
+                round.added = found.fit.effects.last().cloned();
+                round.as_good = twins(&round, TWINS[usize::from(found.baseline.rattles)]);
+                return Ok(Some((found, Some(round))));
+            }
+        }
+        Ok(None)
+    }
+
+    /// A model whose joints rattle with values from predictions; none where these leave more than noise.
+    pub(super) fn foretold(&self, model: &Model) -> Result<Option<Model>, Stopped> {
+        (self.tell)(&format!("fitting predictions with {}", names(&model.fit.effects)));
+        let effects = predicted(self.problem, &model.fit.effects, &self.split.on)?;
+        let foretold = self.at(&effects, &model.fit.deviations()).ok().flatten();
+        Ok(foretold.filter(|foretold| self.is_noise(foretold)))
+    }
+
+    /// Whether a model's predictions miss a run that its values were fitted to.
+    pub(in crate::calibrate::sensed) fn misses(&self, model: &Model) -> Result<bool, Stopped> {
+        let (problem, effects) = (self.problem, &model.fit.effects);
+        let starts = problem.starts(effects)?;
+        let replicas = 0..problem.replicas;
+        let clean = problem.simulated_about(effects, &model.fit.deviations(), &starts, replicas)?;
+        Ok(self.split.on.iter().any(|segment| {
+            let (clean, run) = (&clean[segment.run], &problem.runs[segment.run]);
+            let errors = of_run(&problem.declared, &run.recording, "calibration", clean, clean);
+            !are_met(&problem.declared, &errors, clean)
+        }))
+    }
+
+    /// The model with exactly these values, but for `deviations` of its replicas; none where it cannot be.
+    pub(in crate::calibrate::sensed) fn at(
+        &self,
+        effects: &[Setting],
+        deviations: &[f64],
+    ) -> Result<Option<Model>, Stopped> {
+        let segments = [self.split.on.as_slice(), &self.split.hold].concat();
+        let baseline = Baseline::of(self.problem, effects, deviations, &segments)?;
+        let on = self.target(&baseline, false);
+        let Some(mut fit) = on.look(effects) else { return Ok(None) };
+        fit.jacobian = on.jacobian(&fit);
+        let Some(held) = self.target(&baseline, true).look(effects) else { return Ok(None) };
+        let own = self.noisiness(&baseline, &self.split.hold);
+        let misfit = held.chi2 + own + baseline.lost(&self.split.hold);
+        Ok(Some(Model { fit, held: held.chi2, misfit, baseline }))
+    }
+
+    /// The model without effects that it does not need.
+    pub(in crate::calibrate::sensed) fn needed(&self, mut model: Model) -> Result<Model, Stopped> {
+        let mut i = 0;
+        while model.fit.effects.len() > 1 && i < model.fit.effects.len() {
+            let mut fewer = model.fit.effects.clone();
+            let dropped = fewer.remove(i);
+            (self.tell)(&format!("simulating without {}", name(&dropped)));
+            // Looks move values that only simulations tell away from where these have put them.
+            let simpler = [self.settle(&fewer, 2)?, self.at(&fewer, &[])?].into_iter().flatten();
+            match simpler.min_by(|a, b| a.cost().total_cmp(&b.cost())) {
+                Some(simpler) if simpler.cost() < model.cost() + price(&model) => model = simpler,
+                _ => i += 1,
+            }
+        }
+        Ok(model)
+    }
+}
+
+/// What was simulated in a round and gained no less than what was added, but for `chance`.
+fn twins(round: &Round, chance: f64) -> Vec<Setting> {
+    let added = |tried: &&Tried| round.added.as_ref().is_some_and(|own| own.is(&tried.effect));
+    let simulated = || round.tried.iter().filter(|tried| tried.simulated);
+    let gain = simulated().find(added).map_or(f64::INFINITY, |tried| tried.gain);
+    let near = simulated().filter(|tried| !added(tried) && tried.gain > gain - chance);
+    near.map(|tried| tried.effect.clone()).collect()
+}
+
+/// Largest change of a value by a fit, in its standard deviations, each by itself.
+fn change(before: &[Setting], fit: &Fit) -> f64 {
+    let Some(jacobian) = &fit.jacobian else { return 0.0 };
+    let sizes = jacobian.column_iter().map(|column| column.norm());
+    let pairs = values(before).into_iter().zip(values(&fit.effects)).zip(sizes);
+    pairs.map(|((before, after), size)| (after - before).abs() * size).fold(0.0, f64::max)
+}

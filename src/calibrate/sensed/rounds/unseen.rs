@@ -1,0 +1,192 @@
+//! Effects that residuals hardly see without a simulation.
+
+use super::other_laws::other_laws;
+use super::round::Tried;
+use super::search::Search;
+use crate::calibrate::sensed::residuals::baseline::Baseline;
+use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
+use crate::calibrate::sensed::thresholds::NEAR;
+use crate::calibrate::sensed::values::linear::stepped_along;
+use crate::calibrate::sensed::values::model::{Model, price};
+use crate::calibrate::sensed::values::trajectory::{Far, followed, shorter};
+use crate::calibrate::sensed::values::whole::Whole;
+use crate::calibrate::values::fit::free;
+use crate::calibrate::values::least_squares::{Free, ResidualAt, derivative};
+use crate::effects::Setting;
+use nalgebra::DVector;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// How far from its neutral value an effect that only simulations show is tried, in steps of its parameters: a
+/// joint's clearance of 0.05 mm more.
+const AWAY: f64 = 10.0;
+
+/// First seconds of a run that simulations show effects on: a swing whose frequency is off by a few hundredths is still
+/// in phase, and a machine has come up to speed.
+const SECONDS: f64 = 0.5;
+
+/// Candidates that are fitted to whole simulations, of those that take most off by one step of all their values.
+const FITTED: usize = 3;
+
+impl Search<'_> {
+    /// Models with one more effect that residuals hardly see without a simulation: how bodies swing in their play shows
+    /// it, and how a machine that nothing holds falls. The [promising](Self::promising) ones are fitted to whole simulations.
+    /// The best one comes first.
+    pub(in crate::calibrate::sensed) fn unseen(
+        &self,
+        model: &Model,
+        tried: &mut Vec<Tried>,
+    ) -> Result<Vec<Model>, Stopped> {
+        let own = &model.fit.effects;
+        let paid = self.paid(model)?;
+        // What cannot be simulated is no model.
+        let fitted = |effects: &[Setting], far| -> Result<Option<(f64, Model)>, Stopped> {
+            let Some(there) = self.fitted(effects, far).ok().flatten() else { return Ok(None) };
+            Ok(Some((paid - self.paid(&there)?, there)))
+        };
+        let mut found = Vec::new();
+        for start in self.promising(model)? {
+            found.extend(fitted(&[own.as_slice(), &[start]].concat(), Far::First)?);
+        }
+        let most = found.iter().map(|(gain, _)| *gain).fold(0.0, f64::max);
+        for (gain, there) in &mut found {
+            if *gain >= NEAR * most
+                && let Some(closer) = fitted(&there.fit.effects, Far::All)?
+                && closer.0 > *gain
+            {
+                (*gain, *there) = closer;
+            }
+        }
+        for (gain, there) in &found {
+            let Some(effect) = there.fit.effects.last().cloned() else { continue };
+            match tried.iter_mut().find(|tried| tried.effect.is(&effect)) {
+                Some(tried) => (tried.simulated, tried.gain) = (true, *gain),
+                None => tried.push(Tried::simulated(effect, *gain, model)),
+            }
+        }
+        found.retain(|(gain, _)| *gain > price(model));
+        found.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        Ok(found.into_iter().map(|(_, model)| model).collect())
+    }
+
+    /// What a model costs on runs that it was not fitted to, where only whole simulations tell: by how it falls, if nothing
+    /// holds the machine.
+    fn paid(&self, model: &Model) -> Result<f64, Stopped> {
+        let (hold, effects) = (&self.split.hold, &model.fit.effects);
+        let whole = Whole::of(self.problem, effects, hold, || Ok(model.baseline.clone()))?;
+        Ok(match whole.falls() {
+            true => whole.look(effects).map_or(f64::INFINITY, |left| left.norm_squared()),
+            false => model.cost(),
+        })
+    }
+
+    /// Candidates beside a model that explain most by one linear step, each simulated a hair from neutral for [`SECONDS`]; a
+    /// machine that nothing holds and that does as it was let go adds up what acts on it over the whole run.
+    fn promising(&self, model: &Model) -> Result<Vec<Setting>, Stopped> {
+        let own = &model.fit.effects;
+        let falls = self.problem.falls(own)?;
+        let far = followed(self.problem, own, &self.split.on)?.pop().flatten();
+        let seconds = if falls { far } else { Some(SECONDS) };
+        // What hits lose shows where the motion after them can be followed.
+        let follows = falls || far.is_none();
+        let on = self.split.on.iter();
+        let first: Vec<Segment> =
+            on.map(|segment| shorter(self.problem, segment, seconds)).collect();
+        let baseline = || Baseline::of(self.problem, own, &[], &first);
+        let whole = Whole::of(self.problem, own, &first, baseline)?;
+        let Some(left) = whole.look(own) else { return Ok(Vec::new()) };
+        let Some(starts) = whole.by_start(own, &left) else { return Ok(Vec::new()) };
+        (self.tell)("simulating every effect for a moment");
+        let fresh = |candidate: &&Setting| {
+            candidate.kind.scan.is_none() && !own.iter().any(|effect| effect.is(candidate))
+        };
+        let candidates: Vec<&Setting> = self.candidates.iter().filter(fresh).collect();
+        let stepped = |candidate: &&Setting| {
+            let with =
+                |values: &[f64]| whole.look(&[own.as_slice(), &[candidate.with(values)]].concat());
+            linear_step(&with, candidate, &starts, &left)
+        };
+        let mut steps: Vec<(f64, Setting)> = candidates
+            .par_iter()
+            .filter_map(stepped)
+            .filter(|(gain, _)| *gain > price(model))
+            .collect();
+        steps.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // Variants of one effect are one candidate.
+        let mut kept: Vec<Setting> = Vec::new();
+        for (_, start) in steps {
+            if kept.len() < FITTED && !kept.iter().any(|known| known.is(&start)) {
+                kept.push(start);
+            }
+        }
+        if follows {
+            kept.extend(other_laws(
+                &whole,
+                &self.problem.declared,
+                own,
+                (&starts, &left),
+                price(model),
+            ));
+        }
+        Ok(kept)
+    }
+}
+
+/// Drop of the sum of squares of what is `left` by one linear step of a candidate's values, beyond that by one of the
+/// coordinates from which a machine that nothing holds was let go, by which `starts` are the derivatives; and the candidate
+/// after it. None where such a machine cannot be.
+fn linear_step(
+    look: ResidualAt,
+    candidate: &Setting,
+    starts: &[DVector<f64>],
+    left: &DVector<f64>,
+) -> Option<(f64, Setting)> {
+    let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
+    let neutral: Vec<f64> = candidate.values().map(|(_, value)| value).collect();
+    let free = free(std::slice::from_ref(candidate));
+    let alone = stepped_along(starts, starts.len(), left, &[], &[])?.0;
+    let stepped = |columns: &[DVector<f64>], own: &[f64], free: &[Free]| {
+        let all = [starts, columns].concat();
+        let (least, change) = stepped_along(&all, starts.len(), left, own, free)?;
+        let gain = alone - least;
+        let change: Vec<f64> = change.iter().skip(starts.len()).copied().collect();
+        gain.is_finite().then_some((gain, change))
+    };
+    // Of one with a list of starts the first value is an amplitude, which begins at nothing; the others are a start's.
+    let listed = (candidate.kind.starts)(&names);
+    let begun = |start: &Vec<f64>| [&neutral[..1], &start[1..]].concat();
+    let slope = |values: &[f64], i: usize| derivative(look, &free, values, left, i);
+    if let (true, [begin, next, ..]) = (turns_round(&names, &listed), listed.as_slice()) {
+        let across = &listed[listed.len() / 4];
+        let columns = [begin, across].map(|start| slope(&begun(start), 0));
+        let [Some(first), Some(across)] = columns else { return None };
+        let wide = Free { bounds: [-f64::MAX, f64::MAX], ..free[0] };
+        let (gain, change) = stepped(&[first, across], &[0.0; 2], &[wide; 2])?;
+        let turn = change[1].atan2(change[0]).rem_euclid(TAU) / TAU;
+        let angle = begin[1] + turn * listed.len() as f64 * (next[1] - begin[1]);
+        let amplitude = neutral[0] + change[0].hypot(change[1]);
+        return Some((gain, candidate.with(&[amplitude, angle])));
+    }
+    let mut values = listed.first().map_or_else(|| neutral.clone(), begun);
+    let moving = if listed.is_empty() { values.len() } else { 1 };
+    let columns: Vec<_> = (0..moving).map(|i| slope(&values, i)).collect::<Option<_>>()?;
+    let (gain, change) = stepped(&columns, &values[..moving], &free[..moving])?;
+    values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
+    Some((gain, candidate.with(&values)))
+}
+
+/// Whether a list of starts goes once round the period of an angle, their last value, in equal steps: what a quarter of them
+/// apart is then is the cosine and the sine of one wave, in which a response is linear.
+fn turns_round(names: &[&str], listed: &[Vec<f64>]) -> bool {
+    let angle = names.last().is_some_and(|name| name.ends_with("_rad"));
+    angle && names.len() == 2 && listed.len() >= 4 && listed.len().is_multiple_of(4)
+}
+
+/// An effect some way from its values, for what only simulations show.
+pub(in crate::calibrate::sensed) fn away(effect: &Setting) -> Setting {
+    let values = effect.values().map(|(name, value)| {
+        let parameter = effect.kind.parameter(name);
+        parameter.map_or(value, |p| (value + AWAY * p.step).clamp(p.bounds[0], p.bounds[1]))
+    });
+    effect.with(&values.collect::<Vec<_>>())
+}

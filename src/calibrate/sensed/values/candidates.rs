@@ -1,0 +1,165 @@
+//! Where to start looking for the values of a candidate.
+
+use super::fit::{Fit, FitTarget};
+use super::periodic::frequencies;
+use crate::calibrate::values::least_squares::{REDUCED, REDUCTIONS, too_far};
+use crate::effects::{ALL, CONTAINS, Kind, Scan, ScanRange, Setting};
+use crate::mechanism::Mechanism;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::FRAC_PI_2;
+
+/// Every effect that lasts on everything that it can act on, at its neutral values, under one of its names; none
+/// of the kinds `without`, nor what contains them.
+pub fn candidates(mechanism: &Mechanism, without: &[&str]) -> Vec<Setting> {
+    let ruled_out = |kind: &Kind| {
+        let inner = CONTAINS.iter().filter(|(outer, _)| outer.name == kind.name);
+        inner.map(|(_, inner)| *inner).chain([kind]).any(|kind| without.contains(&kind.name))
+    };
+    let kinds = ALL.iter().filter(|kind| kind.lasts() && !ruled_out(kind));
+    let all = kinds.flat_map(|kind| kind.candidates(mechanism));
+    all.filter(|effect| effect.better_known_as(mechanism).is_none()).collect()
+}
+
+/// How often a size that the machine cannot have is halved: down to a hundredth.
+const HALVED: usize = 7;
+
+/// Starts of a candidate that are fitted.
+const KEPT: usize = 2;
+
+/// Periods that are looked at, at most.
+const TRIED: usize = 12;
+
+/// A candidate beside the effects of a model, at its most promising values.
+pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting) -> Vec<Setting> {
+    let change = |values: &[f64]| {
+        let with = [model.effects.as_slice(), &[candidate.with(values)]].concat();
+        target.look(&with).map(|there| there.white - &model.white)
+    };
+    if let Some(scan) = candidate.kind.scan {
+        return scanned(target, model, candidate, scan, &change);
+    }
+    let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
+    let listed = (candidate.kind.starts)(&names);
+    if listed.is_empty() {
+        return vec![candidate.clone()];
+    }
+    // The first value is an amplitude: the best multiple of each start, by least squares. What was too much of it once is
+    // not tried again.
+    let mut share = 1.0;
+    let scored = listed.into_iter().filter_map(|mut start| {
+        let listed = start[0];
+        start[0] *= share;
+        let column = within(&model.white, &mut start, (0, 0.0), &change)?;
+        share = start[0] / listed;
+        let multiple = -column.dot(&model.white) / column.norm_squared();
+        if multiple <= 0.0 || !multiple.is_finite() {
+            return Some((0.0, candidate.with(&start)));
+        }
+        let gain = multiple.powi(2) * column.norm_squared();
+        // What the machine cannot have so much of it may have a part of.
+        let mut size = start[0] * multiple;
+        for _ in 0..HALVED {
+            start[0] = size;
+            if change(&start).is_some() {
+                break;
+            }
+            size *= 0.5;
+        }
+        Some((gain, candidate.with(&start)))
+    });
+    best(scored.collect())
+}
+
+/// What values change of a residual, one of them brought nearer to its `neutral` value until that is not
+/// [too much](too_far).
+pub(in crate::calibrate::sensed) fn within(
+    residual: &DVector<f64>,
+    values: &mut [f64],
+    (place, neutral): (usize, f64),
+    change: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
+) -> Option<DVector<f64>> {
+    for _ in 0..REDUCTIONS {
+        match change(values) {
+            Some(column) if !too_far(&column, residual) => return Some(column),
+            _ => values[place] = neutral + REDUCED * (values[place] - neutral),
+        }
+    }
+    change(values)
+}
+
+/// The starts that promise most.
+fn best(mut scored: Vec<(f64, Setting)>) -> Vec<Setting> {
+    scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+    scored.truncate(KEPT);
+    scored.into_iter().map(|(_, start)| start).collect()
+}
+
+/// Starts of a repeating effect: the frequencies that explain most by least squares.
+fn scanned(
+    target: &FitTarget,
+    model: &Fit,
+    candidate: &Setting,
+    scan: Scan,
+    change: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
+) -> Vec<Setting> {
+    let names: Vec<&'static str> = candidate.values().map(|(name, _)| name).collect();
+    let place = |name: &str| names.iter().position(|n| *n == name);
+    let (Some(over), Some(phase)) = (place(scan.over), place(scan.phase)) else {
+        return Vec::new();
+    };
+    let amplitudes: Vec<usize> = (0..names.len()).filter(|&i| i != over && i != phase).collect();
+    let tried = match scan.range {
+        ScanRange::Frequencies => {
+            let names: Vec<&'static str> = amplitudes.iter().map(|&i| names[i]).collect();
+            frequencies(target, model, candidate, scan, &names)
+        }
+        ScanRange::Orders([from, to, step]) => {
+            let count = ((to - from) / step) as usize;
+            (0..=count).map(|i| from + i as f64 * step).collect()
+        }
+        ScanRange::WaveNumbers([from, to, step]) => {
+            let count = ((to - from) / step) as usize;
+            let stride = count.div_ceil(TRIED).max(1);
+            (0..=count).step_by(stride).map(|i| 1.0 / (from + i as f64 * step)).collect()
+        }
+    };
+    // What was too much of an amplitude once is not tried again.
+    let mut sizes: Vec<f64> =
+        amplitudes.iter().map(|&amplitude| step(candidate.kind, names[amplitude])).collect();
+    let scored = tried.into_iter().filter_map(|value| {
+        let mut columns = Vec::new();
+        for (&amplitude, size) in amplitudes.iter().zip(&mut sizes) {
+            let unit = step(candidate.kind, names[amplitude]);
+            for angle in [0.0, FRAC_PI_2] {
+                let mut values = vec![0.0; names.len()];
+                values[over] = value;
+                values[phase] = angle;
+                values[amplitude] = *size;
+                let column = within(&model.white, &mut values, (amplitude, 0.0), change)?;
+                *size = values[amplitude];
+                columns.push(column * (unit / *size));
+            }
+        }
+        let matrix = DMatrix::from_columns(&columns);
+        let normal = matrix.transpose() * &matrix;
+        let rhs = -(matrix.transpose() * &model.white);
+        let weights = normal.cholesky()?.solve(&rhs);
+        // One phase for all amplitudes: that of the largest; the others by their part in it.
+        let pairs = weights.as_slice().chunks(2);
+        let largest = pairs.clone().max_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])))?;
+        let angle = largest[1].atan2(largest[0]);
+        let mut values = vec![0.0; names.len()];
+        values[over] = value;
+        values[phase] = angle;
+        for (&amplitude, pair) in amplitudes.iter().zip(pairs) {
+            let along = pair[0] * angle.cos() + pair[1] * angle.sin();
+            values[amplitude] = along * step(candidate.kind, names[amplitude]);
+        }
+        Some((weights.dot(&rhs), candidate.with(&values)))
+    });
+    best(scored.collect())
+}
+
+fn step(kind: &Kind, name: &str) -> f64 {
+    kind.parameter(name).map_or(1.0, |parameter| parameter.step)
+}

@@ -1,0 +1,84 @@
+//! Values of effects fitted to residuals in units of noise.
+
+use crate::calibrate::results::outcome::inverse_normal;
+use crate::calibrate::sensed::residuals::baseline::Baseline;
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
+use crate::calibrate::values::fit::{free, values, with_values};
+use crate::calibrate::values::least_squares::{self, FitEffort, least_squares};
+use crate::effects::Setting;
+use nalgebra::{DMatrix, DVector};
+
+/// Effects with values, and what they leave.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The effects.
+    pub effects: Vec<Setting>,
+    /// Σ of squares of the residual in units of noise.
+    pub chi2: f64,
+    /// The residual.
+    pub white: DVector<f64>,
+    /// Its derivative by each value in a row, where it was asked for.
+    pub jacobian: Option<DMatrix<f64>>,
+    /// The covariance of its values where whole simulations tell it: looks may hardly depend on them.
+    pub told: Option<DMatrix<f64>>,
+}
+
+impl Fit {
+    /// Standard deviations of the values as far as sensor noise tells: `(JᵀJ)⁻¹`; none where no derivative is
+    /// known.
+    pub fn deviations(&self) -> Vec<f64> {
+        let some = self.jacobian.as_ref().filter(|jacobian| jacobian.ncols() > 0);
+        let inverse = self.told.clone().or_else(|| some.and_then(inverse_normal));
+        inverse.map_or_else(Vec::new, |inverse| {
+            inverse.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
+        })
+    }
+}
+
+/// What is fitted to what.
+#[derive(Clone, Copy, Debug)]
+pub struct FitTarget<'a> {
+    /// The rig and its runs.
+    pub problem: &'a RigProblem,
+    /// Bias and noise.
+    pub baseline: &'a Baseline,
+    /// Segments that count.
+    pub on: &'a [Segment],
+}
+
+impl FitTarget<'_> {
+    /// The residual with these effects; none where such a machine cannot be.
+    pub fn look(&self, effects: &[Setting]) -> Option<Fit> {
+        let white = self.baseline.white(self.problem, effects, self.on).ok()??;
+        let chi2 = white.norm_squared();
+        chi2.is_finite().then(|| Fit {
+            effects: effects.to_vec(),
+            chi2,
+            white,
+            jacobian: None,
+            told: None,
+        })
+    }
+
+    /// Derivative of the residual by each value.
+    pub fn jacobian(&self, fit: &Fit) -> Option<DMatrix<f64>> {
+        let look = |values: &[f64]| Some(self.look(&with_values(&fit.effects, values))?.white);
+        least_squares::jacobian(&look, &free(&fit.effects), &values(&fit.effects), &fit.white)
+    }
+
+    /// Least squares from the given values on, at most `steps` steps; none where the model cannot be at its
+    /// start.
+    pub fn fit(&self, effects: &[Setting], steps: usize) -> Option<Fit> {
+        let look = |values: &[f64]| Some(self.look(&with_values(effects, values))?.white);
+        // A drop of a thousandth is none: looks are cheap.
+        let effort = FitEffort { steps, enough: 1e-3, secant: false };
+        let best = least_squares(&look, &free(effects), values(effects), effort, None)?;
+        Some(Fit {
+            effects: with_values(effects, &best.values),
+            chi2: best.residual.norm_squared(),
+            white: best.residual,
+            jacobian: best.jacobian,
+            told: None,
+        })
+    }
+}

@@ -1,0 +1,111 @@
+//! Values without the pull of what rattles.
+//!
+//! Where joints rattle, what a lens multiplies a value by is itself full of rattle: where a journal leans
+//! is read off forces that fly about. Least squares then make such a value small, as they do with any
+//! regressor that carries errors ("attenuation"; Fuller, *Measurement Error Models*, 1987, §1.1): a worn
+//! clearance of 0.27 mm settles at 0.2 mm. Replicas of the model rattle otherwise than the data, so the mean of
+//! their derivatives, `J̄`, knows nothing of the data's rattle: `J̄ᵀ r(θ) = 0` (instrumental variables, §1.4
+//! there) has the right values as its answer.
+
+use super::fit::{self, LegsFit, LegsFitTarget};
+use super::least_squares::{Free, jacobian};
+use crate::effects::Setting;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Steps towards the answer, at most: residuals are nearly linear in most values.
+const STEPS: usize = 3;
+
+/// Standard deviations that are no step.
+const SETTLED: f64 = 0.05;
+
+/// Factor by which the sum of squares may grow in a step: more is no rattle but a wrong way.
+const GROWTH: f64 = 1.5;
+
+/// Ridge, relative to the diagonal: values that the data cannot tell apart stay where they are.
+const RIDGE: f64 = 1e-6;
+
+/// The fit with values that rattle does not pull, and the derivatives from which their intervals follow.
+pub fn unpulled(target: &LegsFitTarget, fit: LegsFit) -> LegsFit {
+    let free = fit::free(&fit.effects);
+    let mut best = fit;
+    for _ in 0..STEPS {
+        let Some(ExpectedDerivatives { jacobian, shared }) = expected(target, &best, &free) else {
+            break;
+        };
+        let step = step(&jacobian, &(jacobian.transpose() * &best.white + shared));
+        let values = fit::values(&best.effects);
+        let bounded = values.iter().zip(step.iter()).zip(&free);
+        let moved: Vec<f64> = bounded
+            .map(|((value, step), free)| (value + step).clamp(free.bounds[0], free.bounds[1]))
+            .collect();
+        let sigmas = (&jacobian * step).norm();
+        best.jacobian = Some(jacobian);
+        let there = target.look(&fit::with_values(&best.effects, &moved));
+        let Some(there) = there.filter(|there| there.chi2 < GROWTH * best.chi2) else { break };
+        best = LegsFit { jacobian: best.jacobian, ..there };
+        if sigmas < SETTLED {
+            break;
+        }
+    }
+    best
+}
+
+/// What the residual would be with effects `to` in place of `from`, by what replicas say of the change:
+/// the data's own rattle has no part in it. None where such a machine cannot be.
+pub fn changed(target: &LegsFitTarget, from: &[Setting], to: &[Setting]) -> Option<DVector<f64>> {
+    let replicas = target.baseline.replicas();
+    let of = |replica: usize| {
+        let look = |effects: &[Setting]| {
+            target.case.white_of(target.baseline, effects, target.on, Some(replica)).ok()
+        };
+        Some(look(to)? - look(from)?)
+    };
+    let change = (0..replicas).map(of).sum::<Option<DVector<f64>>>()?;
+    Some(target.look(from)?.white + change / replicas as f64)
+}
+
+/// What replicas say of a model's derivatives.
+struct ExpectedDerivatives {
+    /// Mean of the replicas' derivatives of the residual by each value.
+    jacobian: DMatrix<f64>,
+    /// The bias in `r` is the mean of the same replicas, so `J̄ᵀ r` has a share of the covariance that
+    /// pulls least squares, of the other sign: this makes good for it, as if each replica's derivatives
+    /// were held against the bias of the others.
+    shared: DVector<f64>,
+}
+
+fn expected(target: &LegsFitTarget, fit: &LegsFit, free: &[Free]) -> Option<ExpectedDerivatives> {
+    let values = fit::values(&fit.effects);
+    let count = target.baseline.replicas();
+    let of = |replica: usize| {
+        let look = |values: &[f64]| {
+            let effects = fit::with_values(&fit.effects, values);
+            target.case.white_of(target.baseline, &effects, target.on, Some(replica)).ok()
+        };
+        let own = look(&values)?;
+        Some((jacobian(&look, free, &values, &own)?, own))
+    };
+    let all = (0..count).into_par_iter().map(of).collect::<Option<Vec<_>>>()?;
+    let share = 1.0 / count as f64;
+    let (rows, columns) = all.first()?.0.shape();
+    let mut jacobian = DMatrix::zeros(rows, columns);
+    let mut mean = DVector::zeros(rows);
+    for (own, white) in &all {
+        jacobian += own * share;
+        mean += white * share;
+    }
+    let together = all.iter().map(|(own, white)| own.transpose() * (white - &mean));
+    let shared = together.sum::<DVector<f64>>() * (share / (count as f64 - 1.0));
+    Some(ExpectedDerivatives { jacobian, shared })
+}
+
+/// The step of Gauss and Newton for this gradient.
+fn step(jacobian: &DMatrix<f64>, gradient: &DVector<f64>) -> DVector<f64> {
+    let mut normal = jacobian.transpose() * jacobian;
+    for i in 0..normal.nrows() {
+        normal[(i, i)] *= 1.0 + RIDGE;
+    }
+    let solved = normal.cholesky().map(|factor| -factor.solve(gradient));
+    solved.unwrap_or_else(|| DVector::zeros(jacobian.ncols()))
+}

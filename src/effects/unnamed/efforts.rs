@@ -1,0 +1,220 @@
+//! What a mechanism lacks and nobody can name: efforts in its joints as a fitted table of what they depend on.
+
+use crate::effects::{Setting, Wrong};
+use crate::mechanism::{JointIndex, Load, Mechanism, Situation};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// What efforts in joints are a function of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Over {
+    /// The rate of each joint by itself: constant, linear, quadratic with sign, direction alone.
+    JointRate,
+    /// The coordinate of each joint by itself: Gaussians; harmonics of a joint that turns over.
+    JointPosition,
+    /// The coordinates of all joints together: Gaussians over a grid of two, or those of each in a sum.
+    Position,
+}
+
+impl Over {
+    /// All of them, the simplest first.
+    pub const ALL: [Over; 3] = [Over::JointRate, Over::JointPosition, Over::Position];
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Over::JointRate => "the speed of each joint",
+            Over::JointPosition => "the coordinate of each joint",
+            Over::Position => "the machine's position",
+        }
+    }
+}
+
+/// A fitted table: the effort (N or N·m) on the slider or the journal's body of each joint, from features of
+/// the joints' motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Efforts {
+    /// What it is a function of.
+    pub depends_on: Over,
+    /// The joints.
+    pub joints: Vec<String>,
+    /// Middle of each coordinate (m or rad) where it was fitted.
+    pub middle: Vec<f64>,
+    /// Half the range of each coordinate.
+    pub reach: Vec<f64>,
+    /// Largest rate of each (m/s or rad/s) there.
+    pub rates: Vec<f64>,
+    /// N or N·m per feature, one list for each joint.
+    pub coefficients: Vec<Vec<f64>>,
+}
+
+/// Gaussians along each of two coordinates: what varies over a third of a working space is held.
+const GRID: usize = 7;
+
+/// Gaussians along one coordinate, half as far apart.
+const PLACES: usize = 13;
+
+/// Harmonics of a joint that turns over.
+const HARMONICS: usize = 6;
+
+/// Share of the largest rate below which a direction is no direction.
+const REST: f64 = 0.01;
+
+/// Places between −1 and 1, evenly, and a Gaussian as wide as they are apart around each.
+fn gaussians(relative: f64, count: usize) -> impl Iterator<Item = f64> {
+    let width = 2.0 / (count - 1) as f64;
+    (0..count).map(move |k| (-0.5 * ((relative + 1.0) / width - k as f64).powi(2)).exp())
+}
+
+impl Efforts {
+    /// A table over a motion with these middles, reaches and largest rates, without coefficients.
+    pub fn empty(depends_on: Over, joints: Vec<String>, ranges: &[[f64; 3]]) -> Self {
+        // A coordinate that does not vary has no scale of its own: a tenth of a millimetre or milliradian.
+        let part = |k: usize| ranges.iter().map(|range| range[k].max(1e-4)).collect();
+        let middle = ranges.iter().map(|range| range[0]).collect();
+        let (reach, rates) = (part(1), part(2));
+        Self { depends_on, joints, middle, reach, rates, coefficients: Vec::new() }
+    }
+
+    /// Features of joint `own` (by its place) at coordinates and rates of all.
+    pub fn features(&self, own: usize, positions: &[f64], rates: &[f64]) -> Vec<f64> {
+        let relative = |k: usize| (positions[k] - self.middle[k]) / self.reach[k];
+        let along = |k: usize| -> Vec<f64> {
+            // Half a turn either way: what it meets it meets again.
+            if self.reach[k] >= PI {
+                let wave = |n: usize| (n as f64 * positions[k]).sin_cos();
+                return (1..=HARMONICS).map(wave).flat_map(|(sin, cos)| [sin, cos]).collect();
+            }
+            gaussians(relative(k), PLACES).collect()
+        };
+        let mut features = vec![1.0];
+        match self.depends_on {
+            Over::JointRate => {
+                let v = rates[own] / self.rates[own];
+                features.extend([v, v * v.abs(), (v / REST).tanh()]);
+            }
+            Over::JointPosition => features.extend(along(own)),
+            Over::Position if self.joints.len() == 2 && self.reach.iter().all(|r| *r < PI) => {
+                let second: Vec<f64> = gaussians(relative(1), GRID).collect();
+                for first in gaussians(relative(0), GRID) {
+                    features.extend(second.iter().map(|second| first * second));
+                }
+            }
+            Over::Position => features.extend((0..self.joints.len()).flat_map(along)),
+        }
+        features
+    }
+
+    /// Reads the keys of an `[[effect]]` of this kind.
+    pub(in crate::effects) fn from_table(table: &toml::Table) -> Result<Self, Wrong> {
+        let wrong = |message: &str| Wrong {
+            key: "coefficients".to_owned(),
+            message: message.to_owned(),
+            help: "this effect is written by `freeplay calibrate`: copy it whole".to_owned(),
+        };
+        let read = Self::deserialize(table.clone()).map_err(|error| wrong(error.message()))?;
+        let joints = read.joints.len();
+        let lists = [read.middle.len(), read.reach.len(), read.rates.len()];
+        if lists.iter().any(|length| *length != joints) || read.coefficients.len() != joints {
+            return Err(wrong("has lists that do not fit the number of its joints"));
+        }
+        if read.reach.iter().chain(&read.rates).any(|scale| *scale <= 0.0) {
+            return Err(wrong("has a reach or a rate that is not positive"));
+        }
+        let still = vec![0.0; joints];
+        let fits = |(own, list): (usize, &Vec<f64>)| {
+            list.len() == read.features(own, &read.middle, &still).len()
+        };
+        if !read.coefficients.iter().enumerate().all(fits) {
+            return Err(wrong("has lists that do not fit what it depends on"));
+        }
+        Ok(read)
+    }
+}
+
+/// A table at work in a machine.
+#[derive(Debug)]
+struct AppliedEfforts {
+    table: Arc<Efforts>,
+    joints: Vec<JointIndex>,
+}
+
+impl Load for AppliedEfforts {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let motion: Vec<[f64; 2]> = self
+            .joints
+            .iter()
+            .zip(&self.table.middle)
+            .map(|(joint, middle)| at.coordinate(*joint, *middle))
+            .collect();
+        let [positions, rates]: [Vec<f64>; 2] =
+            [0, 1].map(|k| motion.iter().map(|coordinate| coordinate[k]).collect());
+        for (own, (joint, coefficients)) in
+            self.joints.iter().zip(&self.table.coefficients).enumerate()
+        {
+            let features = self.table.features(own, &positions, &rates);
+            let effort = features.iter().zip(coefficients).map(|(f, c)| f * c).sum();
+            at.push_joint(*joint, effort, wrenches);
+        }
+    }
+}
+
+pub(in crate::effects) fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let Some(table) = &setting.efforts else { return Ok(()) };
+    let find = |name: &String| {
+        mechanism.joints().find(|(known, _)| known == name).map(|(_, joint)| joint).ok_or_else(
+            || Wrong {
+                key: "joints".to_owned(),
+                message: format!("\"{name}\" is not a joint of this machine"),
+                help: "this effect belongs to the machine that it was fitted to".to_owned(),
+            },
+        )
+    };
+    let joints = table.joints.iter().map(find).collect::<Result<Vec<JointIndex>, Wrong>>()?;
+    mechanism.loads.push(Arc::new(AppliedEfforts { table: Arc::clone(table), joints }));
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::rigs::{WHEEL_AND_SLIDE, ended};
+
+    /// A constant effort accelerates a wheel and a slide evenly: `ω(t) = ω₀ + T t/I`, `v(t) = v₀ + F t/m`.
+    #[test]
+    fn a_table_pushes_its_joints() {
+        let effect = "[[effect]]\nkind = \"unnamed\"\ndepends_on = \"joint-rate\"\njoints = [\"O\", \"S\"]\n\
+                      middle = [0.0, 0.0]\nreach = [1.0, 1.0]\nrates = [1.0, 1.0]\n\
+                      coefficients = [[0.3, 0.0, 0.0, 0.0], [4.0, 0.0, 0.0, 0.0]]\n";
+        let [wheel, slide] = ended(&format!("{WHEEL_AND_SLIDE}{effect}"), 0.1);
+        assert!((wheel.twist.z - (5.0 + 0.3 / 0.02 * 0.1)).abs() < 1e-6, "{}", wheel.twist.z);
+        assert!((slide.twist.x - (0.5 + 4.0 / 2.0 * 0.1)).abs() < 1e-6, "{}", slide.twist.x);
+    }
+
+    #[test]
+    fn tables_that_do_not_fit_are_refused() {
+        let table = |text: &str| toml::from_str::<toml::Table>(text).unwrap_or_default();
+        let head = "depends_on = \"joint-rate\"\njoints = [\"O\"]\nmiddle = [0.0]\nrates = [1.0]\n";
+        for bad in [
+            "reach = [1.0]\ncoefficients = [[1.0]]",
+            "reach = [1.0, 2.0]\ncoefficients = [[1.0, 0.0, 0.0, 0.0]]",
+            "reach = [0.0]\ncoefficients = [[1.0, 0.0, 0.0, 0.0]]",
+        ] {
+            assert!(Efforts::from_table(&table(&format!("{head}{bad}"))).is_err(), "{bad}");
+        }
+        let good = "reach = [1.0]\ncoefficients = [[1.0, 0.0, 0.0, 0.0]]";
+        assert!(Efforts::from_table(&table(&format!("{head}{good}"))).is_ok());
+    }
+
+    /// Harmonics repeat after a turn.
+    #[test]
+    fn what_turns_over_meets_the_same_again() {
+        let table = Efforts::empty(Over::JointPosition, vec!["O".into()], &[[0.0, 10.0, 1.0]]);
+        let [a, b] = [0.4, 0.4 + 2.0 * PI].map(|q| table.features(0, &[q], &[0.0]));
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-12));
+    }
+}

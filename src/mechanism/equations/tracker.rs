@@ -1,0 +1,281 @@
+//! A mechanism without clearance along a motion that leaves it no freedom: states by Newton's method from
+//! the ones before, so that it stays on the branch on which it was put together.
+
+use super::assembly::matrix;
+use super::factors::Factors;
+use super::rows::Row;
+use crate::mechanism::motion::Motion;
+use crate::mechanism::{Attachment, BodyState, Command, Mechanism};
+use nalgebra::{DVector, Dim, Matrix, RawStorage, UnitComplex, Vector2, Vector3};
+use std::sync::Arc;
+
+/// Gaps in m and rad at which a state is closed: what Newton's method leaves on a machine of a metre.
+const CLOSED: f64 = 1e-12;
+
+/// How far in rad, or in sizes of the mechanism, Newton's method may move a predicted state. The two
+/// branches of a loop are farther apart wherever it does not nearly lock.
+const TRUSTED: f64 = 0.05;
+
+/// Shortest step in s, in shares of what is asked for, below which a mechanism cannot go on.
+const SHORTEST: f64 = 1e-7;
+
+/// What determines the motion.
+#[derive(Clone, Debug)]
+pub enum Imposed {
+    /// The commands of the drives.
+    Drives,
+    /// A body's axes, or a point only.
+    Target {
+        /// The origin of the axes, or the point.
+        point: Attachment,
+        /// Angle (rad) of the axes in those of their body; none of a point.
+        angle: Option<f64>,
+        /// Where they go: x, y and, of axes, φ.
+        motion: Arc<dyn Motion>,
+    },
+}
+
+/// A mechanism at one instant of its motion.
+#[derive(Clone, Debug)]
+pub struct Tracker {
+    mechanism: Mechanism,
+    imposed: Imposed,
+    /// Size of the mechanism in m: its largest distance of two points of a body.
+    size: f64,
+    t: f64,
+    states: Vec<BodyState>,
+    accelerations: DVector<f64>,
+}
+
+/// Where a mechanism cannot follow its motion any further.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stuck {
+    /// Time in s of the last state that could be reached.
+    pub t: f64,
+}
+
+/// Conditions on the bodies at one instant.
+struct System {
+    rows: Vec<Row>,
+    gaps: DVector<f64>,
+    rates: DVector<f64>,
+    accelerations: DVector<f64>,
+}
+
+impl Tracker {
+    /// `mechanism` has ideal joints; `states` are near its pose at time `t` (s), and are closed there.
+    ///
+    /// # Errors
+    /// If that pose cannot be reached from there.
+    pub fn new(
+        mechanism: Mechanism,
+        imposed: Imposed,
+        states: Vec<BodyState>,
+        t: f64,
+    ) -> Result<Self, Stuck> {
+        let size = mechanism.size();
+        let accelerations = DVector::zeros(3 * states.len());
+        let mut tracker = Self { mechanism, imposed, size, t, states, accelerations };
+        let states = tracker.close(tracker.states.clone(), t, f64::INFINITY).ok_or(Stuck { t })?;
+        tracker.accept(states, t).ok_or(Stuck { t })?;
+        Ok(tracker)
+    }
+
+    /// Time in s of the present state.
+    pub fn time(&self) -> f64 {
+        self.t
+    }
+
+    /// States of all bodies.
+    pub fn states(&self) -> &[BodyState] {
+        &self.states
+    }
+
+    /// The mechanism that moves.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// Acceleration of body `index` (m/s², m/s², rad/s²).
+    pub fn acceleration(&self, index: usize) -> Vector3<f64> {
+        self.accelerations.fixed_rows::<3>(3 * index).into()
+    }
+
+    /// Goes to time `t` in s, forward or back, in steps that Newton's method trusts.
+    ///
+    /// # Errors
+    /// Where the mechanism cannot go on; the tracker then stays at the last state reached.
+    pub fn advance(&mut self, t: f64) -> Result<(), Stuck> {
+        let whole = (t - self.t).abs();
+        let mut step = t - self.t;
+        while self.t != t {
+            let left = t - self.t;
+            if step.abs() >= left.abs() * (1.0 - 1e-9) {
+                step = left;
+            }
+            let next = if step == left { t } else { self.t + step };
+            let accepted = self
+                .close(self.predicted(next - self.t), next, TRUSTED)
+                .and_then(|states| self.accept(states, next));
+            match accepted {
+                Some(()) => step *= 2.0,
+                None if step.abs() < SHORTEST * whole => return Err(Stuck { t: self.t }),
+                None => step *= 0.5,
+            }
+        }
+        Ok(())
+    }
+
+    fn predicted(&self, tau: f64) -> Vec<BodyState> {
+        let moved = |(i, state): (usize, &BodyState)| {
+            state.moved(self.acceleration(i), Vector3::zeros(), tau)
+        };
+        self.states.iter().enumerate().map(moved).collect()
+    }
+
+    /// Closed states at time `t` near the given ones, if there are any no farther than `trusted`.
+    fn close(&self, mut states: Vec<BodyState>, t: f64, trusted: f64) -> Option<Vec<BodyState>> {
+        let mut moved = DVector::zeros(3 * states.len());
+        for pass in 0..25 {
+            let system = self.system(&states, t);
+            let gap = system.gaps.amax();
+            if gap < CLOSED && pass > 0 {
+                return Some(states);
+            }
+            let shift = solve(&system.rows, states.len(), &-&system.gaps)?;
+            moved += &shift;
+            let far = moved.iter().enumerate().fold(0.0f64, |far, (i, x)| {
+                far.max(if i % 3 == 2 { x.abs() } else { x.abs() / self.size })
+            });
+            if !far.is_finite() || far > trusted || far > 1e3 {
+                return None;
+            }
+            for (i, state) in states.iter_mut().enumerate() {
+                state.position += shift.fixed_rows::<2>(3 * i);
+                state.rotation *= UnitComplex::new(shift[3 * i + 2]);
+            }
+            if gap < CLOSED {
+                return Some(states);
+            }
+        }
+        None
+    }
+
+    /// Takes closed states, with the velocities and accelerations that belong to them.
+    fn accept(&mut self, mut states: Vec<BodyState>, t: f64) -> Option<()> {
+        let system = self.system(&states, t);
+        let factors = Factors::of(finite(matrix(&system.rows, states.len()))?);
+        let rates = finite(factors.solve(&system.rates)?)?;
+        for (i, state) in states.iter_mut().enumerate() {
+            state.twist = rates.fixed_rows::<3>(3 * i).into();
+        }
+        // Biases depend on the velocities, and rows do not.
+        let system = self.system(&states, t);
+        self.accelerations = finite(factors.solve(&system.accelerations)?)?;
+        (self.states, self.t) = (states, t);
+        Some(())
+    }
+
+    /// The rows that determine the present state: those of joints in their order, then what is imposed.
+    pub(super) fn determining(&self) -> Vec<Row> {
+        self.system(&self.states, self.t).rows
+    }
+
+    /// Whether drives impose the motion.
+    pub(super) fn by_drives(&self) -> bool {
+        matches!(self.imposed, Imposed::Drives)
+    }
+
+    fn system(&self, states: &[BodyState], t: f64) -> System {
+        let mut commands = vec![Command::default(); self.mechanism.actuators.len()];
+        self.mechanism.true_commands(t, &mut commands);
+        let closure = self.mechanism.closure(states, &commands);
+        let by_drives = matches!(self.imposed, Imposed::Drives);
+        let mut system = System {
+            rows: Vec::new(),
+            gaps: DVector::zeros(0),
+            rates: DVector::zeros(0),
+            accelerations: DVector::zeros(0),
+        };
+        let [mut gaps, mut rates, mut accelerations] = [const { Vec::new() }; 3];
+        for ((row, gap), drive) in closure.rows.iter().zip(&closure.gaps).zip(&closure.driven) {
+            if drive.is_some() && !by_drives {
+                continue;
+            }
+            let command = drive.map(|drive| commands[drive]).unwrap_or_default();
+            system.rows.push(*row);
+            gaps.push(*gap);
+            rates.push(command.rate);
+            accelerations.push(command.acceleration - row.bias);
+        }
+        if let Imposed::Target { point, angle, motion } = &self.imposed {
+            let asked = motion.at(self.mechanism.epoch + t);
+            let frame = point.frame(states);
+            let off = frame.centre - asked.pose.xy();
+            let centripetal = frame.arm * -(frame.spin * frame.spin);
+            for (k, e) in [Vector2::x(), Vector2::y()].into_iter().enumerate() {
+                let jacobian = Vector3::new(e.x, e.y, frame.arm.perp(&e));
+                let bias = centripetal.dot(&e);
+                system.rows.push(on(point.body, jacobian, bias));
+                gaps.push(off[k]);
+                rates.push(asked.rate[k]);
+                accelerations.push(asked.acceleration[k] - bias);
+            }
+            if let Some(angle) = angle {
+                let rotation = point.rotation(states) * UnitComplex::new(*angle);
+                system.rows.push(on(point.body, Vector3::z(), 0.0));
+                gaps.push(UnitComplex::new(asked.pose.z).rotation_to(&rotation).angle());
+                rates.push(asked.rate.z);
+                accelerations.push(asked.acceleration.z);
+            }
+        }
+        system.gaps = DVector::from_vec(gaps);
+        system.rates = DVector::from_vec(rates);
+        system.accelerations = DVector::from_vec(accelerations);
+        system
+    }
+}
+
+fn on(body: Option<usize>, jacobian: Vector3<f64>, bias: f64) -> Row {
+    Row { bodies: [None, body], jacobians: [Vector3::zeros(), jacobian], bias, softness: 0.0 }
+}
+
+/// The motion of `bodies` bodies that meets the rows: exactly where they determine it, else the smallest
+/// in the sense of least squares.
+pub(in crate::mechanism) fn solve(
+    rows: &[Row],
+    bodies: usize,
+    right: &DVector<f64>,
+) -> Option<DVector<f64>> {
+    let matrix = finite(matrix(rows, bodies))?;
+    finite(Factors::of(matrix).solve(right)?)
+}
+
+/// Numbers, if all of them are finite.
+fn finite<R: Dim, C: Dim, S: RawStorage<f64, R, C>>(
+    numbers: Matrix<f64, R, C, S>,
+) -> Option<Matrix<f64, R, C, S>> {
+    numbers.iter().all(|x| x.is_finite()).then_some(numbers)
+}
+
+impl Mechanism {
+    /// The largest distance in m of two joints on one body, the ground included: a length to measure
+    /// others by. 1 where there is none.
+    pub fn size(&self) -> f64 {
+        let revolutes = self.revolutes.iter().flat_map(|j| [j.ring, j.journal]);
+        let prismatics = self.prismatics.iter().flat_map(|j| [j.base, j.slider]);
+        let points: Vec<Attachment> = revolutes.chain(prismatics).collect();
+        let mut size = 0.0f64;
+        for (i, a) in points.iter().enumerate() {
+            for b in &points[..i] {
+                if a.body == b.body {
+                    size = size.max((a.point - b.point).norm());
+                }
+            }
+            if a.body.is_some() {
+                size = size.max(a.point.norm());
+            }
+        }
+        if size > 0.0 { size } else { 1.0 }
+    }
+}

@@ -1,0 +1,239 @@
+//! Springs with dampers between points and in joints, and the end stops of joints.
+
+use crate::contact::{ForceLaw, HertzStep};
+use crate::mechanism::{JointIndex, Load, Mark, Mechanism, Situation};
+use nalgebra::{Vector2, Vector3};
+use std::sync::Arc;
+
+/// A spring and damper along the line between two points: with r from the first to the second and n = r/|r|,
+/// the first is pulled by `F n`, the second by `−F n`, `F = k (|r| − l₀) + c d|r|/dt`.
+#[derive(Clone, Copy, Debug)]
+pub struct PointSpring {
+    /// The two points.
+    pub ends: [Mark; 2],
+    /// k in N/m.
+    pub stiffness: f64,
+    /// c in N·s/m.
+    pub damping: f64,
+    /// l₀ in m.
+    pub free_length: f64,
+    /// A rope: F is zero while |r| < l₀, and never below zero.
+    pub pull_only: bool,
+}
+
+impl Load for PointSpring {
+    fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        let [a, b] = self.ends.map(|end| end.attachment(at.mechanism).frame(at.states));
+        let r = b.centre - a.centre;
+        let length = r.norm();
+        if length == 0.0 {
+            return;
+        }
+        let n = r / length;
+        let rate = (b.velocity - a.velocity).dot(&n);
+        let mut force = self.stiffness * (length - self.free_length) + self.damping * rate;
+        if self.pull_only {
+            force = if length > self.free_length { force.max(0.0) } else { 0.0 };
+        }
+        for ((end, frame), f) in self.ends.iter().zip([a, b]).zip([n * force, n * -force]) {
+            if let Some(body) = end.body {
+                wrenches[body] += Vector3::new(f.x, f.y, frame.arm.perp(&f));
+            }
+        }
+    }
+
+    fn with_end_moved(&self, end: usize, by: Vector2<f64>) -> Option<Arc<dyn Load>> {
+        let mut moved = *self;
+        moved.ends[end].point += by;
+        Some(Arc::new(moved))
+    }
+
+    fn longest_step(&self, mechanism: &Mechanism) -> Option<f64> {
+        let lightness: f64 =
+            self.ends.iter().map(|end| mechanism.point_lightness(&end.attachment(mechanism))).sum();
+        explicit_limit(lightness, self.stiffness, self.damping)
+    }
+}
+
+/// The longest explicit step in s of a spring k and a damper c on a body that 1 N (or N·m) accelerates by
+/// `lightness`: `h ≤ 1/√(k l)` and `h ≤ 1/(c l)`, half of where it turns unstable.
+fn explicit_limit(lightness: f64, stiffness: f64, damping: f64) -> Option<f64> {
+    let limit = 1.0 / (stiffness * lightness).sqrt().max(damping * lightness);
+    limit.is_finite().then_some(limit)
+}
+
+/// A spring and damper in a joint: effort `−k (q − q₀) − c q̇` on the journal's body or the slider.
+#[derive(Clone, Copy, Debug)]
+pub struct JointSpring {
+    /// The joint.
+    pub joint: JointIndex,
+    /// k in N/m or N·m/rad.
+    pub stiffness: f64,
+    /// c in N·s/m or N·m·s/rad.
+    pub damping: f64,
+    /// q₀ in m or rad.
+    pub free: f64,
+}
+
+/// End stops of a joint: beyond either end of its range an effort back into it, `k δ + STEP(δ) δ̇`, never
+/// outward; δ is how far the joint is beyond, and STEP the cubic that rises to the damping over a depth.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop {
+    /// The joint.
+    pub joint: JointIndex,
+    /// Where the stops stand, in m or rad.
+    pub range: [f64; 2],
+    /// The effort over depth and rate: exponent 1, damping and depth in the joint's units.
+    pub law: HertzStep,
+}
+
+fn start(at: Situation, joint: JointIndex) -> f64 {
+    match joint {
+        JointIndex::Prismatic(_) => 0.0,
+        JointIndex::Revolute(i) => at.mechanism.start_angle(i),
+    }
+}
+
+/// What pushes in a joint by its coordinate and rate.
+trait JointEffort {
+    fn joint(&self) -> JointIndex;
+    fn effort(&self, coordinate: f64, rate: f64) -> f64;
+    /// Steepest slopes by coordinate and by rate.
+    fn slopes(&self) -> [f64; 2];
+}
+
+impl JointEffort for JointSpring {
+    fn joint(&self) -> JointIndex {
+        self.joint
+    }
+
+    fn effort(&self, coordinate: f64, rate: f64) -> f64 {
+        -self.stiffness * (coordinate - self.free) - self.damping * rate
+    }
+
+    fn slopes(&self) -> [f64; 2] {
+        [self.stiffness, self.damping]
+    }
+}
+
+impl JointEffort for Stop {
+    fn joint(&self) -> JointIndex {
+        self.joint
+    }
+
+    fn effort(&self, coordinate: f64, rate: f64) -> f64 {
+        let [low, high] = self.range;
+        if coordinate > high {
+            -self.law.normal_force(coordinate - high, rate)
+        } else if coordinate < low {
+            self.law.normal_force(low - coordinate, -rate)
+        } else {
+            0.0
+        }
+    }
+
+    fn slopes(&self) -> [f64; 2] {
+        [self.law.stiffness, self.law.c_max]
+    }
+}
+
+/// A load of a [`JointEffort`]; its memory is the angle of the last step's end.
+macro_rules! joint_load {
+    ($kind:ty) => {
+        impl Load for $kind {
+            fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+                self.add_after(at, self.begin(at), wrenches);
+            }
+
+            fn begin(&self, at: Situation) -> [f64; 2] {
+                [start(at, self.joint()), 0.0]
+            }
+
+            fn remember(&self, at: Situation, memory: [f64; 2]) -> [f64; 2] {
+                [at.coordinate(self.joint(), memory[0])[0], 0.0]
+            }
+
+            fn add_after(&self, at: Situation, memory: [f64; 2], wrenches: &mut [Vector3<f64>]) {
+                let [position, rate] = at.coordinate(self.joint(), memory[0]);
+                at.push_joint(self.joint(), self.effort(position, rate), wrenches);
+            }
+
+            fn longest_step(&self, mechanism: &Mechanism) -> Option<f64> {
+                let [stiffness, damping] = self.slopes();
+                explicit_limit(mechanism.lightness(self.joint()), stiffness, damping)
+            }
+        }
+    };
+}
+
+joint_load!(JointSpring);
+joint_load!(Stop);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::{Attachment, Bearing, Body, BodyState, Revolute};
+
+    /// A body that turns about the origin, at 0.3 rad with 2 rad/s.
+    fn turning() -> Mechanism {
+        let start = BodyState {
+            rotation: nalgebra::UnitComplex::new(0.3),
+            twist: Vector3::new(0.0, 0.0, 2.0),
+            ..BodyState::ground()
+        };
+        let origin = |body| Attachment { body, point: Vector2::zeros() };
+        Mechanism {
+            revolutes: vec![Revolute {
+                name: "O".to_owned(),
+                ring: origin(None),
+                journal: origin(Some(0)),
+                bearing: Bearing::Ideal,
+                out_of_round: None,
+            }],
+            ..Mechanism::free(vec![Body::new("body", 2.0, 0.5, start)])
+        }
+    }
+
+    fn wrench(mechanism: &Mechanism, load: &dyn Load) -> Vector3<f64> {
+        let states = vec![mechanism.bodies[0].start];
+        let mut wrenches = vec![Vector3::zeros()];
+        load.add(Situation { t: 0.0, mechanism, states: &states }, &mut wrenches);
+        wrenches[0]
+    }
+
+    #[test]
+    fn springs_pull_towards_their_free_coordinate() {
+        let mechanism = turning();
+        let joint = JointIndex::Revolute(0);
+        let spring = JointSpring { joint, stiffness: 10.0, damping: 0.5, free: 0.1 };
+        assert!((wrench(&mechanism, &spring).z + 10.0 * 0.2 + 0.5 * 2.0).abs() < 1e-12);
+        let end = Mark { body: Some(0), point: Vector2::new(1.0, 0.0) };
+        let wall = Mark { body: None, point: Vector2::new(3.0, 0.0) };
+        let rope = PointSpring {
+            ends: [end, wall],
+            stiffness: 7.0,
+            damping: 0.0,
+            free_length: 1.0,
+            pull_only: true,
+        };
+        let tip = Vector2::new(0.3f64.cos(), 0.3f64.sin());
+        let r = Vector2::new(3.0, 0.0) - tip;
+        let force = r.normalize() * (7.0 * (r.norm() - 1.0));
+        let expected = Vector3::new(force.x, force.y, tip.perp(&force));
+        assert!((wrench(&mechanism, &rope) - expected).norm() < 1e-12);
+        let slack = PointSpring { free_length: 5.0, ..rope };
+        assert_eq!(wrench(&mechanism, &slack), Vector3::zeros());
+    }
+
+    #[test]
+    fn stops_push_back_and_never_pull() {
+        let mechanism = turning();
+        let law =
+            HertzStep { stiffness: 100.0, exponent: 1.0, c_max: 3.0, d_max: 1e-3, clip: true };
+        let stop = |range| Stop { joint: JointIndex::Revolute(0), range, law };
+        assert_eq!(wrench(&mechanism, &stop([0.0, 0.4])).z, 0.0);
+        assert!((wrench(&mechanism, &stop([0.0, 0.2])).z + 100.0 * 0.1 + 3.0 * 2.0).abs() < 1e-12);
+        // Moving back into the range faster than the spring would: the damper does not hold it.
+        assert_eq!(wrench(&mechanism, &stop([0.305, 1.0])).z, 0.0);
+    }
+}
