@@ -70,6 +70,11 @@ pub const RIVALS: usize = 3;
 /// See [`RIVALS`].
 pub const RIVAL: f64 = 0.67;
 
+/// Share of an effect's part by which looks are wrong: they do not rule out what takes up so little less of it. Of an oval
+/// ring that was all that a machine lacked they said 1.4 % less than of an encoder's scale; of wrong points, 22 % less than
+/// simulations did.
+pub const BY_LOOKS: f64 = 0.02;
+
 /// Share of the best gain from which on a rival stays one: the first of two effects is often taken for another that also takes
 /// up a part of the second.
 pub const NEAR: f64 = 0.7;

@@ -7,13 +7,14 @@
 
 use crate::calibrate::sensed::residuals::problem::Stopped;
 use crate::calibrate::sensed::rounds::rest::Rest;
-use crate::calibrate::sensed::rounds::round::Round;
+use crate::calibrate::sensed::rounds::round::{Round, Tried};
 use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::rounds::words::names;
-use crate::calibrate::sensed::thresholds::{GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
+use crate::calibrate::sensed::thresholds::{BY_LOOKS, GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
 use crate::calibrate::sensed::values::linear::Derivatives;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::effects::Setting;
+use rayon::prelude::*;
 
 /// Difference of cost below which rivals are compared at values from whole simulations: those from looks are a little off, by
 /// what looks are wrong by, which differs from rival to rival. In a trial a drive that gives cost 13 more than gains that
@@ -122,10 +123,17 @@ impl Search<'_> {
         let gain = held.chi2 - model.held;
         let without = Model { fit, held: held.chi2, misfit: held.chi2, ..model.clone() };
         let mut found: Vec<(bool, Setting)> = Vec::new();
-        for tried in self.screened(&without) {
+        // What one linear step falls short of differs from effect to effect, by more than twins do.
+        let fitted = |tried: Tried| match tried.fitted || tried.gain <= RIVAL * gain {
+            true => tried,
+            false => self.closer(&without, &tried, held.chi2).unwrap_or(tried),
+        };
+        let all: Vec<Tried> = self.screened(&without).into_par_iter().map(fitted).collect();
+        for tried in all {
             let known = found.iter().any(|(_, known)| known.is(&tried.effect));
             if !known && !tried.effect.is(&own) && tried.gain > RIVAL * gain {
-                let as_well = !model.baseline.rattles && tried.gain > gain - TWINS[0];
+                let as_well =
+                    !model.baseline.rattles && tried.gain > gain - TWINS[0].max(BY_LOOKS * gain);
                 found.push((as_well, tried.effect));
             }
         }

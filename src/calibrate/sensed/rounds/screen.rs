@@ -73,7 +73,12 @@ impl Search<'_> {
 
     /// A candidate with its values fitted by more than one step beside those of a model that leaves `held` on the data to
     /// judge on, and without what it gains by shrinking noise.
-    fn closer(&self, model: &Model, near: &Tried, held: f64) -> Option<Tried> {
+    pub(in crate::calibrate::sensed) fn closer(
+        &self,
+        model: &Model,
+        near: &Tried,
+        held: f64,
+    ) -> Option<Tried> {
         let start = [model.fit.effects.as_slice(), std::slice::from_ref(&near.effect)].concat();
         let fit = self.target(&model.baseline, false).fit(&start, 8)?;
         let gain = held - self.target(&model.baseline, true).look(&fit.effects)?.chi2;
