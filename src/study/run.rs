@@ -82,6 +82,20 @@ impl Recorded {
 
 /// Simulates a machine and writes no file. `observe` sees each row, and may end the run there; so does `stop` between
 /// any two steps once it is true.
+///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::study::recorded;
+/// use std::{ops::ControlFlow, sync::atomic::AtomicBool};
+///
+/// let sets = ["simulation.duration=0.01", "simulation.settle=0"].map(str::to_owned);
+/// let scenario = Scenario::load(None, &sets)?;
+/// let stop = AtomicBool::new(false);
+/// let run = recorded(&scenario, &mut assemble(&scenario)?, &stop, &mut |_, _| ControlFlow::Continue(()));
+/// assert_eq!(run.summary.simulated_s, 0.01);
+/// assert!(run.pictures()?.iter().any(|picture| picture.file == "orbits.svg"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn recorded(
     scenario: &Scenario,
     machine: &mut Machine,

@@ -9,6 +9,8 @@ fn planar(v: Vector2<f64>, phi: f64) -> Vector3<f64> {
 }
 
 /// A circle at constant speed and constant orientation: centre + r [cos, sin](2πt/T + ψ).
+///
+/// [`Motion`](crate::mechanism::motion::Motion) has an example.
 #[derive(Clone, Debug)]
 pub struct Circle {
     /// Centre in m.
@@ -75,6 +77,8 @@ impl Motion for Line {
 
 /// Point to point from rest to rest ([`rest_to_rest`]: the lowest polynomial with no jump in
 /// acceleration), and rest before and after.
+///
+/// [`Motion`](crate::mechanism::motion::Motion) has an example.
 #[derive(Clone, Debug)]
 pub struct Quintic {
     /// Pose at the start (m, m, rad).
