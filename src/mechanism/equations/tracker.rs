@@ -259,11 +259,7 @@ fn on(body: Option<usize>, jacobian: Vector3<f64>, bias: f64) -> Row {
 
 /// The motion of `bodies` bodies that meets the rows: exactly where they determine it, else the smallest
 /// in the sense of least squares.
-pub(in crate::mechanism) fn solve(
-    rows: &[Row],
-    bodies: usize,
-    right: &DVector<f64>,
-) -> Option<DVector<f64>> {
+pub(super) fn solve(rows: &[Row], bodies: usize, right: &DVector<f64>) -> Option<DVector<f64>> {
     let matrix = finite(matrix(rows, bodies))?;
     finite(Factors::of(matrix).solve(right)?)
 }
