@@ -144,6 +144,21 @@ pub fn recorded(
 /// written up to there; its summary says so in `halted`. So is one that ends because it was told to stop, as
 /// `interrupted`, unless an earlier result would be lost to it.
 ///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::study::{Folder, SUMMARY_FILE, Terms};
+/// use std::sync::atomic::AtomicBool;
+///
+/// let sets = ["simulation.duration=0.01", "simulation.settle=0"].map(str::to_owned);
+/// let scenario = Scenario::load(None, &sets)?;
+/// let place = tempfile::tempdir()?;
+/// let folder = Folder::prepare(&place.path().join("result"), SUMMARY_FILE, false)?;
+/// let terms = Terms { stop: &AtomicBool::new(false), at_any_cost: false };
+/// let done = freeplay::study::run(&scenario, &mut assemble(&scenario)?, folder, terms, &mut |_, _| ())?;
+/// assert!(done.folder.join(SUMMARY_FILE).exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`RunError`]; the folder is left as it was. A file that cannot be written ends the run at once.
 pub fn run(

@@ -91,6 +91,13 @@ pub struct Quintic {
 
 /// The share of the way from rest to rest that is done at time `t` of `time` (s),
 /// `s(τ) = 10τ³ − 15τ⁴ + 6τ⁵` with τ = t/time, and its first and second derivative in 1/s and 1/s².
+///
+/// ```
+/// use freeplay::mechanism::motion::rest_to_rest;
+///
+/// let [place, rate, acceleration] = rest_to_rest(0.5, 1.0);
+/// assert!((place - 0.5).abs() < 1e-12 && (rate - 1.875).abs() < 1e-12 && acceleration.abs() < 1e-12);
+/// ```
 pub fn rest_to_rest(t: f64, time: f64) -> [f64; 3] {
     let tau = (t / time).clamp(0.0, 1.0);
     let s = tau * tau * tau * (10.0 + tau * (6.0 * tau - 15.0));

@@ -193,6 +193,14 @@ impl Revolute {
 }
 
 /// The angle in rad nearest to `near` among those of a rotation, which differ by whole turns.
+///
+/// ```
+/// use freeplay::mechanism::angle_near;
+/// use nalgebra::UnitComplex;
+/// use std::f64::consts::TAU;
+///
+/// assert!((angle_near(UnitComplex::new(0.1), 2.0 * TAU) - (2.0 * TAU + 0.1)).abs() < 1e-12, "two turns on");
+/// ```
 pub fn angle_near(rotation: UnitComplex<f64>, near: f64) -> f64 {
     let angle = rotation.angle();
     angle + TAU * ((near - angle) / TAU).round()
