@@ -5,7 +5,7 @@ use crate::law::{Trouble, give};
 use crate::scenario::Scenario;
 use crate::table::Table;
 use crate::work::detached;
-use freeplay::simulate::{RowColumns, Machine, assemble, findings};
+use freeplay::simulate::{Machine, RowColumns, assemble, findings};
 use freeplay::study::{self, Folder, Recorded, SUMMARY_FILE, Terms, evaluate as single};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;

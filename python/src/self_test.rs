@@ -31,7 +31,8 @@ fn self_test_trial(py: Python<'_>, trial: &str, version: &str) -> PyResult<Strin
 /// What all rows come to, in words.
 #[pyfunction]
 fn self_test_rates(py: Python<'_>, rows: Vec<String>) -> PyResult<String> {
-    let rows: Result<Vec<TriedTrial>, _> = rows.iter().map(|row| serde_json::from_str(row)).collect();
+    let rows: Result<Vec<TriedTrial>, _> =
+        rows.iter().map(|row| serde_json::from_str(row)).collect();
     let rows = rows.map_err(|error| Failure::Input(format!("rows: {error}")).exception(py))?;
     Ok(rates(&rows))
 }

@@ -35,6 +35,20 @@ enum Method {
 
 /// Reads recordings of a rig, the first `fits` to calibrate on, the others to validate on.
 ///
+/// ```
+/// use freeplay::calibrate::answer::prepare;
+/// use freeplay::scenario::Scenario;
+/// use std::path::Path;
+///
+/// // Two recordings of a four-bar: one to calibrate on, one to validate on.
+/// let folder = Path::new("assets/rigs-planar/planar-2");
+/// let rig = Scenario::load(Some(&folder.join("rig.toml")), &[])?;
+/// let [a, b] = ["run-a.csv", "run-b.csv"].map(|name| folder.join(name));
+/// assert!(prepare(rig.clone(), &[&a, &b], 1)?.ignored.is_empty(), "each column is of a sensor");
+/// assert!(prepare(rig, &[&a, &a], 1).is_err(), "no model is validated on what it was fitted to");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Everything that is wrong with them.
 pub fn prepare(rig: Scenario, paths: &[&Path], fits: usize) -> Result<PreparedRig, CalibrateError> {

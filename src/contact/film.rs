@@ -14,6 +14,8 @@ use nalgebra::Vector2;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Where the film presses.
+///
+/// [`Film`] has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// All round: it pulls as much as it presses, which oil stands at slow motion and under pressure.
@@ -23,6 +25,18 @@ pub enum Extent {
 }
 
 /// The film of one bearing.
+///
+/// ```
+/// use freeplay::contact::{Extent, Film};
+/// use nalgebra::Vector2;
+///
+/// let damping = Film::damping_of(0.1, 10e-3, 20e-3, 0.1e-3);
+/// let film = Film { damping, extent: Extent::Full, eccentricity_max: 0.95, fades: false };
+/// let [slow, fast] = [0.01, 0.02].map(|speed| film.force(0.0, Vector2::new(speed, 0.0)).x);
+/// assert!(slow < 0.0, "a film holds against the motion");
+/// assert!((fast / slow - 2.0).abs() < 1e-9);
+/// assert!(film.full(0.8)[0] > film.full(0.0)[0], "stiffer near the wall");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
     /// C in N·s/m: the damping of a centred journal in a full film.

@@ -6,6 +6,16 @@ use std::sync::Arc;
 /// Normal force of a contact as a function of how deep and how fast the surfaces interpenetrate.
 ///
 /// A law sees plain numbers only, so that any engine can ask it and any test can tabulate it.
+///
+/// ```
+/// use freeplay::contact::laws::{Given, named};
+///
+/// // Laws of the literature by name, here for a joint of the built-in machine.
+/// let law = (named("hunt-crossley").unwrap().build)(&Given::default());
+/// let [resting, approaching] = [0.0, 0.1].map(|rate| law.normal_force(1e-6, rate));
+/// assert!(approaching > resting, "a law with damping pushes harder while surfaces approach");
+/// assert!(law.longest_step(0.1, 0.1) < law.contact_time(0.1, 0.1));
+/// ```
 pub trait ForceLaw: std::fmt::Debug + Send + Sync {
     /// Normal force in N, positive when the surfaces push each other apart.
     ///

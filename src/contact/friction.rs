@@ -4,6 +4,8 @@
 use super::After;
 
 /// Coulomb friction, smoothed around rest: `F_t = μ F_N tanh(v_t/v_s)`.
+///
+/// [`Friction`] has an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoulombFriction {
     /// Coefficient of friction μ, dimensionless.
@@ -22,6 +24,15 @@ impl CoulombFriction {
 }
 
 /// A friction law with its coefficient. Speeds are sliding speeds at the contact point.
+///
+/// ```
+/// use freeplay::contact::{CoulombFriction, Friction};
+///
+/// let friction = Friction::from(CoulombFriction { coefficient: 0.1, velocity: 1e-3 });
+/// assert!((friction.force(50.0, 0.1) - 5.0).abs() < 1e-9, "µ F far above 1 mm/s");
+/// assert!(friction.force(50.0, -1e-4) < 0.0, "against the sliding, however slow");
+/// assert!((friction.with_coefficient(0.2).force(50.0, 0.1) - 10.0).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Friction {
     /// The smoothed law of Coulomb.

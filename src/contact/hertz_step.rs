@@ -10,6 +10,15 @@ use std::sync::Arc;
 ///
 /// As printed, `F_N` turns negative while the surfaces part quickly. ADAMS' own IMPACT takes the
 /// maximum with zero, and so does this law unless `clip` is false.
+///
+/// ```
+/// use freeplay::contact::{ForceLaw, HertzStep};
+///
+/// let law = HertzStep { stiffness: 1.6e10, exponent: 1.5, c_max: 500.0, d_max: 1e-5, clip: true };
+/// // Surfaces that part at 2 m/s: as printed the law would pull.
+/// assert_eq!(law.normal_force(1e-6, -2.0), 0.0);
+/// assert!(HertzStep { clip: false, ..law }.normal_force(1e-6, -2.0) < 0.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HertzStep {
     /// Stiffness K in N/m^n.

@@ -3,6 +3,8 @@
 use super::ForceLaw;
 
 /// What a hit of a free mass came to.
+///
+/// [`impact`](impact()) has an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
     /// Speed at which the mass leaves in m/s.
@@ -54,6 +56,15 @@ pub fn hit(law: &dyn ForceLaw, mass: f64, speed: f64, look: &mut dyn FnMut(Momen
 }
 
 /// A [`hit`] that nobody looks at.
+///
+/// ```
+/// use freeplay::contact::{HertzStep, impact};
+///
+/// let law = HertzStep { stiffness: 1.6e10, exponent: 1.5, c_max: 0.0, d_max: 1e-5, clip: true };
+/// // 0.1 kg at 0.1 m/s: without damping all of the speed comes back, with it less.
+/// assert!((impact(&law, 0.1, 0.1).rebound - 0.1).abs() < 1e-4);
+/// assert!(impact(&HertzStep { c_max: 500.0, ..law }, 0.1, 0.1).rebound < 0.099);
+/// ```
 pub fn impact(law: &dyn ForceLaw, mass: f64, speed: f64) -> Impact {
     hit(law, mass, speed, &mut |_| {})
 }

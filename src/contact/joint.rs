@@ -16,6 +16,21 @@ pub fn valid_penetration(journal_radius: f64) -> f64 {
 }
 
 /// What a clearance joint is made of.
+///
+/// ```
+/// use freeplay::contact::{Clearance, Frame, HertzStep};
+/// use nalgebra::Vector2;
+/// use std::sync::Arc;
+///
+/// let law = HertzStep { stiffness: 1.6e10, exponent: 1.5, c_max: 500.0, d_max: 1e-5, clip: true };
+/// let joint = Clearance { bearing_radius: 10e-3, journal_radius: 9.5e-3, law: Arc::new(law), friction: None };
+/// let at = |x| Frame { centre: Vector2::new(x, 0.0), arm: Vector2::zeros(), velocity: Vector2::zeros(), spin: 0.0 };
+/// // The journal's centre is 0.501 mm from the ring's: 1 µm in the wall, at rest.
+/// let (contact, wrenches) = joint.forces(&at(0.0), &at(0.501e-3));
+/// assert!((contact.penetration - 1e-6).abs() < 1e-12);
+/// let [on_bearing, on_journal] = wrenches.unwrap();
+/// assert!((on_bearing.x - 16.0).abs() < 1e-3 && on_journal.x == -on_bearing.x);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Clearance {
     /// Inner radius of the bearing ring in m.
@@ -37,6 +52,8 @@ impl Clearance {
 }
 
 /// Where a ring or a journal is, and how it moves, in world coordinates.
+///
+/// [`Clearance`] has an example.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     /// Centre of the ring or journal in m.
@@ -50,6 +67,8 @@ pub struct Frame {
 }
 
 /// State of one clearance joint at one instant.
+///
+/// [`Clearance`] has an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact {
     /// Eccentricity vector e: journal centre − bearing centre, in m, world directions.
@@ -69,6 +88,15 @@ pub struct Contact {
 ///
 /// With centred circles every direction is as good as any other; +x is returned. Both the force
 /// law and the collision shape of the engine rest on this one function.
+///
+/// ```
+/// use freeplay::contact::circle_in_ring;
+/// use nalgebra::Vector2;
+///
+/// let (penetration, normal) = circle_in_ring(Vector2::new(0.0, -0.6e-3), 0.5e-3);
+/// assert!((penetration - 0.1e-3).abs() < 1e-12);
+/// assert_eq!(normal, Vector2::new(0.0, -1.0));
+/// ```
 #[inline]
 pub fn circle_in_ring(eccentricity: Vector2<f64>, clearance: f64) -> (f64, Vector2<f64>) {
     let distance = eccentricity.norm();

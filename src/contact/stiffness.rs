@@ -4,6 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Elastic constants of one body.
+///
+/// [`hertz_stiffness`] has an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Young's modulus E in Pa.
@@ -27,6 +29,16 @@ pub enum StiffnessForm {
 /// `K = 4 / (3π (h_i + h_j)) · √(R_i R_j / (R_i ± R_j))`, `h = (1 − ν²)/(π E)`,
 ///
 /// with `+` as printed and `−` in the conformal reading. Radii in m.
+///
+/// ```
+/// use freeplay::contact::{Material, StiffnessForm, hertz_stiffness};
+///
+/// let aluminium = Material { youngs_modulus: 73e9, poisson_ratio: 0.3 };
+/// let [printed, conformal] =
+///     [StiffnessForm::Printed, StiffnessForm::Conformal].map(|form| hertz_stiffness(form, aluminium, 10e-3, 9.5e-3));
+/// // √((R_i + R_j)/(R_i − R_j)) = √39.
+/// assert!((conformal / printed - 39f64.sqrt()).abs() < 1e-9);
+/// ```
 pub fn hertz_stiffness(
     form: StiffnessForm,
     material: Material,

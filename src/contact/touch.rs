@@ -11,6 +11,15 @@ const HALVINGS: usize = 40;
 
 /// State of a contact at the end of the last accepted step. It changes at accepted steps only: whatever is
 /// tried, repeated or looked back at within a step is judged from the same memory.
+///
+/// ```
+/// use freeplay::contact::Touch;
+///
+/// // A journal that came in at 0.2 m/s is slower at the deepest point; the hit is still one of 0.2 m/s.
+/// let touched = Touch::begin(-1e-6, 0.2).after(1e-5).reached(1e-6, 0.2);
+/// let deepest = touched.after(1e-5).reached(2e-6, 0.01);
+/// assert!((deepest.after(1e-6).impact_speed(2e-6, 0.0) - 0.2).abs() < 1e-3);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Touch {
     /// Penetration δ in m, negative in flight.

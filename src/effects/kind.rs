@@ -208,6 +208,18 @@ pub enum ScanRange {
 }
 
 /// An effect by name, with everything that a user and a search need to know of it.
+///
+/// ```
+/// use freeplay::effects::named;
+/// use freeplay::prelude::*;
+///
+/// let machine = assemble(&Scenario::load(None, &[])?)?;
+/// let wear = named("joint-wear").unwrap();
+/// // Each of six joints, and those of one make.
+/// assert!(wear.joints_of(&machine.mechanism).contains(&"A1".to_owned()));
+/// assert!(wear.candidates(&machine.mechanism).len() >= 6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Kind {
     /// Its name in files.

@@ -9,6 +9,8 @@ use std::fmt;
 use std::sync::Arc;
 
 /// What is wrong with a [`Setting`]: the key, what it is, what would be right.
+///
+/// [`Setting`] has an example.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wrong {
     /// `kind`, `joint` or a parameter.
@@ -20,6 +22,21 @@ pub struct Wrong {
 }
 
 /// An effect, what it acts on, and its numbers: one `[[effect]]` of a scenario.
+///
+/// ```
+/// use freeplay::effects::named;
+/// use freeplay::prelude::*;
+///
+/// let mut mechanism = assemble(&Scenario::load(None, &[])?)?.mechanism;
+/// let kind = named("joint-wear").unwrap();
+/// let name = kind.parameters[0].name;
+/// let worn = Setting::new(kind, Some("A1"), &[(name, 1e-4)]);
+/// assert_eq!((worn.target.to_string(), worn.value(name)), ("A1".to_owned(), Some(1e-4)));
+/// worn.apply(&mut mechanism).unwrap();
+/// let wrong = Setting::new(kind, Some("A9"), &[(name, 1e-4)]).apply(&mut mechanism).unwrap_err();
+/// assert!(wrong.help.contains("A1"), "what this machine has");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Setting {
     /// Which effect.

@@ -3,6 +3,8 @@
 use std::fmt;
 
 /// What an effect acts on, by name.
+///
+/// [`Setting`](crate::effects::Setting) has an example.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
     /// The whole machine, all joints that the effect takes, or the output body: what holds where nothing is

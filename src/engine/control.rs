@@ -4,6 +4,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How the time step is chosen.
+///
+/// ```
+/// use freeplay::engine::StepControl;
+///
+/// let control = StepControl::Tolerance(1e-6);
+/// assert_eq!((control.tolerance(), control.step()), (Some(1e-6), None));
+/// assert_eq!(StepControl::Direct(1e-6).with_tolerance_times(0.5), StepControl::Direct(5e-7));
+/// assert_eq!(StepControl::Fixed(1e-5).with_tolerance_times(0.5), StepControl::Fixed(1e-5));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepControl {
     /// A fixed step of at most so many seconds: the longest that divides the row interval.

@@ -20,6 +20,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const ROUNDING: f64 = 1e-10;
 
 /// Which instants a run hands out.
+///
+/// [`run`](run()) has an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
     /// Simulated time in s.
@@ -43,6 +45,8 @@ impl Schedule {
 
 /// Everything that is known at one instant. States, accelerations and forces belong together:
 /// the forces are those at these positions and velocities, the accelerations follow from them.
+///
+/// [`run`](run()) has an example.
 #[derive(Debug)]
 pub struct Instant<'a> {
     /// Time in s.
@@ -62,6 +66,23 @@ pub struct Instant<'a> {
 }
 
 /// Simulates `mechanism` and calls `observe` at each row of the schedule.
+///
+/// ```
+/// use freeplay::engine::{Schedule, StepControl, run};
+/// use freeplay::mechanism::{Body, BodyState, Mechanism};
+/// use nalgebra::Vector2;
+///
+/// let mut stone = Mechanism::free(vec![Body::new("stone", 2.0, 0.1, BodyState::ground())]);
+/// stone.gravity = Vector2::new(0.0, -9.81);
+/// let schedule = Schedule { duration: 0.1, interval: 0.05 };
+/// let mut heights = Vec::new();
+/// let work = run(&stone, StepControl::Fixed(1e-3), schedule, &mut |instant| {
+///     heights.push(instant.states[0].position.y);
+/// })?;
+/// assert_eq!((heights.len(), work.steps), (schedule.intervals() + 1, 100));
+/// assert!((heights[2] + 9.81 * 0.1 * 0.1 / 2.0).abs() < 1e-9);
+/// # Ok::<(), freeplay::engine::Halt>(())
+/// ```
 ///
 /// # Errors
 /// [`Halt`] when a state turns impossible or steps too short; the rows handed out before stand.
@@ -95,6 +116,24 @@ pub fn run_while(
 
 /// [`run_while`] that also keeps the balance of energy ([`Work::energy`]) and counts where journals rub
 /// ([`Work::rubbed`]). That takes up to 7 % more instructions.
+///
+/// ```
+/// use freeplay::engine::run_balanced;
+/// use freeplay::prelude::*;
+/// use std::ops::ControlFlow;
+/// use std::sync::atomic::AtomicBool;
+///
+/// let machine = assemble(&Scenario::load(None, &["simulation.duration=0.01".to_owned()])?)?;
+/// let stop = AtomicBool::new(false);
+/// let mut rows = 0;
+/// let work = run_balanced(&machine.mechanism, machine.control, machine.schedule, &stop, &mut |_| {
+///     rows += 1;
+///     if rows < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+/// })?;
+/// assert_eq!(rows, 4, "a run ends where its observer says");
+/// assert!(work.energy.is_some() && work.reached < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`Halt`] when a state turns impossible or steps too short; the rows handed out before stand.

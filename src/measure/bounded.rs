@@ -52,6 +52,17 @@ pub fn open_plain(path: &Path, most: u64) -> io::Result<Bounded> {
 
 /// All of what a user names as text.
 ///
+/// ```
+/// use freeplay::measure::bounded;
+///
+/// let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("note.txt");
+/// std::fs::write(&file, "twelve bytes")?;
+/// assert_eq!(bounded::text(&file, 12)?, "twelve bytes");
+/// assert!(bounded::text(&file, 11).is_err(), "never more than asked for");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+///
 /// # Errors
 /// As of [`open`]; anything but UTF-8.
 pub fn text(path: &Path, most: u64) -> io::Result<String> {

@@ -29,6 +29,19 @@ pub struct Dialect {
 }
 
 /// A table that is read row by row.
+///
+/// ```
+/// use freeplay::measure::{bounded, dialect::Rows};
+///
+/// let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("run.csv");
+/// std::fs::write(&file, "t;x\n0,0;1,5\n0,1;1,6\n")?;
+/// let mut rows = Rows::begin(bounded::open(&file, bounded::TABLE)?)?;
+/// let mut row = csv::StringRecord::new();
+/// assert!(rows.next(&mut row)?);
+/// assert_eq!(rows.number(&row[1]), Some(1.5), "semicolons and decimal commas are seen");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Rows {
     reader: csv::Reader<Box<dyn Read>>,
     dialect: Dialect,

@@ -36,6 +36,17 @@ impl Bucket {
 ///
 /// Up to its capacity it holds every sample. Each time it is full, neighbouring buckets are merged in
 /// pairs and every later bucket takes twice as many samples.
+///
+/// ```
+/// use freeplay::measure::envelope::Envelope;
+///
+/// let mut signal = Envelope::new(10);
+/// for i in 0..10_000 {
+///     signal.push(f64::from(i), if i == 777 { 5.0 } else { 0.0 });
+/// }
+/// assert!(signal.points().len() <= 20);
+/// assert_eq!(signal.extent(), Some((0.0, 5.0)), "no peak is lost");
+/// ```
 #[derive(Debug, Clone)]
 pub struct Envelope {
     buckets: Vec<Bucket>,
@@ -109,6 +120,17 @@ impl Envelope {
 }
 
 /// A curve in the plane, thinned evenly: every point until it is full, then every 2nd, every 4th, …
+///
+/// ```
+/// use freeplay::measure::envelope::Trace;
+///
+/// let mut path = Trace::new(100);
+/// for i in 0..1000 {
+///     path.push([f64::from(i), 0.0]);
+/// }
+/// assert!(path.points().len() <= 100);
+/// assert_eq!(path.points()[0], [0.0, 0.0]);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Trace {
     points: Vec<[f64; 2]>,

@@ -1,6 +1,8 @@
 //! A film of a long run in constant memory: snapshots, and what signals did between them.
 
 /// One picture of a film.
+///
+/// [`Frames`] has an example.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmFrame {
     /// When, in s.
@@ -22,6 +24,18 @@ impl FilmFrame {
 
 /// Snapshots of a run, thinned evenly: every one until it is full, then every 2nd, every 4th, … What
 /// a signal did at the instants left out goes into the extremes of the next frame, so no peak is lost.
+///
+/// ```
+/// use freeplay::measure::frames::{FilmFrame, Frames};
+///
+/// let mut film = Frames::new(8);
+/// for i in 0..100 {
+///     let force = if i == 33 { 50.0 } else { 1.0 };
+///     film.push(FilmFrame { t: f64::from(i), values: vec![0.0], extremes: vec![[force; 2]] });
+/// }
+/// assert!(film.thinned() && film.all().count() <= 9);
+/// assert!(film.all().any(|frame| frame.extremes[0][1] == 50.0), "what happened between frames is kept");
+/// ```
 #[derive(Debug, Clone)]
 pub struct Frames {
     kept: Vec<FilmFrame>,

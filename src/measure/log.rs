@@ -11,6 +11,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// What a column of a log holds. Joints count from 0.
+///
+/// [`Log`] has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Channel {
     /// Commanded length of a prismatic joint, m: `q1_cmd`.
@@ -87,6 +89,17 @@ impl ColumnSource {
 }
 
 /// A recorded run.
+///
+/// ```
+/// use freeplay::measure::log::{Channel, Log};
+///
+/// let channels = vec![(Channel::Length(0), vec![0.30, 0.31, 0.32]), (Channel::Force(0), vec![5.0, 6.0, 7.0])];
+/// let log = Log::new("run.csv", 0.0, 0.01, channels);
+/// assert_eq!(log.get(Channel::Force(0)), Some(&[5.0, 6.0, 7.0][..]));
+/// assert!((log.duration() - 0.02).abs() < 1e-12);
+/// assert!(log.to_csv().starts_with("t,q1,F1\n"));
+/// assert_eq!(log.part(1..3).samples, 2);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Log {
     /// Name of its file.

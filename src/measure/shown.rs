@@ -12,6 +12,13 @@ pub fn is_hidden(c: char) -> bool {
 
 /// `text` with such characters as the numbers that JSON writes for them; line breaks and tabs stay. JSON means the same
 /// afterwards.
+///
+/// ```
+/// use freeplay::measure::shown::shown;
+///
+/// assert_eq!(shown("two\nlines"), "two\nlines");
+/// assert_eq!(shown("red \u{1b}[31m"), "red \\u001b[31m", "no text of a file colours a terminal");
+/// ```
 pub fn shown(text: &str) -> Cow<'_, str> {
     let acts = |c: char| is_hidden(c) && !matches!(c, '\n' | '\t');
     if !text.contains(acts) {

@@ -4,6 +4,13 @@
 const LONGEST: usize = 100;
 
 /// The nearest of the known words, or none where none is near. Capital letters do not matter.
+///
+/// ```
+/// use freeplay::measure::spelling::nearest;
+///
+/// assert_eq!(nearest("clearence", &["radius", "clearance"]), Some("clearance"));
+/// assert_eq!(nearest("mass", &["radius", "clearance"]), None);
+/// ```
 pub fn nearest<'a>(stranger: &str, known: &[&'a str]) -> Option<&'a str> {
     // No word of ours is so long, and to compare is work.
     if stranger.len() > LONGEST {

@@ -2,6 +2,16 @@
 
 /// A cubic spline with continuous first and second derivatives, constant outside. Equations: de Boor,
 /// *A Practical Guide to Splines*, ch. IV, with the second derivatives as unknowns.
+///
+/// ```
+/// use freeplay::measure::spline::CubicSpline;
+///
+/// let t: Vec<f64> = (0..5).map(f64::from).collect();
+/// let cubes: Vec<f64> = t.iter().map(|t| t.powi(3)).collect();
+/// // Exact for a cubic: value, slope and second derivative.
+/// let [value, slope, curvature] = CubicSpline::not_a_knot(&t, &cubes).at(1.5);
+/// assert!((value - 3.375).abs() < 1e-12 && (slope - 6.75).abs() < 1e-12 && (curvature - 9.0).abs() < 1e-12);
+/// ```
 #[derive(Clone, Debug)]
 pub struct CubicSpline {
     t: Vec<f64>,

@@ -9,6 +9,13 @@ pub fn t(share: f64, degrees: f64) -> f64 {
 }
 
 /// Half width of a 95 % interval in standard errors.
+///
+/// ```
+/// use freeplay::measure::student::{t, t95};
+///
+/// assert!((t95(9) - 2.262).abs() < 1e-3, "ten values");
+/// assert!((t(0.975, 9.0) - t95(9)).abs() < 1e-9, "2.5 % on either side");
+/// ```
 pub fn t95(degrees: usize) -> f64 {
     t(0.975, degrees as f64)
 }

@@ -5,6 +5,8 @@ use crate::contact::Contact;
 use nalgebra::{Vector2, Vector3};
 
 /// Everything that is known of a mechanism at one instant beside its state.
+///
+/// [`Dynamics`](crate::mechanism::Dynamics) has an example.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evaluation {
     /// Time in s.

@@ -21,6 +21,18 @@ struct Leg {
 }
 
 /// A body on telescopic legs, and the motion that it is to make.
+///
+/// ```
+/// use freeplay::mechanism::TelescopicLegs;
+/// use freeplay::prelude::*;
+/// use nalgebra::Vector2;
+///
+/// let Machine { mechanism, motion, .. } = assemble(&Scenario::load(None, &[])?)?;
+/// let legs = TelescopicLegs::of(&mechanism, mechanism.output, Vector2::zeros(), motion.clone()).unwrap();
+/// let platform = mechanism.output_state(&legs.states(0.1));
+/// assert!((platform.position - motion.at(0.1).pose.xy()).norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct TelescopicLegs {
     legs: Vec<Leg>,

@@ -49,6 +49,19 @@ use nalgebra::{Vector2, Vector3};
 use std::sync::Arc;
 
 /// A planar mechanism, ready to be simulated.
+///
+/// ```
+/// use freeplay::mechanism::{Body, BodyState, Mechanism};
+/// use nalgebra::Vector2;
+///
+/// let mut mechanism = Mechanism::free(vec![Body::new("beam", 2.0, 0.1, BodyState::ground())]);
+/// // 2 kg more at its end: the centre of mass moves half of the way, and what was the beam's centre stays its output.
+/// mechanism.add_point_mass(0, 2.0, Vector2::new(1.0, 0.0));
+/// assert_eq!(mechanism.bodies[0].mass, 4.0);
+/// assert!((mechanism.bodies[0].start.position.x - 0.5).abs() < 1e-12);
+/// let start = mechanism.bodies[0].start;
+/// assert!(mechanism.output_state(&[start]).position.norm() < 1e-12);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Mechanism {
     /// The moving bodies.

@@ -7,6 +7,18 @@ use super::{Attachment, Bearing, Body, BodyState, Mechanism, Revolute};
 use nalgebra::{UnitComplex, Vector2, Vector3};
 
 /// The arm of a pendulum.
+///
+/// ```
+/// use freeplay::mechanism::Bearing;
+/// use freeplay::mechanism::pendulum::{Arm, angle, build};
+/// use nalgebra::Vector2;
+///
+/// let arm = Arm { mass: 1.0, inertia: 0.01, length: 0.3 };
+/// assert!((arm.about_pivot() - 0.1).abs() < 1e-12);
+/// let pendulum = build(arm, Bearing::Ideal, [0.4, 2.0], Vector2::new(0.0, -9.81));
+/// let [at, rate] = angle(&pendulum.bodies[0].start, 0.0);
+/// assert!((at - 0.4).abs() < 1e-12 && (rate - 2.0).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
     /// m in kg.

@@ -46,6 +46,21 @@ impl TrackerFrame {
 
 /// A sensor. What it shows at time t is `scale · y(t − delay) + offset`, through a low-pass, with white noise,
 /// rounded; y is what [`reading`](Self::reading) says.
+///
+/// ```
+/// use freeplay::mechanism::Reads;
+/// use freeplay::model::{instrumented, parts_of};
+/// use freeplay::scenario::Scenario;
+///
+/// // A 3-RPR with [sensors], column by column.
+/// let sets = ["sensors.pose_std=4e-6", "sensors.force_std=0.15"].map(str::to_owned);
+/// let mechanism = parts_of(&instrumented(&Scenario::load(None, &sets)?)?)?;
+/// let force = mechanism.sensors.iter().find(|sensor| sensor.column == "F1").unwrap();
+/// assert!(matches!(force.reads, Reads::Effort(0)));
+/// assert_eq!((force.std, force.unit(&mechanism)), (0.15, "N"));
+/// assert!(!force.tells(), "it measures, as commands do not");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Sensor {
     /// Its column in recordings.

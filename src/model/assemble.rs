@@ -21,6 +21,17 @@ use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::sync::Arc;
 
 /// A machine, its motion, how it is to be stepped, and itself without clearance.
+///
+/// ```
+/// use freeplay::prelude::*;
+///
+/// let mut machine = assemble(&Scenario::load(None, &[])?)?;
+/// assert_eq!((machine.mechanism.revolutes.len(), machine.mechanism.actuators.len()), (6, 3));
+/// // The machine without clearance is where the motion asks for.
+/// let asked = machine.motion.at(0.1).pose;
+/// assert!((machine.ideal.at(0.1).position - asked.xy()).norm() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Machine {
     /// What is simulated.

@@ -6,6 +6,17 @@ use nalgebra::{Vector2, Vector3};
 
 /// A machine with ideal joints and prescribed drives. Where its motion leaves it no freedom its states follow
 /// from that alone, its forces from the equations of motion at those states; otherwise it is simulated.
+///
+/// ```
+/// use freeplay::prelude::*;
+///
+/// let mut machine = assemble(&Scenario::load(None, &[])?)?;
+/// let now = machine.ideal.at(0.1);
+/// assert_eq!(now.drive_forces.len(), 3);
+/// let asked = machine.motion.at(0.1);
+/// assert!((now.acceleration - asked.acceleration).norm() < 1e-6 * asked.acceleration.norm().max(1.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Ideal {
     mechanism: Mechanism,

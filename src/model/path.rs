@@ -43,6 +43,16 @@ const READS: f64 = 1000.0;
 const MOST_READS: f64 = 1e7;
 
 /// What the machine without clearance goes through.
+///
+/// ```
+/// use freeplay::prelude::*;
+///
+/// let mut machine = assemble(&Scenario::load(None, &[])?)?;
+/// let path = machine.driven_path().unwrap();
+/// assert!(path.stuck.is_none() && path.breaches.is_empty(), "three legs reach all of the paper's circle");
+/// assert!(path.used.iter().all(|[shortest, longest]| 0.0 < *shortest && shortest < longest));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrivenPath {
     /// Smallest and largest coordinate (m, rad) of each drive's joint.

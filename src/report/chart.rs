@@ -35,6 +35,22 @@ const PANEL_TICKS: [f64; 2] = [90.0 * PX as f64, 36.0 * PX as f64];
 /// Draws the panels below each other, each with its own axes, and a legend where a panel has more
 /// than one curve. Returns the SVG.
 ///
+/// ```
+/// use freeplay::report::{Curve, Panel, Style, panels_svg};
+///
+/// let points = (0..100).map(|i| (f64::from(i) / 100.0, (f64::from(i) / 10.0).sin())).collect();
+/// let curve = Curve { name: "drive 1".to_owned(), points, style: Style::Solid };
+/// let panel = Panel {
+///     title: "Forces".to_owned(),
+///     x_label: "time (s)".into(),
+///     y_label: "force (N)".into(),
+///     curves: vec![curve],
+/// };
+/// let svg = panels_svg(&[panel])?;
+/// assert!(svg.contains("<svg") && svg.contains("Forces"));
+/// # Ok::<(), freeplay::report::ReportError>(())
+/// ```
+///
 /// # Errors
 /// If the drawing library refuses; no data lead to an error.
 pub fn panels_svg(panels: &[Panel]) -> Result<String, ReportError> {

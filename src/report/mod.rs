@@ -30,6 +30,8 @@ pub use quantity::{known_to, length, number};
 pub use scene::{Outline, Scene, SceneBody, SceneChart, SceneCurve, SceneJoint};
 
 /// How a curve is drawn.
+///
+/// [`panels_svg`] has an example.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Style {
     /// A coloured line; each solid curve of a panel has its own colour.
@@ -43,6 +45,8 @@ pub enum Style {
 }
 
 /// A line in a chart.
+///
+/// [`panels_svg`] has an example.
 #[derive(Debug, Clone)]
 pub struct Curve {
     /// What the legend calls it.
@@ -54,6 +58,8 @@ pub struct Curve {
 }
 
 /// One chart in a stack of charts.
+///
+/// [`panels_svg`] has an example.
 #[derive(Debug, Clone)]
 pub struct Panel {
     /// Heading above the chart.
@@ -67,6 +73,8 @@ pub struct Panel {
 }
 
 /// Where a journal went inside its bearing.
+///
+/// [`orbits_svg`] has an example.
 #[derive(Debug, Clone)]
 pub struct Orbit {
     /// Name of the joint.
@@ -92,6 +100,8 @@ pub struct Picture {
 }
 
 /// A line in the page's table of results.
+///
+/// [`page`](page()) has an example.
 #[derive(Debug, Clone)]
 pub struct Fact {
     /// What was measured.

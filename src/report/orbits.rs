@@ -24,6 +24,15 @@ const RING: i32 = SQUARE * 43 / 100;
 /// Draws the orbits in a grid of squares, three to a row, each scaled to its own clearance circle.
 /// Whatever lies outside its square is drawn at the square's edge. Returns the SVG.
 ///
+/// ```
+/// use freeplay::report::{Orbit, orbits_svg};
+///
+/// let points = vec![[0.0, -5e-4], [2e-4, -4.5e-4], [5e-4, 0.0]];
+/// let svg = orbits_svg(&[Orbit { joint: "A1".to_owned(), clearance_m: 5e-4, points }])?;
+/// assert!(svg.contains("A1"));
+/// # Ok::<(), freeplay::report::ReportError>(())
+/// ```
+///
 /// # Errors
 /// If the drawing library refuses; no data lead to an error.
 pub fn orbits_svg(orbits: &[Orbit]) -> Result<String, ReportError> {

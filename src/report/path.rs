@@ -16,6 +16,18 @@ const TICKS: f64 = 70.0 * PX as f64;
 /// Draws curves in the plane, x and y in metres, with the same scale on both axes: a circle looks
 /// round. Returns the SVG.
 ///
+/// ```
+/// use freeplay::report::{Curve, Style, path_svg};
+///
+/// let curve = |name: &str, style, points: &[(f64, f64)]| Curve { name: name.to_owned(), points: points.to_vec(), style };
+/// let curves = [
+///     curve("ideal", Style::Reference, &[(0.0, 0.0), (0.1, 0.1)]),
+///     curve("simulated", Style::Solid, &[(0.0, 0.001), (0.1, 0.099)]),
+/// ];
+/// assert!(path_svg("Path", &curves)?.contains("simulated"));
+/// # Ok::<(), freeplay::report::ReportError>(())
+/// ```
+///
 /// # Errors
 /// If the drawing library refuses; no data lead to an error.
 pub fn path_svg(title: &str, curves: &[Curve]) -> Result<String, ReportError> {

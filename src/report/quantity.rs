@@ -13,6 +13,14 @@ pub fn length(metres: f64) -> String {
 
 /// A number with three significant digits; very small and very large ones with a power of ten, what
 /// is no number as a dash.
+///
+/// ```
+/// use freeplay::report::{known_to, length, number};
+///
+/// assert_eq!(number(12.3456), "12.3");
+/// assert_eq!(length(0.00012), "120 µm");
+/// assert_eq!(known_to(12.3456, 0.021), "12.346");
+/// ```
 pub fn number(value: f64) -> String {
     significant(value, 3)
 }

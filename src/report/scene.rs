@@ -6,6 +6,8 @@ use serde::Serialize;
 /// (m) and angle (rad) of each body in turn; then for each joint the journal's centre minus the
 /// bearing's, x and y (m, world directions); then the tracked point minus where it should be, x and y
 /// (m). Their `extremes` are first the contact force of each joint (N), then what `charts` names.
+///
+/// [`animation_svg`](crate::report::animation_svg) has an example.
 #[derive(Debug, Clone, Serialize)]
 pub struct Scene {
     /// Heading.

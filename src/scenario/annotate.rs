@@ -9,6 +9,16 @@ const WIDTH: usize = 96;
 
 /// The text of a scenario with every default filled in, each section and key with its meaning above it, and the optional
 /// keys that it does not have as comments.
+///
+/// ```
+/// use freeplay::scenario::{Scenario, annotated};
+///
+/// let scenario = Scenario::load(None, &[])?;
+/// let file = annotated(&scenario);
+/// assert!(file.lines().filter(|line| line.starts_with('#')).count() > 50, "every key with what it means");
+/// assert_eq!(Scenario::from_text(&file, "init.toml", &[])?.hash(), scenario.hash());
+/// # Ok::<(), freeplay::scenario::Problems>(())
+/// ```
 pub fn annotated(scenario: &Scenario) -> String {
     let schema = schema();
     let text = scenario.to_toml();

@@ -46,6 +46,15 @@ const NATIVE_STEP: f64 = 1e-5;
 const PAPER_CLEARANCE: f64 = 5e-4;
 
 /// The text of a scenario, read once: however many variants are made of it, all are made of the same.
+///
+/// ```
+/// use freeplay::scenario::Source;
+///
+/// let source = Source::read(None)?;
+/// let runs: Vec<_> = ["1e-4", "2e-4"].map(|c| source.scenario(&[format!("joints.clearance={c}")])).into();
+/// assert!(runs.iter().zip([1e-4, 2e-4]).all(|(run, c)| run.as_ref().is_ok_and(|run| run.clearance(0) == c)));
+/// # Ok::<(), freeplay::scenario::Problems>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Source {
     text: String,
@@ -114,6 +123,18 @@ fn help_of_unreadable(path: &Path) -> String {
 }
 
 /// A validated scenario: what the file and the overrides say, the rest filled with defaults.
+///
+/// ```
+/// use freeplay::scenario::Scenario;
+///
+/// let tight = Scenario::load(None, &["joints.clearance=1e-4".to_owned()])?;
+/// assert_eq!(tight.clearance(0), 1e-4);
+/// let again = Scenario::from_text(&tight.to_toml(), "again.toml", &[])?;
+/// assert_eq!(again.hash(), tight.hash(), "a scenario written is the same scenario read");
+/// let problems = Scenario::load(None, &["joints.clearance=-1".to_owned()]).unwrap_err();
+/// assert_eq!(problems.0[0].path, "joints.clearance");
+/// # Ok::<(), freeplay::scenario::Problems>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Scenario {
     /// What the results are called. Default "default".

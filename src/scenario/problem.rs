@@ -37,6 +37,8 @@ impl fmt::Display for Location {
 }
 
 /// One complaint about a scenario, printed as `file:line: key: what is wrong; what would be right`.
+///
+/// [`Scenario`](crate::scenario::Scenario) has an example.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub struct Problem {
     /// Dotted path of the key, such as `joints.clearance`; empty when the file as a whole is meant.
@@ -64,6 +66,8 @@ impl fmt::Display for Problem {
 }
 
 /// Everything found wrong in one reading of a scenario, one problem a line.
+///
+/// [`Scenario`](crate::scenario::Scenario) has an example.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub struct Problems(pub Vec<Problem>);
 

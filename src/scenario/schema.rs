@@ -11,6 +11,14 @@ use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
 /// The schema.
+///
+/// ```
+/// use freeplay::scenario::schema;
+///
+/// let schema = schema();
+/// assert_eq!(schema["title"], "freeplay scenario");
+/// assert_eq!(schema["properties"]["seed"]["default"], 1);
+/// ```
 pub fn schema() -> Value {
     let mut generator = SchemaSettings::draft07()
         .with(|settings| settings.inline_subschemas = true)

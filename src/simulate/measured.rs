@@ -11,6 +11,20 @@ use std::time::Instant as Clock;
 
 /// Simulates a machine for its figures, its energy balanced, and writes nothing. `observe` is shown the
 /// machine and each row, beside the same instant without clearance.
+///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::simulate::measured;
+///
+/// let sets = ["simulation.duration=0.01", "simulation.settle=0"].map(str::to_owned);
+/// let scenario = Scenario::load(None, &sets)?;
+/// let mut machine = assemble(&scenario)?;
+/// let mut rows = 0;
+/// let summary = measured(&scenario, &mut machine, &mut |_, _, _| rows += 1);
+/// assert_eq!(rows, machine.schedule.intervals() + 1);
+/// assert_eq!(summary.halted, None);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn measured(
     scenario: &Scenario,
     machine: &mut Machine,

@@ -5,6 +5,16 @@ use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
 /// The first keys of every JSON file that a scenario's results are written into.
+///
+/// ```
+/// use freeplay::scenario::Scenario;
+/// use freeplay::simulate::Provenance;
+///
+/// let scenario = Scenario::load(None, &[])?;
+/// let made_by = Provenance::of(&scenario);
+/// assert_eq!((made_by.program.as_str(), made_by.scenario_hash), ("freeplay", scenario.hash()));
+/// # Ok::<(), freeplay::scenario::Problems>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// The program that wrote this: how a result is told from other files.

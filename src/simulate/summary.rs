@@ -10,6 +10,8 @@ use serde::Serialize;
 
 /// The main figures of a run. Peaks, means and fractions leave out the first `settle_s` seconds; all
 /// of them are NaN (`null` in JSON) if a run ended before.
+///
+/// [`Recorder`] has an example.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// Program, versions, scenario.
@@ -143,6 +145,22 @@ pub struct JointSummary {
 }
 
 /// Gathers a [`Summary`].
+///
+/// ```
+/// use freeplay::prelude::*;
+///
+/// let sets = ["simulation.duration=0.02", "simulation.settle=0"].map(str::to_owned);
+/// let scenario = Scenario::load(None, &sets)?;
+/// let mut machine = assemble(&scenario)?;
+/// let mut recorder = Recorder::new(&machine.mechanism, scenario.simulation.settle());
+/// let work = run(&machine.mechanism, machine.control, machine.schedule, &mut |instant| {
+///     recorder.row(&machine.mechanism, instant, &machine.ideal.at(instant.t));
+/// })?;
+/// let summary = recorder.finish(&scenario, &machine, &work, 0.0, None, Vec::new());
+/// assert_eq!((summary.simulated_s, summary.joints.len()), (0.02, 6));
+/// assert!(summary.rms_path_error_m < 2e-3, "of the size of the clearance");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Recorder {
     settle: f64,

@@ -67,6 +67,23 @@ impl RowColumns {
 }
 
 /// Writes rows as CSV. Nothing but the present line is kept.
+///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::simulate::TimeSeries;
+///
+/// let machine = assemble(&Scenario::load(None, &["simulation.duration=0.002".to_owned()])?)?;
+/// let mut text = Vec::new();
+/// let mut series = TimeSeries::new(&mut text, &machine.mechanism, &machine.layout)?;
+/// let mut written = Ok(());
+/// run(&machine.mechanism, machine.control, machine.schedule, &mut |instant| {
+///     written = series.row(&machine.mechanism, instant);
+/// })?;
+/// written?;
+/// series.finish()?;
+/// assert_eq!(String::from_utf8(text)?.lines().count(), machine.schedule.intervals() + 2, "a header and rows");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct TimeSeries<W> {
     out: W,

@@ -158,6 +158,16 @@ fn growth(mechanism: &Mechanism, distances: &Distances) -> Option<f64> {
 /// Largest Lyapunov exponent in 1/s of a mechanism, from one pair of runs of `duration` s that starts
 /// displaced in a direction (share of a turn). `None` where there is nothing to see: no joint has
 /// clearance under a law, a run breaks down, or the range of growth is too short.
+///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::study::chaos::exponent;
+///
+/// let ideal = assemble(&Scenario::load(None, &["contact.law=\"ideal\"".to_owned()])?)?.mechanism;
+/// // Without clearance neighbouring motions do not part exponentially.
+/// assert!(exponent(&ideal, 0.05, 0.0).is_none_or(|rate| rate < 50.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn exponent(mechanism: &Mechanism, duration: f64, direction: f64) -> Option<f64> {
     growth(mechanism, &pair(mechanism, duration, direction, &AtomicBool::new(false))?)
 }

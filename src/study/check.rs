@@ -20,6 +20,8 @@ const INSTANTS: usize = 1000;
 const NO_DISTANCE: f64 = 1e-9;
 
 /// What a scenario describes, and what is wrong or doubtful about it.
+///
+/// [`check`](check()) has an example.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
     /// Whether a run would start.
@@ -245,6 +247,18 @@ fn found(finding: Finding) -> FindingText {
 }
 
 /// Looks at a machine from all sides.
+///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::study::check;
+///
+/// let scenario = Scenario::load(None, &[])?;
+/// let check = check(&scenario, &mut assemble(&scenario)?);
+/// let machine = check.machine.unwrap();
+/// assert!(check.ok);
+/// assert_eq!((machine.joints.len(), machine.freedoms.free, machine.freedoms.driven), (6, 3, 3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn check(scenario: &Scenario, machine: &mut Machine) -> Check {
     let path = driven_path(scenario, machine);
     let mut findings = findings_along(scenario, machine, path.as_ref());

@@ -16,6 +16,13 @@ const JUDGED_AFTER: Duration = Duration::from_secs(2);
 const JUDGED_ROWS: u64 = 1000;
 
 /// What a whole run will cost.
+///
+/// ```
+/// use freeplay::study::Forecast;
+///
+/// assert!(Forecast { seconds: Some(1e5), bytes: 0.0 }.is_too_much(), "a day");
+/// assert!(!Forecast { seconds: Some(10.0), bytes: 1e6 }.is_too_much());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
     /// Time of computing in s, where it is known yet.

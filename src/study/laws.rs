@@ -97,6 +97,16 @@ pub fn law_of(kind: &'static LawKind, sets: &[String]) -> Result<Arc<dyn ForceLa
 }
 
 /// What a law does in hits of [`MASS`].
+///
+/// ```
+/// use freeplay::contact::laws::named;
+/// use freeplay::study::laws::{figures, law_of};
+///
+/// let kind = named("hertz").unwrap();
+/// let figures = figures(kind, &*law_of(kind, &[])?);
+/// assert!(figures.returned.iter().all(|(_, share)| (share - 1.0).abs() < 1e-2), "an elastic law returns all");
+/// # Ok::<(), freeplay::scenario::Problems>(())
+/// ```
 pub fn figures(kind: &'static LawKind, law: &dyn ForceLaw) -> LawFigures {
     let mut all = vec![(0.0, law.normal_force_after(f64::MIN_POSITIVE, SPEED, SPEED))];
     hit(law, MASS, SPEED, &mut |state| all.push((state.depth, state.force)));

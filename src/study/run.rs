@@ -82,6 +82,20 @@ impl Recorded {
 
 /// Simulates a machine and writes no file. `observe` sees each row, and may end the run there; so does `stop` between
 /// any two steps once it is true.
+///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::study::recorded;
+/// use std::{ops::ControlFlow, sync::atomic::AtomicBool};
+///
+/// let sets = ["simulation.duration=0.01", "simulation.settle=0"].map(str::to_owned);
+/// let scenario = Scenario::load(None, &sets)?;
+/// let stop = AtomicBool::new(false);
+/// let run = recorded(&scenario, &mut assemble(&scenario)?, &stop, &mut |_, _| ControlFlow::Continue(()));
+/// assert_eq!(run.summary.simulated_s, 0.01);
+/// assert!(run.pictures()?.iter().any(|picture| picture.file == "orbits.svg"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn recorded(
     scenario: &Scenario,
     machine: &mut Machine,
@@ -129,6 +143,21 @@ pub fn recorded(
 /// Simulates a machine and writes everything about it into `folder`. `observe` sees each row. A run that breaks down is
 /// written up to there; its summary says so in `halted`. So is one that ends because it was told to stop, as
 /// `interrupted`, unless an earlier result would be lost to it.
+///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::study::{Folder, SUMMARY_FILE, Terms};
+/// use std::sync::atomic::AtomicBool;
+///
+/// let sets = ["simulation.duration=0.01", "simulation.settle=0"].map(str::to_owned);
+/// let scenario = Scenario::load(None, &sets)?;
+/// let place = tempfile::tempdir()?;
+/// let folder = Folder::prepare(&place.path().join("result"), SUMMARY_FILE, false)?;
+/// let terms = Terms { stop: &AtomicBool::new(false), at_any_cost: false };
+/// let done = freeplay::study::run(&scenario, &mut assemble(&scenario)?, folder, terms, &mut |_, _| ())?;
+/// assert!(done.folder.join(SUMMARY_FILE).exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`RunError`]; the folder is left as it was. A file that cannot be written ends the run at once.

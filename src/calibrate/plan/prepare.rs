@@ -23,6 +23,8 @@ const DURATION: f64 = 3.0;
 const LONGEST: f64 = 30.0;
 
 /// What a user asks for, as texts.
+///
+/// [`prepare`](prepare()) has an example.
 #[derive(Clone, Debug, Default)]
 pub struct PlanRequest {
     /// Present recordings.
@@ -77,6 +79,21 @@ pub struct PreparedPlan {
 }
 
 /// Makes sure that a motion can be planned.
+///
+/// ```
+/// use freeplay::calibrate::plan::{PlanRequest, prepare};
+/// use freeplay::scenario::Scenario;
+/// use std::path::Path;
+///
+/// let folder = Path::new("assets/rigs-planar/planar-1");
+/// let rig = Scenario::load(Some(&folder.join("rig.toml")), &[])?;
+/// let (data, detect) = (vec![folder.join("run-a.csv")], vec!["payload".to_owned()]);
+/// let request = PlanRequest { data, detect, candidates: 100, seed: 1, ..PlanRequest::default() };
+/// assert!(prepare(rig.clone(), &request).is_ok());
+/// let nothing = PlanRequest { detect: Vec::new(), ..request };
+/// assert!(prepare(rig, &nothing).is_err(), "a motion shows something");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// Everything that is wrong with the rig, its recordings, what is asked, and the limits.

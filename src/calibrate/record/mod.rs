@@ -48,6 +48,8 @@ const CAPTION: &str = "Measured: the synthetic recording. As declared: the rig w
 const MOST: f64 = 1e7;
 
 /// How many rows recordings have.
+///
+/// [`prepare`](prepare()) has an example.
 #[derive(Clone, Copy, Debug)]
 pub struct RowCount {
     /// Rows a second.
@@ -140,6 +142,18 @@ pub struct PreparedRecord {
 }
 
 /// Makes sure that a scenario can be recorded; `machine` is what it was put together as.
+///
+/// ```
+/// use freeplay::calibrate::record::{RowCount, prepare};
+/// use freeplay::prelude::*;
+///
+/// let sets = ["sensors.pose_std=4e-6", "sensors.force_std=0.15"].map(str::to_owned);
+/// let scenario = Scenario::load(None, &sets)?;
+/// let rows = RowCount { rate: 500.0, duration: 1.0 };
+/// let prepared = prepare(&scenario, &assemble(&scenario)?, rows)?;
+/// assert!(prepared.forecast()?.bytes > 1e4, "a thousand numbers and more");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// What speaks against it.

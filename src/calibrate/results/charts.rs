@@ -12,7 +12,7 @@ use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg};
 use crate::study::RunError;
 
 /// Corner in Hz of the low-pass that everything is drawn through: that of the errors.
-pub(in crate::calibrate) const CORNER: f64 = 25.0;
+pub(super) const CORNER: f64 = 25.0;
 
 /// Left out at both ends in s, where the low-pass sees beyond the log.
 const TRIM: f64 = 0.06;
@@ -127,11 +127,7 @@ pub fn of_run(
 }
 
 /// What models miss of a channel, over time.
-pub(in crate::calibrate) fn missed(
-    channel: Channel,
-    log: &Log,
-    models: &[(&str, &Log, Style)],
-) -> Panel {
+pub(super) fn missed(channel: Channel, log: &Log, models: &[(&str, &Log, Style)]) -> Panel {
     let (factor, unit) = match channel.unit() {
         "m" => (1e6, "µm"),
         "rad" => (1e3, "mrad"),

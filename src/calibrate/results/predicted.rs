@@ -33,11 +33,11 @@ pub struct PredictionReport {
     pub files: Vec<String>,
 }
 
-/// A finished prediction.
+/// A finished prediction and its report, of whichever method.
 #[derive(Debug)]
-pub struct Predicted {
+pub struct Predicted<R = PredictionReport> {
     /// What it came to.
-    pub prediction: PredictionReport,
+    pub prediction: R,
     /// The text of `errors.json`.
     pub json: String,
     /// Where all files are.

@@ -3,6 +3,7 @@
 use crate::calibrate::values::fit::LegsFitTarget;
 use crate::calibrate::values::model::SearchError;
 use crate::calibrate::values::model::{LegsCase, LegsSegment};
+use crate::calibrate::values::ridge::{Regressed, ridged};
 use crate::calibrate::values::settle::{FitData, Settled, settle};
 use crate::effects::{DependsOn, Map, MapMotion, Setting};
 use crate::measure::log::Channel;
@@ -20,9 +21,6 @@ pub struct DescribedMap {
     /// The same of every class, the best first.
     pub others: Vec<(DependsOn, f64)>,
 }
-
-/// Ridges that are tried, as shares of the mean square of a component's columns.
-const RIDGES: [f64; 6] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
 
 /// How often a map is fitted anew, its model simulated in between: the lens's fault depends on it.
 const PASSES: usize = 2;
@@ -72,7 +70,6 @@ fn best_maps(
     let on = LegsFitTarget { case, baseline, on: question.on, fixed: effects, blind: None };
     let hold = LegsFitTarget { on: question.hold, ..on };
     let (Some(fitted), Some(held)) = (on.look(&[]), hold.look(&[])) else { return Vec::new() };
-    let excess = (held.chi2 - held.white.len() as f64).max(1.0);
     let classes: Vec<DependsOn> = match classes.first() {
         Some((class, _)) => vec![*class],
         None => DependsOn::ALL.to_vec(),
@@ -87,23 +84,10 @@ fn best_maps(
         };
         let components = empty.components(3);
         let features = columns.ncols() / components;
-        let normal = columns.transpose() * &columns;
-        let rhs = -(columns.transpose() * &fitted.white);
+        let fits = Regressed { columns: &columns, white: &fitted.white };
+        let holds = Regressed { columns: &held_columns, white: &held.white };
         // Forces and torques have sizes of their own.
-        let sizes: Vec<f64> = (0..components)
-            .map(|i| normal.diagonal().rows(i * features, features).mean())
-            .collect();
-        let best = RIDGES
-            .into_iter()
-            .filter_map(|ridge| {
-                let ridges = DVector::from_fn(columns.ncols(), |i, _| ridge * sizes[i / features]);
-                let ridged = &normal + DMatrix::from_diagonal(&ridges);
-                let weights: DVector<f64> = ridged.cholesky()?.solve(&rhs);
-                let left = (&held.white + &held_columns * &weights).norm_squared();
-                Some(((held.chi2 - left) / excess, weights))
-            })
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((share, weights)) = best {
+        if let Some((share, weights)) = ridged(fits, holds, components) {
             let coefficients = weights.as_slice().chunks(features).map(<[f64]>::to_vec).collect();
             found.push((share, Map { coefficients, ..empty }));
         }

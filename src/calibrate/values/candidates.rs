@@ -120,27 +120,37 @@ fn scanned(
                 columns.push(change(&values)?);
             }
         }
-        let matrix = DMatrix::from_columns(&columns);
-        let normal = matrix.transpose() * &matrix;
-        let rhs = -(matrix.transpose() * &model.white);
-        let weights = normal.cholesky()?.solve(&rhs);
-        // One phase for all amplitudes: that of the largest; the others by their part in it.
-        let pairs = weights.as_slice().chunks(2);
-        let largest = pairs.clone().max_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])))?;
-        let angle = largest[1].atan2(largest[0]);
         let mut values = vec![0.0; names.len()];
         values[over] = value;
+        let (removed, angle, along) = of_one_phase(&columns, &model.white)?;
         values[phase] = angle;
-        for (&amplitude, pair) in amplitudes.iter().zip(pairs) {
-            let along = pair[0] * angle.cos() + pair[1] * angle.sin();
+        for (&amplitude, along) in amplitudes.iter().zip(along) {
             values[amplitude] = along * step(candidate.kind, names[amplitude]);
         }
-        Some((weights.dot(&rhs), candidate.with(&values)))
+        Some((removed, candidate.with(&values)))
     });
     best(scored.collect())
 }
 
-fn step(kind: &Kind, name: &str) -> f64 {
+/// Amplitudes that repeat with one phase, fitted to a residual by least squares: `columns` hold what a unit of each changes
+/// of it at the phases 0 and π/2. What they remove, the phase (rad) of the largest, and of each its part in that phase.
+pub(in crate::calibrate) fn of_one_phase(
+    columns: &[DVector<f64>],
+    residual: &DVector<f64>,
+) -> Option<(f64, f64, Vec<f64>)> {
+    let matrix = DMatrix::from_columns(columns);
+    let normal = matrix.transpose() * &matrix;
+    let rhs = -(matrix.transpose() * residual);
+    let weights = normal.cholesky()?.solve(&rhs);
+    let pairs = weights.as_slice().chunks(2);
+    let largest = pairs.clone().max_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])))?;
+    let angle = largest[1].atan2(largest[0]);
+    let along = pairs.map(|pair| pair[0] * angle.cos() + pair[1] * angle.sin()).collect();
+    Some((weights.dot(&rhs), angle, along))
+}
+
+/// The size of a unit of a parameter.
+pub(in crate::calibrate) fn step(kind: &Kind, name: &str) -> f64 {
     kind.parameter(name).map_or(1.0, |parameter| parameter.step)
 }
 

@@ -4,6 +4,8 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// A value that a fit may choose.
+///
+/// [`least_squares`] has an example.
 #[derive(Clone, Copy, Debug)]
 pub struct Free {
     /// Change by which derivatives are taken, and which all free values are counted in.
@@ -75,6 +77,8 @@ pub const REDUCED: f64 = 0.01;
 pub const REDUCTIONS: usize = 3;
 
 /// When a fit ends, and how it comes by derivatives.
+///
+/// [`least_squares`] has an example.
 #[derive(Clone, Copy, Debug)]
 pub struct FitEffort {
     /// Steps, at most.
@@ -91,6 +95,18 @@ const PROMISED: f64 = 0.25;
 
 /// Least squares from the given values on, with these derivatives at first, if they are `known`; none where
 /// there is no model at its start.
+///
+/// ```
+/// use freeplay::calibrate::least_squares::{FitEffort, Free, least_squares};
+/// use nalgebra::DVector;
+///
+/// // y = a + b t through three points.
+/// let look = |v: &[f64]| Some(DVector::from_fn(3, |i, _| v[0] + v[1] * i as f64 - [1.0, 3.0, 5.0][i]));
+/// let free = [Free { step: 1e-3, bounds: [-10.0, 10.0] }, Free { step: 1e-3, bounds: [-10.0, 10.0] }];
+/// let effort = FitEffort { steps: 20, enough: 1e-9, secant: false };
+/// let best = least_squares(&look, &free, vec![0.0, 0.0], effort, None).unwrap();
+/// assert!((best.values[0] - 1.0).abs() < 1e-6 && (best.values[1] - 2.0).abs() < 1e-6);
+/// ```
 pub fn least_squares(
     look: ResidualAt,
     free: &[Free],

@@ -125,7 +125,7 @@ pub struct LegsCase {
 }
 
 /// Simulations of a model.
-pub(in crate::calibrate) struct Ensemble {
+pub(super) struct Ensemble {
     /// How each run's machine starts.
     pub starts: Vec<SwingStart>,
     /// Noiseless logs: `[run][replica]`.
@@ -138,7 +138,7 @@ pub(in crate::calibrate) struct Ensemble {
 
 /// What saves time in simulating a model.
 #[derive(Clone, Copy, Default)]
-pub(in crate::calibrate) struct Known<'a> {
+pub(super) struct Known<'a> {
     /// The starts of a model like it.
     pub starts: Option<&'a [SwingStart]>,
     /// The logs of the same model without a swing at values nearby, and whether its joints rattle.
@@ -164,7 +164,7 @@ impl LegsCase {
     }
 
     /// Coefficients of the residuals of a log under a mechanism.
-    pub(in crate::calibrate) fn coefficients(
+    pub(super) fn coefficients(
         &self,
         lens: &Lens,
         mechanism: &Mechanism,
@@ -179,7 +179,7 @@ impl LegsCase {
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
-    pub(in crate::calibrate) fn ensemble(
+    pub(super) fn ensemble(
         &self,
         effects: &[Setting],
         count: usize,
@@ -240,7 +240,7 @@ impl LegsCase {
     }
 
     /// Noiseless logs of a model, these replicas of each run.
-    pub(in crate::calibrate) fn logs(
+    pub(super) fn logs(
         &self,
         machines: &[Mechanism],
         replicas: Range<u64>,

@@ -32,17 +32,17 @@ pub(in crate::cli) struct Arguments {
         default_value = "1e-4,5e-5,2e-5,1e-5,5e-6",
         allow_hyphen_values = true
     )]
-    pub(in crate::cli) steps: String,
+    pub(super) steps: String,
     /// Starts over which statistics are taken: points around a circle, otherwise tiny displacements
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(2..=1000))]
-    pub(in crate::cli) starts: u16,
+    pub(super) starts: u16,
     /// Compare contact laws with each other instead: `all`, or names separated by commas
     #[arg(long, value_name = "LAW,…", conflicts_with = "steps")]
-    pub(in crate::cli) laws: Option<String>,
+    pub(super) laws: Option<String>,
     #[command(flatten)]
     pub(super) cost: CostOptions,
     #[command(flatten)]
-    pub(in crate::cli) folder: FolderOptions,
+    pub(super) folder: FolderOptions,
     #[command(flatten)]
     pub(in crate::cli) print: PrintOptions,
 }

@@ -51,7 +51,7 @@ impl Sets {
 ///
 /// # Errors
 /// What would be right, of what is no number.
-pub(in crate::cli) fn seconds(text: &str) -> Result<f64, String> {
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| !seconds.is_nan());
     seconds.ok_or_else(|| "expected a number of seconds without a unit, such as 0.5".to_owned())
 }

@@ -7,6 +7,16 @@ use crate::contact::{ForceLaw, Material, StiffnessForm, hertz_stiffness};
 use std::sync::Arc;
 
 /// A normal force law by name.
+///
+/// ```
+/// use freeplay::contact::laws::{ALL, Given, named};
+///
+/// let kind = named("kelvin-voigt").unwrap();
+/// assert!(!kind.equation.is_empty() && named("kelvin").is_none());
+/// // Every law of the list bears a load at some depth.
+/// let depths = ALL.map(|kind| (kind.build)(&Given::default()).resting_penetration(10.0));
+/// assert!(depths.iter().all(|depth| *depth > 0.0 && *depth < 1e-3));
+/// ```
 #[derive(Debug)]
 pub struct LawKind {
     /// Name in scenarios.
@@ -114,6 +124,8 @@ impl LawRange {
 }
 
 /// What a law is built from: a joint's radii and what is written for it.
+///
+/// [`LawKind`] has an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
     /// Inner radius of the ring in m.

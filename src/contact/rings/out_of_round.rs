@@ -7,6 +7,8 @@
 ///
 /// Two lobes are an oval, three what a three-jaw chuck leaves (roundness as a Fourier series, ISO
 /// 12181-1).
+///
+/// [`RingShape`](crate::contact::RingShape) has an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutOfRound {
     /// Amplitude a in m, smaller than the clearance.

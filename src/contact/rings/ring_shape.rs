@@ -12,6 +12,18 @@ const NEWTON: usize = 4;
 
 /// How the clearance departs from its mean with the direction θ of the eccentricity in the axes of the ring's body:
 /// `c(θ) = c + g(θ)`.
+///
+/// ```
+/// use freeplay::contact::{OutOfRound, RingShape, RingTable};
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// // Oval by 10 µm, wide along x: as a wave, and as a table of it.
+/// let wave = RingShape::from(OutOfRound { amplitude: 1e-5, lobes: 2.0, direction: 0.0 });
+/// let samples: Vec<f64> = (0..64).map(|i| wave.widening(f64::from(i) * FRAC_PI_2 / 16.0)).collect();
+/// let table = RingShape::from(RingTable::new(&samples).unwrap());
+/// assert!((wave.widening(FRAC_PI_2) + 1e-5).abs() < 1e-12);
+/// assert!((table.widening(0.3) - wave.widening(0.3)).abs() < 1e-9);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum RingShape {
     /// One harmonic.

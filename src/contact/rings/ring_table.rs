@@ -14,6 +14,8 @@ const TERMS: usize = 32;
 ///
 /// Kept as B-spline coefficients, `g(θ) = Σ c_i β³(n θ/2π − i)`, found by the recursive filter of M. Unser, A. Aldroubi
 /// and M. Eden, IEEE Trans. Signal Processing 41 (1993) 821–833.
+///
+/// [`RingShape`](crate::contact::RingShape) has an example.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RingTable {
     coefficients: Arc<[f64]>,

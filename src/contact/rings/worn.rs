@@ -24,6 +24,18 @@ const TURNS: usize = 16;
 ///
 /// with p(φ) the place where the centre was. What is removed is `∫ (w' − w) R dψ` per length of the bearing; under a
 /// constant load on a ring at rest, `w = max(c, (c + d) cos ψ)`, the groove of a journal bearing that wears.
+///
+/// ```
+/// use freeplay::contact::Play;
+///
+/// let mut room = Play::of(0.5e-3, None, 64);
+/// assert!((room.mean() - 0.5e-3).abs() < 1e-9);
+/// // 1e-9 m² rubbed off in one direction.
+/// let mut areas = [0.0; 64];
+/// areas[0] = 1e-9;
+/// room.wear(&areas, 10e-3);
+/// assert!(room.largest() > 0.5e-3 && room.shape(0.5e-3).is_some());
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Play {
     support: Vec<f64>,

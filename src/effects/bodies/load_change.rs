@@ -11,7 +11,7 @@ use std::sync::Arc;
 const JUMP: f64 = 1e-5;
 
 /// When an effect that does not last begins: within any recording.
-pub(in crate::effects) const fn at_s(about: &'static str) -> Parameter {
+pub(super) const fn at_s(about: &'static str) -> Parameter {
     Parameter {
         name: "at_s",
         unit: "s",
@@ -23,7 +23,7 @@ pub(in crate::effects) const fn at_s(about: &'static str) -> Parameter {
 }
 
 /// A component of a push, of either sign.
-pub(in crate::effects) const fn component(
+pub(super) const fn component(
     name: &'static str,
     unit: &'static str,
     about: &'static str,

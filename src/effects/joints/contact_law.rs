@@ -125,7 +125,7 @@ fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
 }
 
 /// Changes the laws of the joints with clearance that an effect is given; `help` is for a law that cannot be changed so.
-pub(in crate::effects) fn change(
+pub(super) fn change(
     setting: &Setting,
     mechanism: &mut Mechanism,
     help: &str,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// Gives the sensors of joints that a setting names an error. The sensor of a joint that a drive holds is that
 /// drive's encoder: the servo, and whoever else reads the joint, sees the error, too. Of other joints the
 /// sensor alone is off.
-pub(in crate::effects) fn give(
+pub(super) fn give(
     setting: &Setting,
     mechanism: &mut Mechanism,
     of_drive: &Arc<dyn ReadingError>,

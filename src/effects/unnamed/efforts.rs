@@ -163,7 +163,7 @@ impl Load for AppliedEfforts {
     }
 }
 
-pub(in crate::effects) fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+pub(super) fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let Some(table) = &setting.efforts else { return Ok(()) };
     let find = |name: &String| {
         mechanism.joints().find(|(known, _)| known == name).map(|(_, joint)| joint).ok_or_else(

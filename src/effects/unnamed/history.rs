@@ -103,7 +103,7 @@ impl Load for AppliedHistory {
     }
 }
 
-pub(in crate::effects) fn apply(
+pub(super) fn apply(
     history: &Arc<History>,
     setting: &Setting,
     mechanism: &mut Mechanism,

@@ -4,6 +4,8 @@ use crate::engine::stepping::energy::Energy;
 use crate::engine::stepping::stepper::Stepper;
 
 /// What a run took.
+///
+/// [`run`](crate::engine::run()) has an example.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Work {
     /// Steps of the physics engine.

@@ -8,12 +8,7 @@ pub(super) type End<'a> = (&'a BodyState, Vector3<f64>);
 
 /// The state of a body at the share `s` of a step of `h` s: the quintic through states and accelerations at both
 /// ends; `shift` is the way from one to the other (m, m, rad). It errs by h⁶.
-pub(in crate::engine) fn state(
-    h: f64,
-    s: f64,
-    [from, to]: [End; 2],
-    shift: Vector3<f64>,
-) -> BodyState {
+pub(super) fn state(h: f64, s: f64, [from, to]: [End; 2], shift: Vector3<f64>) -> BodyState {
     let (mut by, mut twist) = (Vector3::zeros(), Vector3::zeros());
     for k in 0..3 {
         let rates = [from.0.twist[k], to.0.twist[k]];

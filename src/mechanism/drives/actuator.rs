@@ -23,6 +23,35 @@ pub enum Drive {
 }
 
 /// A drive on a joint.
+///
+/// ```
+/// use freeplay::mechanism::{Actuator, Attachment, Body, BodyState, Command, Commands, Drive, Dynamics, Evaluation};
+/// use freeplay::mechanism::{JointIndex, Mechanism, Prismatic};
+/// use nalgebra::{UnitComplex, Vector2};
+/// use std::sync::Arc;
+///
+/// /// A constant force of 4 N.
+/// #[derive(Debug)]
+/// struct Push;
+///
+/// impl Commands for Push {
+///     fn at(&self, _t: f64, commands: &mut [Command]) {
+///         commands.fill(Command { position: 4.0, ..Command::default() });
+///     }
+/// }
+///
+/// let mut mechanism = Mechanism::free(vec![Body::new("carriage", 2.0, 0.1, BodyState::ground())]);
+/// let [base, slider] = [None, Some(0)].map(|body| Attachment { body, point: Vector2::zeros() });
+/// let axes = [UnitComplex::identity(); 2];
+/// mechanism.prismatics.push(Prismatic { name: "X".to_owned(), base, slider, axes, play: false });
+/// mechanism.actuators.push(Actuator::new("X", JointIndex::Prismatic(0), Drive::Effort));
+/// mechanism.commands = Arc::new(Push);
+/// let states = [BodyState::ground()];
+/// let (mut dynamics, mut now) = (Dynamics::new(&mechanism), Evaluation::new(&mechanism));
+/// dynamics.forces(&mechanism, 0.0, &states, &mut now);
+/// dynamics.accelerations(&mechanism, &states, &mut now);
+/// assert!((now.drive_forces[0] - 4.0).abs() < 1e-12 && (now.accelerations[0].x - 2.0).abs() < 1e-12);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Actuator {
     /// Name of the joint.

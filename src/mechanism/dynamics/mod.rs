@@ -27,6 +27,20 @@ use crate::contact::Touch;
 use nalgebra::Vector3;
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
+///
+/// ```
+/// use freeplay::mechanism::{Body, BodyState, Dynamics, Evaluation, Mechanism};
+/// use nalgebra::Vector2;
+///
+/// let mut mechanism = Mechanism::free(vec![Body::new("stone", 2.0, 0.1, BodyState::ground())]);
+/// mechanism.gravity = Vector2::new(0.0, -9.81);
+/// let states = [mechanism.bodies[0].start];
+/// let (mut dynamics, mut now) = (Dynamics::new(&mechanism), Evaluation::new(&mechanism));
+/// dynamics.forces(&mechanism, 0.0, &states, &mut now);
+/// dynamics.accelerations(&mechanism, &states, &mut now);
+/// assert!((now.wrenches[0].y + 2.0 * 9.81).abs() < 1e-12);
+/// assert!((now.accelerations[0].y + 9.81).abs() < 1e-12);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Dynamics {
     inverse_masses: Vec<Vector3<f64>>,

@@ -269,11 +269,7 @@ pub(super) fn matrix(rows: &[Row], bodies: usize) -> DMatrix<f64> {
 }
 
 /// The smallest motion of `bodies` bodies that changes the rows by `change`.
-pub(in crate::mechanism) fn smallest(
-    rows: &[Row],
-    bodies: usize,
-    change: DVector<f64>,
-) -> Option<DVector<f64>> {
+pub(super) fn smallest(rows: &[Row], bodies: usize, change: DVector<f64>) -> Option<DVector<f64>> {
     let matrix = matrix(rows, bodies);
     if matrix.iter().chain(change.iter()).any(|x| !x.is_finite()) {
         return None;

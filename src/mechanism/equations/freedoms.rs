@@ -12,6 +12,17 @@ const ZERO: f64 = 1e-13;
 const NO_PART: f64 = 1e-6;
 
 /// How a mechanism can move at a pose.
+///
+/// ```
+/// use freeplay::prelude::*;
+///
+/// let mechanism = assemble(&Scenario::load(None, &["contact.law=\"ideal\"".to_owned()])?)?.mechanism;
+/// let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
+/// let freedoms = mechanism.freedoms(&states);
+/// assert_eq!((freedoms.counted, freedoms.free, freedoms.driven), (3, 3, 3), "three legs drive a platform");
+/// assert!(freedoms.redundant.is_empty() && freedoms.loose.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Freedoms {
     /// By Grübler's count: three for each body less one for each row of a joint.

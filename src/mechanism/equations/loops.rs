@@ -5,6 +5,20 @@ use crate::mechanism::{BodyState, JointIndex, Mechanism};
 use nalgebra::Vector2;
 
 /// A loop of joints, in order around it.
+///
+/// ```
+/// use freeplay::prelude::*;
+/// use std::path::Path;
+///
+/// // A four-bar: one loop of four joints, whose area says on which branch it was put together.
+/// let rig = Scenario::load(Some(Path::new("assets/rigs-planar/planar-2/rig.toml")), &[])?;
+/// let mechanism = assemble(&rig)?.mechanism;
+/// let loops = mechanism.loops();
+/// assert_eq!((loops.len(), loops[0].joints.len()), (1, 4));
+/// let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
+/// assert!(mechanism.signed_area(&loops[0], &states).abs() > 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
     /// The joints.

@@ -20,6 +20,8 @@ const TRUSTED: f64 = 0.05;
 const SHORTEST: f64 = 1e-7;
 
 /// What determines the motion.
+///
+/// [`Tracker`] has an example.
 #[derive(Clone, Debug)]
 pub enum Imposed {
     /// The commands of the drives.
@@ -36,6 +38,21 @@ pub enum Imposed {
 }
 
 /// A mechanism at one instant of its motion.
+///
+/// ```
+/// use freeplay::mechanism::{Imposed, Tracker};
+/// use freeplay::prelude::*;
+///
+/// let mut machine = assemble(&Scenario::load(None, &[])?)?;
+/// let tight = machine.mechanism.without_clearance();
+/// let states = machine.ideal.states(0.0).unwrap();
+/// let mut tracker = Tracker::new(tight, Imposed::Drives, states, 0.0).unwrap();
+/// tracker.advance(0.02).unwrap();
+/// let [tracked, known] = [tracker.states().to_vec(), machine.ideal.states(0.02).unwrap()]
+///     .map(|states| machine.mechanism.output_state(&states).position);
+/// assert!((tracked - known).norm() < 1e-8, "both say where the platform is");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Tracker {
     mechanism: Mechanism,
@@ -242,11 +259,7 @@ fn on(body: Option<usize>, jacobian: Vector3<f64>, bias: f64) -> Row {
 
 /// The motion of `bodies` bodies that meets the rows: exactly where they determine it, else the smallest
 /// in the sense of least squares.
-pub(in crate::mechanism) fn solve(
-    rows: &[Row],
-    bodies: usize,
-    right: &DVector<f64>,
-) -> Option<DVector<f64>> {
+pub(super) fn solve(rows: &[Row], bodies: usize, right: &DVector<f64>) -> Option<DVector<f64>> {
     let matrix = finite(matrix(rows, bodies))?;
     finite(Factors::of(matrix).solve(right)?)
 }

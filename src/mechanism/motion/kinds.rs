@@ -9,6 +9,8 @@ fn planar(v: Vector2<f64>, phi: f64) -> Vector3<f64> {
 }
 
 /// A circle at constant speed and constant orientation: centre + r [cos, sin](2πt/T + ψ).
+///
+/// [`Motion`](crate::mechanism::motion::Motion) has an example.
 #[derive(Clone, Debug)]
 pub struct Circle {
     /// Centre in m.
@@ -75,6 +77,8 @@ impl Motion for Line {
 
 /// Point to point from rest to rest ([`rest_to_rest`]: the lowest polynomial with no jump in
 /// acceleration), and rest before and after.
+///
+/// [`Motion`](crate::mechanism::motion::Motion) has an example.
 #[derive(Clone, Debug)]
 pub struct Quintic {
     /// Pose at the start (m, m, rad).
@@ -87,6 +91,13 @@ pub struct Quintic {
 
 /// The share of the way from rest to rest that is done at time `t` of `time` (s),
 /// `s(τ) = 10τ³ − 15τ⁴ + 6τ⁵` with τ = t/time, and its first and second derivative in 1/s and 1/s².
+///
+/// ```
+/// use freeplay::mechanism::motion::rest_to_rest;
+///
+/// let [place, rate, acceleration] = rest_to_rest(0.5, 1.0);
+/// assert!((place - 0.5).abs() < 1e-12 && (rate - 1.875).abs() < 1e-12 && acceleration.abs() < 1e-12);
+/// ```
 pub fn rest_to_rest(t: f64, time: f64) -> [f64; 3] {
     let tau = (t / time).clamp(0.0, 1.0);
     let s = tau * tau * tau * (10.0 + tau * (6.0 * tau - 15.0));

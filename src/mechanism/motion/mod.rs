@@ -21,6 +21,17 @@ pub struct PathPoint {
 }
 
 /// A motion of the platform. Derivatives are those of the pose, exactly: the drives follow them.
+///
+/// ```
+/// use freeplay::mechanism::motion::{Circle, Motion, Quintic};
+/// use nalgebra::{Vector2, Vector3};
+///
+/// let circle = Circle { center: Vector2::zeros(), radius: 0.05, period: 2.0, phase: 0.0, phi: 0.0 };
+/// assert!((circle.at(0.5).pose - Vector3::new(0.0, 0.05, 0.0)).norm() < 1e-12, "a quarter turn");
+/// let across = Quintic { from: Vector3::zeros(), to: Vector3::new(0.1, 0.0, 0.0), time: 1.0 };
+/// assert_eq!(across.at(1.0).pose.x, 0.1);
+/// assert_eq!(across.at(1.0).rate.x, 0.0, "from rest to rest");
+/// ```
 pub trait Motion: Debug + Send + Sync {
     /// The motion at time `t` in s.
     fn at(&self, t: f64) -> PathPoint;

@@ -4,6 +4,16 @@ use crate::contact::Frame;
 use nalgebra::{UnitComplex, Vector2, Vector3};
 
 /// Where a body is and how it moves: position and velocity of its centre of mass.
+///
+/// ```
+/// use freeplay::mechanism::BodyState;
+/// use nalgebra::{Vector2, Vector3};
+///
+/// let state = BodyState { twist: Vector3::new(0.0, 0.0, 2.0), ..BodyState::ground() };
+/// assert_eq!(state.at(Vector2::new(0.5, 0.0)).twist.y, 1.0, "a rim of 0.5 m at 2 rad/s");
+/// let fallen = state.moved(Vector3::new(0.0, -9.81, 0.0), Vector3::zeros(), 1.0);
+/// assert!((fallen.position.y + 9.81 / 2.0).abs() < 1e-12 && (fallen.rotation.angle() - 2.0).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {
     /// Centre of mass in m.
@@ -85,6 +95,8 @@ pub fn turn(angle: f64) -> UnitComplex<f64> {
 }
 
 /// A rigid body and its state at the start.
+///
+/// [`Revolute`](crate::mechanism::Revolute) has an example.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Name for messages and tables.
@@ -111,6 +123,8 @@ impl Body {
 }
 
 /// A point of a body, or of the ground.
+///
+/// [`Revolute`](crate::mechanism::Revolute) has an example.
 #[derive(Clone, Copy, Debug)]
 pub struct Attachment {
     /// Index of the body, or `None` for the ground.

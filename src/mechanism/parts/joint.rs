@@ -6,6 +6,8 @@ use nalgebra::{UnitComplex, Vector2};
 use std::f64::consts::TAU;
 
 /// How a revolute joint holds its two bodies together.
+///
+/// [`Revolute`] has an example.
 #[derive(Clone, Debug)]
 pub enum Bearing {
     /// The two centres coincide exactly.
@@ -55,6 +57,23 @@ impl Default for NativeContacts {
 
 /// A revolute joint: a bearing ring on one body, a journal on another. Its coordinate is the angle of
 /// the journal's body less that of the ring's.
+///
+/// ```
+/// use freeplay::mechanism::{Attachment, Bearing, Body, BodyState, Mechanism, Revolute};
+/// use nalgebra::Vector2;
+///
+/// // An arm that hangs from the ground by its upper end.
+/// let hanging = BodyState { position: Vector2::new(0.0, -0.5), ..BodyState::ground() };
+/// let mut mechanism = Mechanism::free(vec![Body::new("arm", 1.0, 0.02, hanging)]);
+/// mechanism.revolutes.push(Revolute {
+///     name: "A".to_owned(),
+///     ring: Attachment { body: None, point: Vector2::zeros() },
+///     journal: Attachment { body: Some(0), point: Vector2::new(0.0, 0.5) },
+///     bearing: Bearing::Ideal,
+///     out_of_round: None,
+/// });
+/// assert_eq!(mechanism.freedoms(&[hanging]).free, 1);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Revolute {
     /// Name, such as `A1`.
@@ -72,6 +91,23 @@ pub struct Revolute {
 /// A prismatic joint: a slider that moves along an axis of its base, both keeping the angle between
 /// them. Its coordinate is the distance along the axis from the base's attachment point to the
 /// slider's.
+///
+/// ```
+/// use freeplay::mechanism::{Attachment, Body, BodyState, JointIndex, Mechanism, Prismatic};
+/// use nalgebra::{UnitComplex, Vector2};
+///
+/// let start = BodyState { position: Vector2::new(0.3, 0.0), ..BodyState::ground() };
+/// let mut mechanism = Mechanism::free(vec![Body::new("carriage", 2.0, 0.1, start)]);
+/// mechanism.prismatics.push(Prismatic {
+///     name: "X".to_owned(),
+///     base: Attachment { body: None, point: Vector2::zeros() },
+///     slider: Attachment { body: Some(0), point: Vector2::zeros() },
+///     axes: [UnitComplex::identity(); 2],
+///     play: false,
+/// });
+/// assert!((mechanism.start_coordinate(JointIndex::Prismatic(0)) - 0.3).abs() < 1e-12);
+/// assert_eq!(mechanism.freedoms(&[start]).free, 1);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Prismatic {
     /// Name, such as `P1`.
@@ -101,6 +137,8 @@ impl Prismatic {
 }
 
 /// A joint by its place among those of its kind.
+///
+/// [`Prismatic`] has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointIndex {
     /// Among [`Mechanism::revolutes`](crate::mechanism::Mechanism::revolutes).
@@ -155,6 +193,14 @@ impl Revolute {
 }
 
 /// The angle in rad nearest to `near` among those of a rotation, which differ by whole turns.
+///
+/// ```
+/// use freeplay::mechanism::angle_near;
+/// use nalgebra::UnitComplex;
+/// use std::f64::consts::TAU;
+///
+/// assert!((angle_near(UnitComplex::new(0.1), 2.0 * TAU) - (2.0 * TAU + 0.1)).abs() < 1e-12, "two turns on");
+/// ```
 pub fn angle_near(rotation: UnitComplex<f64>, near: f64) -> f64 {
     let angle = rotation.angle();
     angle + TAU * ((near - angle) / TAU).round()

@@ -6,6 +6,8 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 /// A mechanism at one instant.
+///
+/// [`Load`] has an example.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
     /// Time in s.
@@ -22,6 +24,28 @@ pub type Memory = [f64; 2];
 
 /// A load on the bodies that follows from time and their states, and, of a load with a memory, from what
 /// it remembers.
+///
+/// ```
+/// use freeplay::mechanism::{Body, BodyState, Dynamics, Evaluation, Load, Mechanism, Situation};
+/// use nalgebra::Vector3;
+/// use std::sync::Arc;
+///
+/// /// A wind that grows with time.
+/// #[derive(Debug)]
+/// struct Wind;
+///
+/// impl Load for Wind {
+///     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+///         wrenches[0].x += 3.0 * at.t;
+///     }
+/// }
+///
+/// let mut mechanism = Mechanism::free(vec![Body::new("sail", 2.0, 0.1, BodyState::ground())]);
+/// mechanism.loads.push(Arc::new(Wind));
+/// let mut now = Evaluation::new(&mechanism);
+/// Dynamics::new(&mechanism).forces(&mechanism, 2.0, &[BodyState::ground()], &mut now);
+/// assert_eq!(now.wrenches[0].x, 6.0);
+/// ```
 pub trait Load: Debug + Send + Sync {
     /// Adds the load's wrenches (N, N, N·m about each centre of mass) to those of the bodies. A load with
     /// a memory adds what it would if all had moved as now for long.

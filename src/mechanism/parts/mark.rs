@@ -5,6 +5,8 @@ use nalgebra::Vector2;
 
 /// A point of a body that stays where it is in the body, whatever mass is put on it: from the body's
 /// reference point in its own axes, in m; of the ground in the world.
+///
+/// [`PointSpring`](crate::mechanism::PointSpring) has an example.
 #[derive(Clone, Copy, Debug)]
 pub struct Mark {
     /// The body, or the ground.

@@ -7,6 +7,21 @@ use std::sync::Arc;
 
 /// A spring and damper along the line between two points: with r from the first to the second and n = r/|r|,
 /// the first is pulled by `F n`, the second by `−F n`, `F = k (|r| − l₀) + c d|r|/dt`.
+///
+/// ```
+/// use freeplay::mechanism::{Body, BodyState, Dynamics, Evaluation, Mark, Mechanism, PointSpring};
+/// use nalgebra::Vector2;
+/// use std::sync::Arc;
+///
+/// let start = BodyState { position: Vector2::new(0.3, 0.0), ..BodyState::ground() };
+/// let mut mechanism = Mechanism::free(vec![Body::new("weight", 2.0, 0.1, start)]);
+/// let ends = [None, Some(0)].map(|body| Mark { body, point: Vector2::zeros() });
+/// let spring = PointSpring { ends, stiffness: 100.0, damping: 0.0, free_length: 0.2, pull_only: false };
+/// mechanism.loads.push(Arc::new(spring));
+/// let mut now = Evaluation::new(&mechanism);
+/// Dynamics::new(&mechanism).forces(&mechanism, 0.0, &[start], &mut now);
+/// assert!((now.wrenches[0].x + 10.0).abs() < 1e-12, "10 cm too long, 100 N/m");
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct PointSpring {
     /// The two points.
@@ -77,6 +92,26 @@ pub struct JointSpring {
 
 /// End stops of a joint: beyond either end of its range an effort back into it, `k δ + STEP(δ) δ̇`, never
 /// outward; δ is how far the joint is beyond, and STEP the cubic that rises to the damping over a depth.
+///
+/// ```
+/// use freeplay::contact::HertzStep;
+/// use freeplay::mechanism::{Bearing, BodyState, Dynamics, Evaluation, JointIndex, JointSpring, Stop};
+/// use freeplay::mechanism::pendulum::{Arm, build};
+/// use nalgebra::Vector2;
+/// use std::sync::Arc;
+///
+/// // A pendulum turned by 0.5 rad: a spring of 2 N·m/rad pulls it back, a stop at 0.4 rad with 10 N·m/rad as well.
+/// let arm = Arm { mass: 1.0, inertia: 0.01, length: 0.3 };
+/// let mut pendulum = build(arm, Bearing::Ideal, [0.5, 0.0], Vector2::zeros());
+/// let joint = JointIndex::Revolute(0);
+/// let law = HertzStep { stiffness: 10.0, exponent: 1.0, c_max: 0.0, d_max: 0.1, clip: true };
+/// pendulum.loads.push(Arc::new(JointSpring { joint, stiffness: 2.0, damping: 0.0, free: 0.0 }));
+/// pendulum.loads.push(Arc::new(Stop { joint, range: [-0.4, 0.4], law }));
+/// let mut now = Evaluation::new(&pendulum);
+/// let start: [BodyState; 1] = [pendulum.bodies[0].start];
+/// Dynamics::new(&pendulum).forces(&pendulum, 0.0, &start, &mut now);
+/// assert!((now.wrenches[0].z + 2.0).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Stop {
     /// The joint.

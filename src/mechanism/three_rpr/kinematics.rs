@@ -7,6 +7,18 @@ use nalgebra::{Matrix3, Rotation2, Vector2, Vector3};
 use std::f64::consts::PI;
 
 /// Side lengths of the two triangles.
+///
+/// ```
+/// use freeplay::mechanism::three_rpr::Geometry;
+/// use nalgebra::Vector3;
+///
+/// let paper = Geometry { base_side: 0.66, platform_side: 0.1 };
+/// let pose = Vector3::new(0.02, 0.01, 0.5);
+/// let lengths = [0, 1, 2].map(|leg| paper.leg(pose, leg).norm());
+/// let found = paper.forward(lengths, Vector3::new(0.0, 0.0, 0.4)).unwrap();
+/// assert!((found - pose).norm() < 1e-9);
+/// assert!(paper.singularity_distance(Vector3::zeros()).abs() < 1e-12, "similar triangles, not turned");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geometry {
     /// Side of the base triangle A₁A₂A₃ in m.

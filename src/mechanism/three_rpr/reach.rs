@@ -32,6 +32,18 @@ pub struct Reach {
 
 /// Looks at a motion over `duration` s as finely as it turns ([`looks`]), 2000 times at least; a change of sign
 /// between two looks counts as a passage.
+///
+/// ```
+/// use freeplay::mechanism::motion::Circle;
+/// use freeplay::mechanism::three_rpr::{Geometry, reach};
+/// use nalgebra::Vector2;
+///
+/// let paper = Geometry { base_side: 0.66, platform_side: 0.1 };
+/// let circle = Circle { center: Vector2::zeros(), radius: 0.05, period: 2.0, phase: 0.0, phi: 0.5 };
+/// let found = reach(&paper, &circle, 2.0, [0.2, 0.5]);
+/// assert!(found.breaches.is_empty() && found.singularity_distance > 0.0);
+/// assert!(!reach(&paper, &circle, 2.0, [0.2, found.lengths[0][1] - 1e-3]).breaches.is_empty(), "1 mm too short");
+/// ```
 pub fn reach(geometry: &Geometry, motion: &dyn Motion, duration: f64, stroke: [f64; 2]) -> Reach {
     const FEWEST: usize = 2000;
     let mut reach = Reach {

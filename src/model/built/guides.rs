@@ -18,7 +18,7 @@ pub(super) fn has_play(scenario: &Scenario, joint: &scenario::Prismatic) -> bool
 
 /// The corners of a slider, counterclockwise from the one behind and below as the axis points: each is a joint of its own,
 /// with the guide that it can reach for a ring. They are called after the joint, with `.1` to `.4`.
-pub(in crate::model) fn corners(
+pub(super) fn corners(
     scenario: &Scenario,
     joint: &scenario::Prismatic,
     built: &Prismatic,

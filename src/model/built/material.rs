@@ -4,7 +4,7 @@ use crate::contact::Material;
 use crate::scenario::{ContactKeys, Scenario};
 
 /// What journals, rings and guides are of.
-pub(in crate::model) fn material(scenario: &Scenario) -> Material {
+pub(super) fn material(scenario: &Scenario) -> Material {
     let ContactKeys { youngs_modulus, poisson_ratio, .. } = scenario.contact;
     Material { youngs_modulus, poisson_ratio }
 }

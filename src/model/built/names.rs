@@ -27,7 +27,7 @@ fn steady(mechanism: &Mechanism, Attachment { body, point }: Attachment) -> Mark
 
 /// Names of a machine that was built but for these; `springs` are those between points, each with its
 /// place among the loads.
-pub(in crate::model) fn names(
+pub(super) fn names(
     scenario: &Scenario,
     described: &Described,
     parts: &Parts,

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use std::f64::consts::PI;
 
 /// Mass of a body in kg, inertia about its centre of mass in kg·m², and that centre in its own axes in m.
-pub(in crate::model) fn mass(body: &Body) -> (f64, f64, Vector2<f64>) {
+pub(super) fn mass(body: &Body) -> (f64, f64, Vector2<f64>) {
     let given: Vector2<f64> = body.center_of_mass.unwrap_or_default().into();
     let Some(shape) = &body.shape else {
         return (body.mass.unwrap_or_default(), body.inertia.unwrap_or_default(), given);

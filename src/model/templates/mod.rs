@@ -19,6 +19,17 @@ use crate::scenario::{Mechanism, Problem, Scenario};
 
 /// The same scenario about a machine that describes itself; one that does so already, as it is.
 ///
+/// ```
+/// use freeplay::model::{expand, parts_of};
+/// use freeplay::scenario::Scenario;
+///
+/// let paper = Scenario::load(None, &[])?;
+/// let described = expand(&paper)?;
+/// assert!(described.to_toml().contains("[[body]]"), "a file body by body");
+/// assert_eq!(parts_of(&described)?.bodies.len(), parts_of(&paper)?.bodies.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// A template whose machine cannot be put together, a table that cannot be read.
 pub fn expand(scenario: &Scenario) -> Result<Scenario, Problem> {

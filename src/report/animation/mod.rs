@@ -33,6 +33,28 @@ const STYLE: &str = "text{font:600 15px system-ui,sans-serif;fill:#22262b}.s{fon
     .j{fill:#c3ccd5;stroke:#6d7781}.b{fill:#fff;stroke:#22262b;stroke-width:2}";
 
 /// Draws the frames as an SVG that plays them, 100 times slower than they were.
+///
+/// ```
+/// use freeplay::measure::frames::{FilmFrame, Frames};
+/// use freeplay::report::{Outline, Scene, SceneBody, animation_svg};
+///
+/// let bar = Outline { points: vec![[-0.1, 0.0], [0.1, 0.0]], closed: false, width_m: 0.01 };
+/// let scene = Scene {
+///     title: "A bar that turns".to_owned(),
+///     ground: Vec::new(),
+///     bodies: vec![SceneBody { name: "bar".to_owned(), outlines: vec![bar] }],
+///     joints: Vec::new(),
+///     tracked: 0,
+///     tracked_point: [0.1, 0.0],
+///     charts: Vec::new(),
+/// };
+/// let mut frames = Frames::new(100);
+/// for i in 0..50 {
+///     // The body's x, y and angle, then how far the tracked point is from where it should be.
+///     frames.push(FilmFrame { t: f64::from(i) / 50.0, values: vec![0.0, 0.0, i as f32 / 10.0, 0.0, 0.0], extremes: vec![] });
+/// }
+/// assert!(animation_svg(&scene, &frames).contains("A bar that turns"));
+/// ```
 pub fn animation_svg(scene: &Scene, frames: &Frames) -> String {
     let frames: Vec<&FilmFrame> = frames.all().collect();
     let joints: Vec<usize> =

@@ -10,6 +10,14 @@ const SCRIPT: &str = include_str!("page.js");
 /// given order, and where the numbers come from as (label, value) pairs.
 ///
 /// All texts are escaped; the pictures' SVG goes in as it is.
+///
+/// ```
+/// use freeplay::report::{Fact, page};
+///
+/// let fact = Fact { label: "Peak force".to_owned(), value: "12 N".to_owned(), note: String::new() };
+/// let html = page("A run", "Forces < 20 N.", &[fact], &[], &[("seed".to_owned(), "1".to_owned())]);
+/// assert!(html.contains("Forces &lt; 20 N.") && html.contains("12 N"));
+/// ```
 pub fn page(
     title: &str,
     lead: &str,
@@ -23,6 +31,8 @@ pub fn page(
 }
 
 /// A part of a page.
+///
+/// [`document`] has an example.
 #[derive(Debug)]
 pub enum PagePart<'a> {
     /// The table of main results.
@@ -53,6 +63,8 @@ pub enum PagePart<'a> {
 
 /// A table with a heading and a remark. Without rows it is left out of its page, and so are columns in which no row has a
 /// value.
+///
+/// [`document`] has an example.
 #[derive(Clone, Debug)]
 pub struct PageTable {
     /// Where links find it.
@@ -70,6 +82,20 @@ pub struct PageTable {
 /// Builds a page of any parts: headline, lead sentence, table of contents, the parts in their order.
 ///
 /// All texts are escaped; the pictures' SVG goes in as it is.
+///
+/// ```
+/// use freeplay::report::{PagePart, PageTable, document};
+///
+/// let table = PageTable {
+///     id: "joints",
+///     title: "Joints".to_owned(),
+///     header: vec!["joint".to_owned(), "force (N)".to_owned()],
+///     rows: vec![vec!["A1".to_owned(), "12".to_owned()]],
+///     note: String::new(),
+/// };
+/// let html = document("A run", "All of it.", &[PagePart::Table(table)]);
+/// assert!(html.contains("id=\"joints\"") && html.contains("A1"));
+/// ```
 pub fn document(title: &str, lead: &str, parts: &[PagePart]) -> String {
     let title = escaped(title);
     let lead = escaped(lead);

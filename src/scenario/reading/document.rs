@@ -11,7 +11,7 @@ use crate::scenario::{Law, is_law_key};
 /// A TOML text after `--set` overrides, not yet given a meaning.
 pub(in crate::scenario) struct Document {
     pub(in crate::scenario) table: Table,
-    pub(in crate::scenario) origins: Origins,
+    pub(super) origins: Origins,
 }
 
 /// Where each dotted path of a [`Document`] was written.
@@ -264,7 +264,7 @@ impl Origins {
 }
 
 /// `prefix.key`, or `key` at the top.
-pub(in crate::scenario) fn join(prefix: &str, key: &str) -> String {
+pub(super) fn join(prefix: &str, key: &str) -> String {
     if prefix.is_empty() { key.to_owned() } else { format!("{prefix}.{key}") }
 }
 

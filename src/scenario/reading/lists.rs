@@ -7,7 +7,7 @@ use toml::Table;
 /// `[section]` or `[[section]]`.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "a section with keys, or a list of them")]
-pub(in crate::scenario) enum OneOrMany {
+pub(super) enum OneOrMany {
     One(Table),
     Many(Vec<Table>),
 }
@@ -57,11 +57,7 @@ const MOST_BODIES: usize = 50;
 const MOST_OTHERS: usize = 300;
 
 /// The tables of a list, after a complaint and none of them if they are too many.
-pub(in crate::scenario) fn few(
-    reader: &mut Reader<'_>,
-    section: &str,
-    tables: Vec<Table>,
-) -> Vec<Table> {
+pub(super) fn few(reader: &mut Reader<'_>, section: &str, tables: Vec<Table>) -> Vec<Table> {
     let most = if section == "body" { MOST_BODIES } else { MOST_OTHERS };
     if tables.len() <= most {
         return tables;
@@ -72,7 +68,7 @@ pub(in crate::scenario) fn few(
 }
 
 /// Reads every table of a list.
-pub(in crate::scenario) fn each<T>(
+pub(super) fn each<T>(
     reader: &mut Reader<'_>,
     section: &str,
     tables: Vec<Table>,
@@ -83,7 +79,7 @@ pub(in crate::scenario) fn each<T>(
 }
 
 /// Takes the kind of a list's table; complains where it is missing or unknown.
-pub(in crate::scenario) fn kind(
+pub(super) fn kind(
     reader: &mut Reader<'_>,
     path: &str,
     table: &mut Table,

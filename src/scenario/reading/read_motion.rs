@@ -9,7 +9,7 @@ use crate::scenario::{
 use toml::{Table, Value};
 
 /// The motion of a machine with a kind.
-pub(in crate::scenario) fn motion(
+pub(super) fn motion(
     reader: &mut Reader<'_>,
     mechanism: &Mechanism,
     section: Option<OneOrMany>,

@@ -14,7 +14,7 @@ const MOST: usize = 20;
 /// Reads sections one by one and keeps all their problems.
 pub(in crate::scenario) struct Reader<'a> {
     origins: &'a Origins,
-    pub(in crate::scenario) problems: Vec<Problem>,
+    pub(super) problems: Vec<Problem>,
 }
 
 impl<'a> Reader<'a> {
@@ -46,7 +46,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads `table` as a `T` without defaults; `None` after a complaint.
-    pub(in crate::scenario) fn required<T: DeserializeOwned>(
+    pub(super) fn required<T: DeserializeOwned>(
         &mut self,
         section: &str,
         table: Table,

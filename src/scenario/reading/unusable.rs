@@ -19,7 +19,7 @@ type Unusable = Vec<(String, String, &'static str)>;
 impl Document {
     /// Values that TOML allows and nothing here can use: numbers that are infinite or none, texts that act on what
     /// shows them. The path, what is wrong and what would be right, of the first ones.
-    pub(in crate::scenario) fn unusable(&self) -> Vec<(String, String, &'static str)> {
+    pub(super) fn unusable(&self) -> Vec<(String, String, &'static str)> {
         let mut found = Vec::new();
         unusable_in_table(&self.table, &mut Vec::new(), &mut found);
         found

@@ -9,7 +9,7 @@ use crate::scenario::{
 use std::collections::BTreeSet;
 
 /// Everything wrong with a described machine.
-pub(in crate::scenario) fn problems(scenario: &Scenario, described: &Described) -> Vec<Problem> {
+pub(super) fn problems(scenario: &Scenario, described: &Described) -> Vec<Problem> {
     let mut checks = DescribedChecks { scenario, described, problems: Vec::new() };
     checks.bodies();
     checks.joints();
@@ -24,10 +24,10 @@ pub(in crate::scenario) fn problems(scenario: &Scenario, described: &Described) 
     checks.problems
 }
 
-pub(in crate::scenario) struct DescribedChecks<'a> {
+pub(super) struct DescribedChecks<'a> {
     pub(in crate::scenario) scenario: &'a Scenario,
-    pub(in crate::scenario) described: &'a Described,
-    pub(in crate::scenario) problems: Vec<Problem>,
+    pub(super) described: &'a Described,
+    pub(super) problems: Vec<Problem>,
 }
 
 impl DescribedChecks<'_> {

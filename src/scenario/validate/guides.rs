@@ -5,7 +5,7 @@ use crate::scenario::{JointDrive, Law, Prismatic};
 
 impl DescribedChecks<'_> {
     /// The clearance of a prismatic joint at `path`, and the keys that go with it.
-    pub(in crate::scenario) fn guides(&mut self, path: &str, joint: &Prismatic) {
+    pub(super) fn guides(&mut self, path: &str, joint: &Prismatic) {
         let at = |key: &str| format!("{path}.{key}");
         let numbers = [
             ("length", joint.length),

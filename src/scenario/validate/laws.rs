@@ -5,7 +5,7 @@ use crate::scenario::{Joint, Law, Problem, Revolute, Scenario};
 use std::collections::BTreeSet;
 
 /// All that is wrong with the parameters of contact laws, in `[contact]` and in joints.
-pub(in crate::scenario) fn problems(scenario: &Scenario) -> Vec<Problem> {
+pub(super) fn problems(scenario: &Scenario) -> Vec<Problem> {
     let contact = &scenario.contact;
     let used = used(scenario);
     let mut found = Vec::new();

@@ -6,7 +6,7 @@ use crate::scenario::{GROUND, Joint};
 use std::collections::BTreeSet;
 
 impl DescribedChecks<'_> {
-    pub(in crate::scenario) fn name<'a>(
+    pub(super) fn name<'a>(
         &mut self,
         path: &str,
         name: &'a str,
@@ -24,7 +24,7 @@ impl DescribedChecks<'_> {
         }
     }
 
-    pub(in crate::scenario) fn body(&mut self, path: &str, name: &str) {
+    pub(super) fn body(&mut self, path: &str, name: &str) {
         let known: Vec<&str> =
             self.described.bodies.iter().map(|body| body.name.as_str()).collect();
         if !known.contains(&name) {
@@ -34,7 +34,7 @@ impl DescribedChecks<'_> {
     }
 
     /// A `body.point` that must be there.
-    pub(in crate::scenario) fn point(&mut self, path: &str, name: &str) {
+    pub(super) fn point(&mut self, path: &str, name: &str) {
         let Some((body, point)) = name.split_once('.') else {
             let message =
                 if name.is_empty() { "is missing".to_owned() } else { format!("is \"{name}\"") };
@@ -84,13 +84,13 @@ impl DescribedChecks<'_> {
         }
     }
 
-    pub(in crate::scenario) fn not_negative(&mut self, path: &str, value: f64) {
+    pub(super) fn not_negative(&mut self, path: &str, value: f64) {
         if value < 0.0 {
             self.complain(path, format!("is {value}"), "expected 0 or more");
         }
     }
 
-    pub(in crate::scenario) fn increasing(&mut self, path: &str, low: f64, high: f64) {
+    pub(super) fn increasing(&mut self, path: &str, low: f64, high: f64) {
         if low >= high {
             let message = format!("is [{low}, {high}]");
             self.complain(path, message, "expected two increasing numbers");
@@ -103,7 +103,7 @@ impl DescribedChecks<'_> {
 }
 
 /// The nearest of the known names, or all of them.
-pub(in crate::scenario) fn suggest(name: &str, known: &[&str]) -> String {
+pub(super) fn suggest(name: &str, known: &[&str]) -> String {
     match nearest(name, known) {
         Some(near) => format!("did you mean \"{near}\"?"),
         None if known.is_empty() => "there are none".to_owned(),

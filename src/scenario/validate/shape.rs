@@ -6,7 +6,7 @@ use crate::scenario::{Body, Shape};
 
 impl DescribedChecks<'_> {
     /// A body's mass and inertia, or its shape.
-    pub(in crate::scenario) fn mass(&mut self, path: &str, body: &Body) {
+    pub(super) fn mass(&mut self, path: &str, body: &Body) {
         self.given_mass(path, body);
         let Some(shape) = &body.shape else { return };
         self.sizes(path, shape);

@@ -15,7 +15,7 @@ const LARGEST_GYRATION: f64 = 5.0;
 const LARGEST_TEMPLATE_GYRATION: f64 = 2.0;
 
 /// What no described body of this machine can have.
-pub(in crate::simulate) fn findings(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
+pub(super) fn findings(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
     let mut found = far_centres(scenario, mechanism);
     if found.is_empty() {
         found = inertias(scenario, mechanism);
@@ -24,7 +24,7 @@ pub(in crate::simulate) fn findings(scenario: &Scenario, mechanism: &Mechanism) 
 }
 
 /// What the bodies hardly have.
-pub(in crate::simulate) fn doubts(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
+pub(super) fn doubts(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
     let mut found = masses(scenario, mechanism);
     found.extend(inertia(scenario, mechanism));
     found

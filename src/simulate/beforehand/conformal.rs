@@ -13,7 +13,7 @@ use crate::scenario::Scenario;
 const SMALLEST_CONFORMAL_CLEARANCE: f64 = 1e-6;
 
 /// What is beyond their ends.
-pub(in crate::simulate) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
+pub(super) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
     let checks = [stiffness_form, too_loose, too_deep];
     checks.iter().filter_map(|check| check(scenario, machine)).collect()
 }

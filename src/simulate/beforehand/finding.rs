@@ -4,6 +4,8 @@ use crate::scenario::Problem;
 use std::fmt;
 
 /// How bad a [`Finding`] is.
+///
+/// [`Finding`] has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -14,6 +16,18 @@ pub enum Severity {
 }
 
 /// Something wrong or doubtful about a scenario, with the key that it hangs on.
+///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::simulate::{Severity, findings};
+///
+/// let far = Scenario::load(None, &["motion.radius=0.5".to_owned()])?;
+/// let found = findings(&far, &mut assemble(&far)?);
+/// assert!(found.iter().any(|finding| finding.severity == Severity::Error), "legs are not that long");
+/// let paper = Scenario::load(None, &[])?;
+/// assert!(findings(&paper, &mut assemble(&paper)?).iter().all(|finding| finding.severity != Severity::Error));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// Whether it stops a run.

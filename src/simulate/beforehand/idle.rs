@@ -9,7 +9,7 @@ use crate::scenario::Scenario;
 
 /// Effects without a size, whose defaults change nothing on the machine as declared: a payload of no mass, a
 /// frequency without an amplitude. (Who writes a zero, or varies from one, means it: [`neutral`] is for who asks.)
-pub(in crate::simulate) fn findings(scenario: &Scenario, declared: &Mechanism) -> Vec<Finding> {
+pub(super) fn findings(scenario: &Scenario, declared: &Mechanism) -> Vec<Finding> {
     let effects = scenario.effects.iter().enumerate();
     let idle =
         effects.filter(|(_, setting)| forgotten(setting) && changes_nothing(setting, declared));

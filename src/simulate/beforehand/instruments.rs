@@ -20,7 +20,7 @@ const LARGEST_WEIGHTS: f64 = 10.0;
 /// The earth's pull in m/s².
 const EARTH: f64 = 9.81;
 
-pub(in crate::simulate) fn findings(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
+pub(super) fn findings(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
     let mut told: Vec<(String, Finding)> = Vec::new();
     for (i, sensor) in mechanism.sensors.iter().enumerate() {
         let Some(limit) = limit(mechanism, sensor) else { continue };

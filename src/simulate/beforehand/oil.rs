@@ -15,7 +15,7 @@ const TEARING: f64 = 1e5;
 const SHORT: f64 = 1.0;
 
 /// Films that cavitate although they are said to be full, and bearings that are not short.
-pub(in crate::simulate) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
+pub(super) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
     let contact = &scenario.contact;
     let Some(viscosity) = contact.viscosity else { return Vec::new() };
     let described = scenario.mechanism.described().map(|described| &described.joints[..]);

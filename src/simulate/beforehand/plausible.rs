@@ -28,7 +28,7 @@ const SMALLEST_DENSITY: f64 = 10.0;
 const LARGEST_MACHINE: f64 = 100.0;
 
 /// What is hardly meant.
-pub(in crate::simulate) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
+pub(super) fn findings(scenario: &Scenario, machine: &Machine) -> Vec<Finding> {
     let mut found = Vec::new();
     found.extend(gravity(scenario));
     found.extend(angle(scenario, machine));

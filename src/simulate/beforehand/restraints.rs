@@ -15,7 +15,7 @@ const TWO_TURNS: f64 = 720.0;
 /// How far a start may lie beyond a stop, as a share of its range: a stop that bears the machine gives less.
 const GIVEN_WAY: f64 = 0.01;
 
-pub(in crate::simulate) fn findings(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
+pub(super) fn findings(scenario: &Scenario, mechanism: &Mechanism) -> Vec<Finding> {
     let Some(described) = scenario.mechanism.described() else { return Vec::new() };
     let mut found = Vec::new();
     let mut doubt = |key: String, message: String, help: String| {
@@ -56,7 +56,7 @@ pub(in crate::simulate) fn findings(scenario: &Scenario, mechanism: &Mechanism) 
 }
 
 /// Springs that do nothing, as they are written.
-pub(in crate::simulate) fn idle(scenario: &Scenario) -> Vec<Finding> {
+pub(super) fn idle(scenario: &Scenario) -> Vec<Finding> {
     let springs = scenario.mechanism.described().map_or(&[][..], |described| &described.springs);
     let idle = springs.iter().enumerate();
     let idle = idle.filter(|(_, spring)| spring.stiffness == 0.0 && spring.damping == 0.0);

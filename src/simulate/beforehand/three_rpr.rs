@@ -17,7 +17,7 @@ const DOUBTFUL_SHARE: f64 = 0.2;
 const SAFE_PHI: &str = "0.5236";
 
 /// Legs that leave their stroke, and a platform that comes near a singularity.
-pub(in crate::simulate) fn findings(
+pub(super) fn findings(
     scenario: &Scenario,
     machine: &ThreeRpr,
     motion: &dyn Motion,

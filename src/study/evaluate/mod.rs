@@ -50,6 +50,22 @@ fn places(scenario: &Scenario, asked: &[String]) -> Result<Vec<usize>, EvaluateE
 
 /// Simulates a machine for the figures `asked`, each as the shortest text that reads back as the same number.
 ///
+/// ```
+/// use freeplay::prelude::*;
+/// use freeplay::study::evaluate::{figures, names};
+/// use std::sync::atomic::AtomicBool;
+///
+/// let sets = ["simulation.duration=0.01", "simulation.settle=0"].map(str::to_owned);
+/// let scenario = Scenario::load(None, &sets)?;
+/// assert!(names(&scenario).contains(&"impacts".to_owned()));
+/// let asked = ["simulated_s".to_owned()];
+/// let known = figures(&scenario, &mut assemble(&scenario)?, &["impcats".to_owned()], &AtomicBool::new(false));
+/// assert!(known.unwrap_err().to_string().contains("impacts"), "what was meant");
+/// let values = figures(&scenario, &mut assemble(&scenario)?, &asked, &AtomicBool::new(false))?;
+/// assert_eq!(values, ["0.01"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`EvaluateError`] for an unknown name, before anything is simulated; for a run that broke down, does not balance or
 /// has no such figure (it ended before `simulation.settle`, or takes no step of its own); once `stop` is true.

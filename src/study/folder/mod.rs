@@ -26,6 +26,19 @@ use std::path::{Path, PathBuf};
 
 /// A folder of results in the making. Its files are written into a folder beside it, which takes the
 /// final name only when all of them are there; dropped before, it leaves nothing behind.
+///
+/// ```
+/// use freeplay::study::Folder;
+///
+/// let place = tempfile::tempdir()?;
+/// let target = place.path().join("result");
+/// let folder = Folder::prepare(&target, "result.json", false)?;
+/// std::fs::write(folder.file("result.json"), r#"{"program": "freeplay", "files": []}"#)?;
+/// assert!(!target.exists(), "nothing has the name before all is there");
+/// folder.finish()?;
+/// assert!(target.join("result.json").exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Folder {
     /// As the user wrote it.

@@ -14,6 +14,20 @@ use std::io::Read as _;
 use std::sync::atomic::AtomicBool;
 
 /// A sweep whose every run has a scenario that makes sense by itself.
+///
+/// ```
+/// use freeplay::scenario::Source;
+/// use freeplay::study::sweep::{Plan, Shard};
+/// use std::sync::atomic::AtomicBool;
+///
+/// let sets = ["simulation.duration=0.01", "simulation.settle=0"].map(str::to_owned);
+/// let vary = ["joints.clearance=1e-4,2e-4".to_owned()];
+/// let plan = Plan::new(Source::read(None)?, &sets, &vary, Shard::WHOLE)?;
+/// assert_eq!(plan.identity().runs, 2);
+/// let row = plan.row(1, &AtomicBool::new(false)).unwrap();
+/// assert_eq!(row.len(), plan.identity().columns.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Plan {
     source: Source,

@@ -6,6 +6,14 @@ use std::str::FromStr;
 
 /// Part `index` of `count`, counted from 1: every run whose number leaves `index` − 1 when divided
 /// by `count`. Neighbours, which tend to cost the same, go to different parts.
+///
+/// ```
+/// use freeplay::study::sweep::Shard;
+///
+/// let parts: Vec<Shard> = ["1/2", "2/2"].iter().map(|part| part.parse().unwrap()).collect();
+/// assert!((0..10).all(|run| parts.iter().filter(|part| part.holds(run)).count() == 1), "each run is of one part");
+/// assert!("3/2".parse::<Shard>().is_err() && Shard::WHOLE.holds(7));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Shard {

@@ -33,6 +33,21 @@ pub fn on_threads<R: Send>(
 /// holds a part of the same sweep already, it goes on from there; with `force`, it begins anew.
 /// `progress` is told how many rows are there, and of how many. Once `stop` is true it ends.
 ///
+/// ```
+/// use freeplay::scenario::Source;
+/// use freeplay::study::sweep::{Plan, Shard, sweep};
+/// use std::sync::atomic::AtomicBool;
+///
+/// let sets = ["simulation.duration=0.01", "simulation.settle=0"].map(str::to_owned);
+/// let vary = ["joints.clearance=1e-4,2e-4".to_owned()];
+/// let plan = Plan::new(Source::read(None)?, &sets, &vary, Shard::WHOLE)?;
+/// let place = tempfile::tempdir()?;
+/// let done = sweep(&plan, &place.path().join("sweep"), false, &AtomicBool::new(false), &|_, _| ())?;
+/// let table = std::fs::read_to_string(done.folder.join("sweep.csv"))?;
+/// assert_eq!(table.lines().count(), 3, "a header and two rows");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`SweepError`]; what the folder held stands.
 pub fn sweep(

@@ -49,6 +49,15 @@ pub struct PredictedWear {
 
 /// Time in s of one cycle of a scenario's motion, where the motion says it: a circle's period, a turn of the one joint
 /// that turns at a constant rate.
+///
+/// ```
+/// use freeplay::scenario::Scenario;
+/// use freeplay::study::wear::period_of;
+///
+/// let circle = Scenario::load(None, &["motion.period=2".to_owned()])?;
+/// assert_eq!(period_of(&circle), Some(2.0));
+/// # Ok::<(), freeplay::scenario::Problems>(())
+/// ```
 pub fn period_of(scenario: &Scenario) -> Option<f64> {
     rings::period(scenario)
 }

@@ -15,6 +15,15 @@ use std::f64::consts::{PI, TAU};
 const GRID: usize = 512;
 
 /// Motion of a drive over `[0, period]`.
+///
+/// ```
+/// use freeplay::calibrate::plan::series::FourierSeries;
+///
+/// let motion = FourierSeries::new(2.0, 0.0, vec![[0.1, 0.0], [0.0, 0.05]]);
+/// let [begin, end] = [0.0, 2.0].map(|t| motion.at(t));
+/// assert!(begin[1].abs() < 1e-9 && end[1].abs() < 1e-9, "from rest to rest");
+/// assert!(motion.scaled(2.0, 0.0).extremes().speed > motion.extremes().speed);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct FourierSeries {
     /// Time in s from rest to rest.

@@ -81,6 +81,17 @@ pub fn between(text: &str, mechanism: &Mechanism) -> Result<Vec<Question>, Strin
 
 /// The questions of `--detect`: `KIND`, `KIND:TARGET`, either with `=SIZE`.
 ///
+/// ```
+/// use freeplay::calibrate::plan::asked::detect;
+/// use freeplay::prelude::*;
+///
+/// let mechanism = assemble(&Scenario::load(None, &[])?)?.mechanism;
+/// let questions = detect("payload", &mechanism).unwrap();
+/// assert!(questions[0].words().contains("payload"));
+/// assert!(detect("payloda", &mechanism).unwrap_err().contains("payload"), "what was meant");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// What is wrong with it.
 pub fn detect(text: &str, mechanism: &Mechanism) -> Result<Vec<Question>, String> {

@@ -7,6 +7,7 @@ use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::thresholds::{TABLE, TABLE_PASSES};
 use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::model::Model;
+use crate::calibrate::values::ridge::{Regressed, ridged};
 use crate::effects::{Efforts, Over, Setting};
 use crate::mechanism::JointIndex;
 use nalgebra::{DMatrix, DVector};
@@ -44,9 +45,6 @@ impl DescribedEfforts {
         )
     }
 }
-
-/// Ridges that are tried, as shares of the mean square of a joint's columns.
-const RIDGES: [f64; 6] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
 
 /// The table that removes most of a model's residuals on data that it was not fitted to, and the model with it;
 /// none where none removes more than [`TABLE`] of what stands above noise.
@@ -95,7 +93,6 @@ fn best_tables(
     let (Some(fitted), Some(held)) = (on.look(effects), hold.look(effects)) else {
         return Vec::new();
     };
-    let excess = (held.chi2 - held.white.len() as f64).max(1.0);
     let Some((joints, ranges, sizes)) = motion(problem, split, &search.names) else {
         return Vec::new();
     };
@@ -106,22 +103,9 @@ fn best_tables(
             .map(|(target, white)| columns(target, effects, white, &empty, &sizes));
         let [Some(columns), Some(held_columns)] = pair else { continue };
         let features = columns.ncols() / joints.len();
-        let normal = columns.transpose() * &columns;
-        let rhs = -(columns.transpose() * &fitted.white);
-        let scales: Vec<f64> = (0..joints.len())
-            .map(|i| normal.diagonal().rows(i * features, features).mean())
-            .collect();
-        let best = RIDGES
-            .into_iter()
-            .filter_map(|ridge| {
-                let ridges = DVector::from_fn(columns.ncols(), |i, _| ridge * scales[i / features]);
-                let ridged = &normal + DMatrix::from_diagonal(&ridges);
-                let weights: DVector<f64> = ridged.cholesky()?.solve(&rhs);
-                let left = (&held.white + &held_columns * &weights).norm_squared();
-                Some(((held.chi2 - left) / excess, weights))
-            })
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((share, weights)) = best {
+        let fits = Regressed { columns: &columns, white: &fitted.white };
+        let holds = Regressed { columns: &held_columns, white: &held.white };
+        if let Some((share, weights)) = ridged(fits, holds, joints.len()) {
             let part = |(weights, size): (&[f64], &f64)| weights.iter().map(|w| w * size).collect();
             let coefficients = weights.as_slice().chunks(features).zip(&sizes).map(part).collect();
             found.push((share, Efforts { coefficients, ..empty }));

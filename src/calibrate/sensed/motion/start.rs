@@ -161,7 +161,7 @@ impl Commands for Holding {
 
 /// Puts drives with sampled controllers where their encoders show them at the first row, which need not be where they
 /// are told to be; others stay at their commands.
-pub(in crate::calibrate::sensed) fn placed(mechanism: &mut Mechanism, recording: &Recording) {
+pub(super) fn placed(mechanism: &mut Mechanism, recording: &Recording) {
     let mut first = vec![Command::default(); mechanism.actuators.len()];
     mechanism.commands.at(0.0, &mut first);
     for (drive, first) in mechanism.actuators.iter().zip(&mut first) {
@@ -193,7 +193,7 @@ impl Commands for FixedCommands {
 
 /// A recorded machine with these effects, closed at its first row, and the joints that hold it there beside its
 /// drives.
-pub(in crate::calibrate::sensed) struct Closed {
+pub(super) struct Closed {
     /// The machine, its drives first.
     pub mechanism: Mechanism,
     /// Those joints, and the coordinate of each in m or rad.
@@ -204,7 +204,7 @@ pub(in crate::calibrate::sensed) struct Closed {
 ///
 /// # Errors
 /// An effect that the machine cannot take, joints that do not close.
-pub(in crate::calibrate::sensed) fn closed(
+pub(super) fn closed(
     rig: &Scenario,
     effects: &[Setting],
     recording: &Recording,

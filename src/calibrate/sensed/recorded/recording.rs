@@ -14,6 +14,16 @@ use std::ops::Range;
 use std::path::Path;
 
 /// A recorded run.
+///
+/// ```
+/// use freeplay::calibrate::sensed::recording::Recording;
+///
+/// let columns = vec![Some(vec![0.0, 0.1, 0.2, 0.3]), None];
+/// let recording = Recording::of("run-a", 0.01, 4, columns);
+/// assert_eq!((recording.sensors(), recording.get(1)), (2, None));
+/// assert_eq!(recording.part(1..3).get(0), Some(&[0.1, 0.2][..]));
+/// assert!((recording.duration() - 0.03).abs() < 1e-12);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// The file as the user called it.

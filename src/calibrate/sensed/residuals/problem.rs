@@ -39,11 +39,11 @@ pub struct Run {
 #[derive(Clone, Debug)]
 pub struct Start {
     /// The machine as it was let go.
-    pub(in crate::calibrate::sensed) released: Released,
+    pub(super) released: Released,
     /// Effects that it has.
-    pub(in crate::calibrate::sensed) effects: Vec<Setting>,
+    pub(super) effects: Vec<Setting>,
     /// The same without a swing; none of one that is held at the first row.
-    pub(in crate::calibrate::sensed) still: Option<Mechanism>,
+    pub(super) still: Option<Mechanism>,
 }
 
 impl Start {
@@ -91,7 +91,7 @@ pub struct RigProblem {
     pub control: StepControl,
     /// Simulations that a mean is taken of: one, or several where joints rattle.
     pub replicas: usize,
-    pub(in crate::calibrate::sensed) simulations: AtomicUsize,
+    pub(super) simulations: AtomicUsize,
     motions: Motions,
     /// Machines as they were let go: the start of a free one costs more than a simulation.
     released: Mutex<LruCache<String, Released>>,
@@ -195,11 +195,7 @@ impl RigProblem {
     }
 
     /// The machine with these effects as it was let go in run `index`.
-    pub(in crate::calibrate::sensed) fn released(
-        &self,
-        effects: &[Setting],
-        index: usize,
-    ) -> Result<Released, Stopped> {
+    pub(super) fn released(&self, effects: &[Setting], index: usize) -> Result<Released, Stopped> {
         let key = self.key(effects, index);
         let kept = || self.released.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(machine) = kept().get(&key) {

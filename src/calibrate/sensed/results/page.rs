@@ -14,7 +14,7 @@ const DRAWN: usize = 3;
 const CAPTION: &str = "Declared: the rig as its file has it. Calibrated: with the effects found.";
 
 /// Each measured column of each run as it was recorded and as it is predicted, and what is missed.
-pub(in crate::calibrate::sensed) fn pictures(
+pub(super) fn pictures(
     problem: &RigProblem,
     outcome: &SensedOutcome,
 ) -> Result<Vec<Picture>, ReportError> {

@@ -59,7 +59,7 @@ pub struct Report {
     pub windows: Option<Windows>,
 }
 
-pub(in crate::calibrate::sensed) fn summary(outcome: &SensedOutcome) -> String {
+pub(super) fn summary(outcome: &SensedOutcome) -> String {
     let lasting = outcome.effects.iter().filter(|(effect, _)| effect.history().is_none());
     let list = lasting.map(|(e, _)| name(e)).collect::<Vec<_>>().join(", ");
     let worst = worst(&outcome.errors).map_or_else(String::new, |error| {
@@ -114,7 +114,7 @@ fn as_good(outcome: &SensedOutcome) -> String {
 }
 
 /// What is said of instruments that are noisier or quieter than declared.
-pub(in crate::calibrate::sensed) fn noises(noises: &[OtherNoise]) -> String {
+pub(super) fn noises(noises: &[OtherNoise]) -> String {
     let one = |noise: &OtherNoise| match noise.declared {
         0.0 => {
             let OtherNoise { column, measured, unit, .. } = noise;
@@ -129,7 +129,7 @@ pub(in crate::calibrate::sensed) fn noises(noises: &[OtherNoise]) -> String {
     noises.iter().map(one).collect()
 }
 
-pub(in crate::calibrate::sensed) fn effects(outcome: &SensedOutcome) -> Vec<EffectReport> {
+pub(super) fn effects(outcome: &SensedOutcome) -> Vec<EffectReport> {
     let report = |(effect, params): &crate::calibrate::sensed::values::certainty::Estimated| {
         let own = outcome.events.iter().find(|event| Some(&event.history) == effect.history());
         if let Some(event) = own {
@@ -181,7 +181,7 @@ pub struct LimitReport {
     pub smallest: Option<f64>,
 }
 
-pub(in crate::calibrate::sensed) fn limit(limit: &DetectionLimit) -> LimitReport {
+pub(super) fn limit(limit: &DetectionLimit) -> LimitReport {
     LimitReport {
         kind: limit.kind.name,
         on: ActsOn::at(&limit.target),
@@ -191,7 +191,7 @@ pub(in crate::calibrate::sensed) fn limit(limit: &DetectionLimit) -> LimitReport
     }
 }
 
-pub(in crate::calibrate::sensed) fn ranking(outcome: &SensedOutcome) -> Vec<Ranked> {
+pub(super) fn ranking(outcome: &SensedOutcome) -> Vec<Ranked> {
     let kept = |tried: &Tried| outcome.effects.iter().any(|(effect, _)| effect.is(&tried.effect));
     let mut ranked = Vec::new();
     for (i, round) in outcome.rounds.iter().enumerate() {
@@ -215,10 +215,7 @@ pub(in crate::calibrate::sensed) fn ranking(outcome: &SensedOutcome) -> Vec<Rank
     ranked
 }
 
-pub(in crate::calibrate::sensed) fn residuals(
-    before: &[Left],
-    after: &[Left],
-) -> Vec<ResidualReport> {
+pub(super) fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> {
     let pair = |(before, after): (&Left, &Left)| ResidualReport {
         residual: format!("{} of {}", before.residual.word(), before.of),
         mean_square_before: before.mean_square,

@@ -17,9 +17,9 @@ pub type SensedCalibration = result::FinishedCalibration<Report>;
 pub(in crate::calibrate) struct Made {
     /// What it came to.
     pub report: Report,
-    pub(in crate::calibrate::sensed) calibrated: Scenario,
+    pub(super) calibrated: Scenario,
     pub(in crate::calibrate::sensed) files: Vec<(String, String)>,
-    pub(in crate::calibrate::sensed) pictures: Vec<Picture>,
+    pub(super) pictures: Vec<Picture>,
 }
 
 impl Made {

@@ -17,10 +17,7 @@ impl Search<'_> {
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    pub(in crate::calibrate::sensed) fn calmer(
-        &self,
-        model: &Model,
-    ) -> Result<(Round, Option<Model>), Stopped> {
+    pub(super) fn calmer(&self, model: &Model) -> Result<(Round, Option<Model>), Stopped> {
         let mut round = Round::default();
         let mut best: Option<Model> = None;
         let output = self.problem.declared.names.output.as_deref();

@@ -10,10 +10,7 @@ use crate::effects::Setting;
 
 impl Search<'_> {
     /// The best models with one effect more than this one has, simulated, the best first.
-    pub(in crate::calibrate::sensed) fn beside(
-        &self,
-        model: &Model,
-    ) -> Result<(Round, Vec<Model>), Stopped> {
+    pub(super) fn beside(&self, model: &Model) -> Result<(Round, Vec<Model>), Stopped> {
         (self.tell)(&format!("trying every effect{}", beside(&model.fit.effects)));
         let mut tried = self.screened(model);
         let mut found: Vec<Model> = Vec::new();
@@ -82,11 +79,7 @@ impl Search<'_> {
 
     /// The model with an effect that left nothing but noise beside another one, which may have been mistaken for
     /// an effect of this one.
-    pub(in crate::calibrate::sensed) fn also(
-        &self,
-        model: &Model,
-        effect: &Setting,
-    ) -> Result<Vec<Model>, Stopped> {
+    pub(super) fn also(&self, model: &Model, effect: &Setting) -> Result<Vec<Model>, Stopped> {
         if model.fit.effects.iter().any(|own| own.is(effect)) {
             return Ok(Vec::new());
         }

@@ -19,7 +19,7 @@ const HALVED: usize = 10;
 
 /// The best value of each form that explains more than `least`, those that explain most: beside `own` effects, of which this
 /// is `left`, less what other coordinates to let the machine go from make up for, by which `starts` are the derivatives.
-pub(in crate::calibrate::sensed) fn other_laws(
+pub(super) fn other_laws(
     whole: &Whole,
     mechanism: &Mechanism,
     own: &[Setting],

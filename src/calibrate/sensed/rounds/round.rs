@@ -22,11 +22,7 @@ pub struct Tried {
 
 impl Tried {
     /// One that whole simulations were fitted with, beside a model that it gains so much over.
-    pub(in crate::calibrate::sensed) fn simulated(
-        effect: Setting,
-        gain: f64,
-        beside: &Model,
-    ) -> Self {
+    pub(super) fn simulated(effect: Setting, gain: f64, beside: &Model) -> Self {
         let share = (gain / beside.held).clamp(0.0, 1.0);
         Self { effect, gain, share, fitted: true, chance: 0.0, simulated: true }
     }

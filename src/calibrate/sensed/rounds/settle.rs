@@ -183,7 +183,7 @@ impl Search<'_> {
     }
 
     /// The model without effects that it does not need.
-    pub(in crate::calibrate::sensed) fn needed(&self, mut model: Model) -> Result<Model, Stopped> {
+    pub(super) fn needed(&self, mut model: Model) -> Result<Model, Stopped> {
         let mut i = 0;
         while model.fit.effects.len() > 1 && i < model.fit.effects.len() {
             let mut fewer = model.fit.effects.clone();

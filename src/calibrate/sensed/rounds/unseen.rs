@@ -32,7 +32,7 @@ impl Search<'_> {
     /// Models with one more effect that residuals hardly see without a simulation: how bodies swing in their play shows
     /// it, and how a machine that nothing holds falls. The [promising](Self::promising) ones are fitted to whole simulations.
     /// The best one comes first.
-    pub(in crate::calibrate::sensed) fn unseen(
+    pub(super) fn unseen(
         &self,
         model: &Model,
         tried: &mut Vec<Tried>,
@@ -183,7 +183,7 @@ fn turns_round(names: &[&str], listed: &[Vec<f64>]) -> bool {
 }
 
 /// An effect some way from its values, for what only simulations show.
-pub(in crate::calibrate::sensed) fn away(effect: &Setting) -> Setting {
+pub(super) fn away(effect: &Setting) -> Setting {
     let values = effect.values().map(|(name, value)| {
         let parameter = effect.kind.parameter(name);
         parameter.map_or(value, |p| (value + AWAY * p.step).clamp(p.bounds[0], p.bounds[1]))

@@ -2,10 +2,11 @@
 
 use super::fit::{Fit, FitTarget};
 use super::periodic::frequencies;
+use crate::calibrate::values::candidates::{of_one_phase, step};
 use crate::calibrate::values::least_squares::{REDUCED, REDUCTIONS, too_far};
 use crate::effects::{ALL, CONTAINS, Kind, Scan, ScanRange, Setting};
 use crate::mechanism::Mechanism;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use std::f64::consts::FRAC_PI_2;
 
 /// Every effect that lasts on everything that it can act on, at its neutral values, under one of its names; none
@@ -140,26 +141,14 @@ fn scanned(
                 columns.push(column * (unit / *size));
             }
         }
-        let matrix = DMatrix::from_columns(&columns);
-        let normal = matrix.transpose() * &matrix;
-        let rhs = -(matrix.transpose() * &model.white);
-        let weights = normal.cholesky()?.solve(&rhs);
-        // One phase for all amplitudes: that of the largest; the others by their part in it.
-        let pairs = weights.as_slice().chunks(2);
-        let largest = pairs.clone().max_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])))?;
-        let angle = largest[1].atan2(largest[0]);
         let mut values = vec![0.0; names.len()];
         values[over] = value;
+        let (removed, angle, along) = of_one_phase(&columns, &model.white)?;
         values[phase] = angle;
-        for (&amplitude, pair) in amplitudes.iter().zip(pairs) {
-            let along = pair[0] * angle.cos() + pair[1] * angle.sin();
+        for (&amplitude, along) in amplitudes.iter().zip(along) {
             values[amplitude] = along * step(candidate.kind, names[amplitude]);
         }
-        Some((weights.dot(&rhs), candidate.with(&values)))
+        Some((removed, candidate.with(&values)))
     });
     best(scored.collect())
-}
-
-fn step(kind: &Kind, name: &str) -> f64 {
-    kind.parameter(name).map_or(1.0, |parameter| parameter.step)
 }

@@ -34,7 +34,7 @@ struct AmplitudeParts {
 
 /// Frequencies in Hz at which a repeating candidate with these `amplitudes` explains most of what a model leaves, by
 /// least squares, the best first.
-pub(in crate::calibrate::sensed) fn frequencies(
+pub(super) fn frequencies(
     target: &FitTarget,
     model: &Fit,
     candidate: &Setting,

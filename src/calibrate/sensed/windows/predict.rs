@@ -6,7 +6,7 @@ use super::outcome::{horizons, with};
 use super::plausible;
 use super::report::{channel_errors, input_columns, pictures, predicted, remarks, run_zeros};
 use super::score::{Horizon, score};
-use crate::calibrate::results::predicted::{ERRORS_FILE, PREDICTED_FILE};
+use crate::calibrate::results::predicted::{ERRORS_FILE, PREDICTED_FILE, Predicted};
 use crate::calibrate::results::report::EffectReport;
 use crate::calibrate::results::result::{CalibrateError, publish, refuse, to_json};
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
@@ -18,7 +18,7 @@ use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use crate::study::{Folder, PAGE_FILE, RunError};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant as Clock;
 
 /// What a user asks for in place of the usual windows, in s.
@@ -59,17 +59,6 @@ pub struct WindowsPrediction {
     pub wall_s: f64,
     /// What stands beside this file.
     pub files: Vec<String>,
-}
-
-/// A finished prediction.
-#[derive(Debug)]
-pub struct WindowsPredicted {
-    /// What it came to.
-    pub prediction: WindowsPrediction,
-    /// The text of `errors.json`.
-    pub json: String,
-    /// Where all files are.
-    pub folder: PathBuf,
 }
 
 /// A model and a recording that nothing speaks against.
@@ -132,7 +121,7 @@ pub fn into_folder(
     prepared: &PreparedWindows,
     folder: Folder,
     tell: &dyn Fn(&str),
-) -> Result<WindowsPredicted, CalibrateError> {
+) -> Result<Predicted<WindowsPrediction>, CalibrateError> {
     let started = Clock::now();
     let PreparedWindows { bench, horizons } = prepared;
     let problem =
@@ -189,7 +178,7 @@ pub fn into_folder(
     let page = page(&prediction, &found::sentence(&events), &drawn);
     let texts = [(ERRORS_FILE, &json), (PREDICTED_FILE, &rows), (PAGE_FILE, &page)];
     let folder = publish(folder, &texts, &drawn)?;
-    Ok(WindowsPredicted { prediction, json, folder })
+    Ok(Predicted { prediction, json, folder })
 }
 
 /// The page.

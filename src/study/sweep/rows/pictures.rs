@@ -247,7 +247,7 @@ impl<'a> DrawnOver<'a> {
 }
 
 /// What a varied number is, in words, with its unit; of what has no words here the path.
-pub(in crate::study::sweep) fn in_words(path: &str) -> String {
+pub(super) fn in_words(path: &str) -> String {
     let known = [
         ("joints.clearance", "clearance (m)"),
         ("joints.friction", "coefficient of friction"),

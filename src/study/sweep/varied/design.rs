@@ -12,6 +12,16 @@ use crate::study::sweep::{SweepError, Vary};
 pub(in crate::study::sweep) const MOST_RUNS: usize = 1_000_000;
 
 /// All runs of a sweep, by number.
+///
+/// ```
+/// use freeplay::study::sweep::{Design, Vary};
+///
+/// let varied = ["joints.clearance=1e-6..1e-4:log:3", "contact.friction=0,0.1"].map(Vary::parse);
+/// let design = Design::new(varied.into_iter().collect::<Result<_, _>>()?, 1)?;
+/// assert_eq!(design.runs(), 6, "each value of the one with each of the other");
+/// assert_ne!(design.values(0), design.values(5));
+/// # Ok::<(), freeplay::study::sweep::SweepError>(())
+/// ```
 #[derive(Debug)]
 pub struct Design {
     varied: Vec<Vary>,

@@ -7,6 +7,15 @@ use std::fmt;
 const FORMS: &str = "write PATH=a,b,c or PATH=lo..hi:N, lo..hi:log:N, lo..hi:random:N";
 
 /// A key of the scenario and its values.
+///
+/// ```
+/// use freeplay::study::sweep::Vary;
+///
+/// let vary = Vary::parse("joints.clearance=1e-6..1e-4:log:3")?;
+/// assert_eq!((vary.path.as_str(), vary.count(), vary.is_random()), ("joints.clearance", 3, false));
+/// assert_eq!(vary.value(1).parse::<f64>(), Ok(1e-5));
+/// # Ok::<(), freeplay::study::sweep::SweepError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vary {
     /// Dotted path of the key.
