@@ -116,11 +116,6 @@ const HIDDEN: &[HiddenKind] = &[
     },
 ];
 
-/// The names of all effects that can be hidden.
-pub fn kinds() -> impl Iterator<Item = &'static str> {
-    HIDDEN.iter().map(|hidden| hidden.kind)
-}
-
 /// A number between 0 and 1.
 pub(super) fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64

@@ -1,14 +1,10 @@
 //! The method held against what it should find: known effects of random size, hidden in synthetic
 //! recordings.
 
-mod grid;
 mod hidden;
 mod rates;
 mod rig;
 
-pub use grid::trials;
-pub use hidden::kinds;
-pub use rates::rates;
 pub(in crate::calibrate) use rates::{covered, is_phase, near, share};
 pub use rig::recorded;
 

@@ -49,8 +49,8 @@ pub const ALIKE: f64 = 3.0;
 
 /// Drop of Σ of squares on data not used for the fit that an effect has to bring: twice the logarithm of a
 /// thousand candidates, 14, and as much again for what noise is not white. Where joints rattle bias and noise come
-/// from few replicas, and with others the same model may cost some 100 less: twice that (trials of the 3-RPR,
-/// `assets/self-test`; an effect three times as large as what hides it brings a thousand and more).
+/// from few replicas, and with others the same model may cost some 100 less: twice that (trials of the
+/// 3-RPR; an effect three times as large as what hides it brings a thousand and more).
 pub const GAIN: [f64; 2] = [28.0, 200.0];
 
 /// The same for each value of an effect: Akaike's price of a parameter.
@@ -96,7 +96,7 @@ pub const JUDGED: usize = 24;
 pub const MOSTLY: f64 = 0.5;
 
 /// Share of the best rival's drop of cost that a rival has to bring by its first simulation to be simulated again
-/// at the values that this led to: what the trials of the 3-RPR (`assets/self-test`) rest on.
+/// at the values that this led to: what trials of the 3-RPR gave.
 pub const PROMISING: f64 = 0.6;
 
 /// Simulations of a run after which no further effect is looked for: what two slow cores do in two minutes, at

@@ -161,3 +161,21 @@ fn wrong(all: &[TriedTrial]) -> String {
     }
     format!("\n| seed | machine | hidden | floors | answer |\n|---|---|---|---|---|\n{rows}")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The table that users read is that of the trials beside it, and these are of one version.
+    #[test]
+    fn the_docs_show_the_table_that_follows_from_the_trials() {
+        let trials = include_str!("../../../../assets/self-test/trials.jsonl");
+        let all: Vec<TriedTrial> =
+            trials.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert!(all.windows(2).all(|pair| pair[0].version == pair[1].version));
+        let docs = include_str!("../../../../docs/calibrate.md");
+        let (_, rest) = docs.split_once("<!-- rates -->\n").unwrap();
+        let (shown, _) = rest.split_once("<!-- end of rates -->").unwrap();
+        assert_eq!(shown, rates(&all));
+    }
+}
