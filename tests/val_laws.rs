@@ -35,7 +35,7 @@ fn asked(kind: &LawKind, e: f64) -> Arc<dyn ForceLaw> {
 /// The laws with a hysteresis that grows with the elastic force.
 fn hysteretic() -> impl Iterator<Item = &'static LawKind> {
     let by_e = |kind: &&LawKind| kind.losses == Losses::Restitution || kind.name == "hunt-crossley";
-    ALL.into_iter().filter(by_e)
+    ALL.iter().copied().filter(by_e)
 }
 
 /// The closed form of the head of this file: e of a law with the factor h.
@@ -275,10 +275,10 @@ fn the_table_of_steps_is_what_runs_give() {
     let lacks =
         |kind: &&LawKind| !rows.iter().any(|row| row.starts_with(&format!("| {} |", kind.name)));
     let lacking: Vec<String> =
-        ALL.into_iter().filter(lacks).map(|kind| Errors::of(kind).row(kind.name)).collect();
+        ALL.iter().copied().filter(lacks).map(|kind| Errors::of(kind).row(kind.name)).collect();
     assert!(lacking.is_empty(), "the table lacks these rows:\n{}", lacking.join("\n"));
     assert_eq!(rows.len(), ALL.len(), "rows of no law, or twice");
-    for (kind, written) in ALL.into_iter().zip(rows) {
+    for (kind, written) in ALL.iter().copied().zip(rows) {
         let made = Errors::of(kind).row(kind.name);
         let cells = |row: &str| -> Vec<String> {
             row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()

@@ -53,7 +53,7 @@ const INTRODUCTION: &str = "A contact law is chosen by contact.law, for one join
 
 /// What is printed.
 const CATALOGUE: Catalogue<LawKind> =
-    Catalogue { all: &ALL, introduction: INTRODUCTION, explained, example, described };
+    Catalogue { all: ALL, introduction: INTRODUCTION, explained, example, described };
 
 pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let one = arguments.name.as_deref().and_then(named);

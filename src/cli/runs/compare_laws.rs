@@ -42,7 +42,7 @@ pub fn kinds(list: &str) -> Result<Vec<&'static LawKind>, String> {
     let mut kinds: Vec<&'static LawKind> = Vec::new();
     for name in list.split(',').map(str::trim) {
         let Some(kind) = named(name) else {
-            let names = ALL.map(|kind| kind.name);
+            let names: Vec<&str> = ALL.iter().map(|kind| kind.name).collect();
             let help = match nearest(name, &names) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("expected `all`, or some of {}", names.join(", ")),

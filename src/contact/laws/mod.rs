@@ -35,7 +35,7 @@ pub use loss::Loss;
 pub use spring::{ElasticForce, Logarithmic, PowerSpring};
 
 /// All laws, in the order in which they are listed.
-pub const ALL: [&LawKind; 17] = [
+pub const ALL: &[&LawKind] = &[
     &HERTZ_STEP,
     &hertz::KIND,
     &kelvin_voigt::KIND,
@@ -57,7 +57,7 @@ pub const ALL: [&LawKind; 17] = [
 
 /// The law of a name.
 pub fn named(name: &str) -> Option<&'static LawKind> {
-    ALL.into_iter().find(|kind| kind.name == name)
+    ALL.iter().copied().find(|kind| kind.name == name)
 }
 
 #[cfg(test)]

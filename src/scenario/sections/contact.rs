@@ -242,7 +242,7 @@ pub enum Law {
 
 /// The names of all laws, the physics engine's contact and ideal joints after the default.
 static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let others = laws::ALL.into_iter().filter(|kind| **kind != HERTZ_STEP).map(|kind| kind.name);
+    let others = laws::ALL.iter().filter(|kind| kind.name != HERTZ_STEP.name).map(|kind| kind.name);
     [Law::HertzStep, Law::Native, Law::Ideal].map(Law::name).into_iter().chain(others).collect()
 });
 

@@ -157,7 +157,7 @@ fn joints(scenario: &Scenario) -> impl Iterator<Item = (usize, Option<Law>, Writ
 
 /// The keys of all laws.
 fn keys() -> BTreeSet<&'static str> {
-    let parameters = laws::ALL.into_iter().flat_map(|kind| kind.parameters);
+    let parameters = laws::ALL.iter().flat_map(|kind| kind.parameters);
     parameters.map(|parameter| parameter.name).collect()
 }
 
