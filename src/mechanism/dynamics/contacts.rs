@@ -1,8 +1,7 @@
 //! What journals do to their rings, and what is to be remembered of it.
 
-use super::Dynamics;
 use crate::contact::{After, Contact, Touch, circle_in_ring};
-use crate::mechanism::{Attachment, Bearing, BodyState, Evaluation, Mechanism, Revolute};
+use crate::mechanism::{Attachment, Bearing, BodyState, Mechanism, Revolute};
 use nalgebra::{Vector2, Vector3};
 
 /// Where the contact of a joint is described, the force on its journal, and the wrenches that it adds to.
@@ -47,7 +46,7 @@ pub(super) fn touch(joint: &Revolute, memory: Option<After>, states: &[BodyState
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flight {
     /// Index of the joint.
-    joint: usize,
+    pub joint: usize,
     /// Centres of ring and journal.
     ring: Attachment,
     journal: Attachment,
@@ -68,36 +67,11 @@ impl Flight {
         joints.filter_map(flight).collect()
     }
 
+    /// Whether it does at these states.
     #[inline(always)]
-    fn flies(&self, states: &[BodyState]) -> bool {
+    pub fn flies(&self, states: &[BodyState]) -> bool {
         let eccentricity = self.journal.centre(states) - self.ring.centre(states);
         eccentricity.norm_squared() <= self.reach
-    }
-}
-
-impl Dynamics {
-    /// Fills `out` with the weights and what contacts add to them, where nobody asks where journals in flight are: contacts
-    /// without a force are not described.
-    #[inline]
-    pub(super) fn touch_on_path(
-        &self,
-        mechanism: &Mechanism,
-        t: f64,
-        states: &[BodyState],
-        out: &mut Evaluation,
-    ) {
-        out.wrenches.copy_from_slice(&self.weights);
-        let Evaluation { contacts, reactions, wrenches, .. } = out;
-        for flight in &self.flights {
-            let i = flight.joint;
-            let (contact, reaction) = (&mut contacts[i], &mut reactions[i]);
-            if !flight.flies(states) {
-                let joint = &mechanism.revolutes[i];
-                touch(joint, self.memory(i, t), states, Touched { contact, reaction, wrenches });
-            } else if contact.normal_force != 0.0 {
-                (*contact, *reaction) = (Contact::default(), Vector2::zeros());
-            }
-        }
     }
 }
 

@@ -6,17 +6,10 @@
 //! no drive prescribes.
 
 use super::Dynamics;
-use super::pairs::Pair;
+use super::pairs::{Pair, PairStart};
 use crate::mechanism::equations::telescope::{PairMotion, Telescope};
 use crate::mechanism::{BodyState, Evaluation, Mechanism, Situation, turn};
 use nalgebra::{Vector2, Vector3};
-
-/// Where a pair is at the start of a step: its common centre of mass, and L, in m.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PairStart {
-    centre: Vector2<f64>,
-    length: f64,
-}
 
 impl Dynamics {
     /// How many coordinates there are.

@@ -14,17 +14,16 @@ mod remembered;
 mod solved;
 
 use self::contacts::{Flight, Touched, reached, touch, touches};
-use self::coordinates::PairStart;
 use self::groups::JointGroup;
-use self::pairs::{Pair, PlainServo};
+use self::pairs::{Pair, PairStart, PlainServo};
 use super::equations::constraints::{Constraints, Rigid, groups};
 use super::equations::telescope::{Slideway, Telescope};
 use super::{
     BodyState, Drive, Evaluation, Held, JointIndex, Mechanism, Memory, Prismatic, Situation,
     angle_near,
 };
-use crate::contact::Touch;
-use nalgebra::Vector3;
+use crate::contact::{Contact, Touch};
+use nalgebra::{Vector2, Vector3};
 
 /// The equations of motion of a mechanism, with the workspace that evaluating them needs.
 ///
@@ -232,6 +231,29 @@ impl Dynamics {
         out.t = t;
         self.touch_on_path(mechanism, t, states, out);
         self.push(mechanism, t, states, out);
+    }
+
+    /// Fills `out` with the weights and what contacts add to them, where nobody asks where journals in flight are.
+    #[inline]
+    fn touch_on_path(
+        &self,
+        mechanism: &Mechanism,
+        t: f64,
+        states: &[BodyState],
+        out: &mut Evaluation,
+    ) {
+        out.wrenches.copy_from_slice(&self.weights);
+        let Evaluation { contacts, reactions, wrenches, .. } = out;
+        for flight in &self.flights {
+            let i = flight.joint;
+            let (contact, reaction) = (&mut contacts[i], &mut reactions[i]);
+            if !flight.flies(states) {
+                let joint = &mechanism.revolutes[i];
+                touch(joint, self.memory(i, t), states, Touched { contact, reaction, wrenches });
+            } else if contact.normal_force != 0.0 {
+                (*contact, *reaction) = (Contact::default(), Vector2::zeros());
+            }
+        }
     }
 
     /// Adds what drives and loads do.

@@ -5,7 +5,7 @@ use crate::mechanism::equations::telescope::{PairMasses, PairMotion, Slideway, T
 use crate::mechanism::{
     Actuator, BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, Prismatic,
 };
-use nalgebra::{UnitComplex, Vector3};
+use nalgebra::{UnitComplex, Vector2, Vector3};
 
 /// Two moving bodies on one prismatic joint, which no other rigid joint holds.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +20,13 @@ pub(super) struct Pair {
     /// Whether the joint's state follows from no drive's force.
     pub passive: bool,
     way: Slideway,
+}
+
+/// Where a pair is at the start of a step: its common centre of mass, and L, in m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PairStart {
+    pub centre: Vector2<f64>,
+    pub length: f64,
 }
 
 /// A servo whose drive reads right and is rigidly connected, on a pair.

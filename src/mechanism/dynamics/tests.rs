@@ -1,6 +1,6 @@
 use super::*;
 use crate::mechanism::{Actuator, Attachment, Body, Command, Commands};
-use nalgebra::{UnitComplex, Vector2};
+use nalgebra::UnitComplex;
 use std::sync::Arc;
 
 #[derive(Debug)]
