@@ -10,14 +10,13 @@ pub use rig::recorded;
 
 use super::results::outcome::{LegsOutcome, Verdict, calibrate};
 use super::rounds::way::names;
-use super::values::errors;
-use super::values::model::{LegsCase, SearchError};
+use super::values::model::SearchError;
 use crate::effects::Setting;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// One rig to be understood.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LegsTrial {
     /// Hidden effects by name; none in a rig that lacks nothing.
     pub hidden: Vec<String>,
@@ -31,14 +30,9 @@ pub struct LegsTrial {
     pub seed: u64,
 }
 
-/// What became of a trial: a row of the self-test's table.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// What became of a trial.
+#[derive(Clone, Debug)]
 pub struct LegsTried {
-    /// The trial.
-    #[serde(flatten)]
-    pub trial: LegsTrial,
-    /// Hidden effects with their joints, in words.
-    pub lacks: String,
     /// Verdict.
     pub verdict: Verdict,
     /// Effects found, in words.
@@ -49,15 +43,8 @@ pub struct LegsTried {
     pub values: Vec<HiddenValue>,
     /// How large what is hidden is: the declared model's largest error on the validation run, in floors.
     pub floors: f64,
-    /// How large the smallest of several hidden effects is: the same of the true model without it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub least: Option<f64>,
     /// The same of the calibrated model.
     pub worst_ratio: f64,
-    /// Simulations it took.
-    pub simulations: usize,
-    /// Version of the program.
-    pub version: String,
 }
 
 /// A hidden value and its estimate, in SI units.
@@ -82,33 +69,7 @@ pub fn run(trial: &LegsTrial) -> Result<LegsTried, SearchError> {
     let hidden_names: Vec<&str> = trial.hidden.iter().map(String::as_str).collect();
     let without = if trial.withheld { &hidden_names[..] } else { &[] };
     let outcome = calibrate(&case, without, &|_| {})?;
-    let least = least(&case, &hidden)?;
-    Ok(LegsTried { least, ..judge(trial, &hidden, &outcome) })
-}
-
-/// The largest error in floors on the validation run of the true model less one of its effects, the one whose
-/// lack makes the least; none of a single effect.
-///
-/// # Errors
-/// A rig that cannot be simulated.
-pub fn least(case: &LegsCase, hidden: &[Setting]) -> Result<Option<f64>, SearchError> {
-    if hidden.len() < 2 {
-        return Ok(None);
-    }
-    let run = case.runs.len() - 1;
-    let logs = |effects: &[Setting]| Ok::<_, SearchError>(case.baseline(effects, &[], None)?.logs);
-    let truth = logs(hidden)?;
-    let mut least = f64::INFINITY;
-    for lacking in hidden {
-        let others: Vec<Setting> =
-            hidden.iter().filter(|effect| !effect.is(lacking)).cloned().collect();
-        let without = logs(&others)?;
-        let log = &case.runs[run].log;
-        let errors = errors::of_run(case, log, "validation", &without[run], &truth[run]);
-        let largest = errors.iter().map(|error| error.before / error.floor).fold(0.0, f64::max);
-        least = least.min(largest);
-    }
-    Ok(Some(least))
+    Ok(judge(trial, &hidden, &outcome))
 }
 
 fn judge(trial: &LegsTrial, hidden: &[Setting], outcome: &LegsOutcome) -> LegsTried {
@@ -142,21 +103,12 @@ fn judge(trial: &LegsTrial, hidden: &[Setting], outcome: &LegsOutcome) -> LegsTr
         }
     }
     let validation = || outcome.errors.iter().filter(|error| error.role == "validation");
-    let words = |effects: &[Setting]| match effects {
-        [] => "nothing".to_owned(),
-        effects => names(effects),
-    };
     LegsTried {
-        trial: trial.clone(),
-        lacks: words(hidden),
         verdict: outcome.verdict,
-        found: words(&found),
+        found: if found.is_empty() { "nothing".to_owned() } else { names(&found) },
         right,
         values,
         floors: validation().map(|e| e.before / e.floor).fold(0.0, f64::max),
-        least: None,
         worst_ratio: validation().map(|e| e.after / e.floor).fold(0.0, f64::max),
-        simulations: outcome.simulations,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
     }
 }

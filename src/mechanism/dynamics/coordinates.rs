@@ -8,8 +8,8 @@
 use super::Dynamics;
 use super::pairs::{Pair, PairStart};
 use crate::mechanism::equations::telescope::{PairMotion, Telescope};
-use crate::mechanism::{BodyState, Evaluation, Mechanism, Situation, turn};
-use nalgebra::{Vector2, Vector3};
+use crate::mechanism::{BodyState, Evaluation, Mechanism, turn};
+use nalgebra::{UnitComplex, Vector2, Vector3};
 
 impl Dynamics {
     /// How many coordinates there are.
@@ -173,10 +173,7 @@ impl Dynamics {
                 }
             }
         }
-        let at = Situation { t: mechanism.epoch + t, mechanism, states };
-        for (load, memory) in mechanism.loads.iter().zip(&self.memories) {
-            load.add_after(at, *memory, &mut out.wrenches);
-        }
+        self.load(mechanism, t, states, out);
         self.accelerate_unpaired(mechanism, states, out);
         let (threes, lengths) = row.split_at_mut(3 * self.turning());
         let (alone, pairs) = threes.as_chunks_mut().0.split_at_mut(self.unpaired.len());
@@ -217,7 +214,7 @@ impl Pair {
         state: &Telescope,
         centre: Vector2<f64>,
         velocity: Vector2<f64>,
-        [base, slider]: [nalgebra::UnitComplex<f64>; 2],
+        [base, slider]: [UnitComplex<f64>; 2],
     ) -> [BodyState; 2] {
         let [s0, s1] = self.masses.shares();
         let d = state.between_centres();

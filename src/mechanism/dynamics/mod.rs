@@ -259,6 +259,12 @@ impl Dynamics {
     /// Adds what drives and loads do.
     fn push(&mut self, mechanism: &Mechanism, t: f64, states: &[BodyState], out: &mut Evaluation) {
         self.drive(mechanism, t, states, out);
+        self.load(mechanism, t, states, out);
+    }
+
+    /// Adds what loads do.
+    #[inline]
+    fn load(&self, mechanism: &Mechanism, t: f64, states: &[BodyState], out: &mut Evaluation) {
         let at = Situation { t: mechanism.epoch + t, mechanism, states };
         for (load, memory) in mechanism.loads.iter().zip(&self.memories) {
             load.add_after(at, *memory, &mut out.wrenches);
