@@ -59,6 +59,7 @@
 //! | [`model`] | scenario → bodies, joints, drives → a machine put together |
 //! | [`simulate`] | checks beforehand, rows, summary |
 //! | [`report`] | pictures and the page, from plain data |
+//! | [`results`] | folders of results, which appear whole or not at all |
 //! | [`study`] | what users come for: a run and its files, comparisons, sweeps |
 //! | [`calibrate`] | what a declared model lacks, by recorded runs of the machine |
 //! | [`cli`] | one file per command |
@@ -72,6 +73,7 @@ pub mod measure;
 pub mod mechanism;
 pub mod model;
 pub mod report;
+pub mod results;
 pub mod scenario;
 pub mod simulate;
 pub mod study;

@@ -1,8 +1,8 @@
 //! The result of a run compared with another one. Up to a line of dashes its summary, then its time series.
 #![no_main]
 
+use freeplay::results::Folder;
 use freeplay::scenario::DEFAULT_TOML;
-use freeplay::study::Folder;
 use freeplay::study::diff::{DIFF_FILE, Side, diff_results};
 use libfuzzer_sys::{fuzz_mutator, fuzz_target};
 use std::path::{Path, PathBuf};

@@ -9,11 +9,12 @@ use freeplay::calibrate::sensed::windows::predict::{self as windows, AskedWindow
 use freeplay::calibrate::{self as calibration, answer, recording};
 use freeplay::cli::{compare_steps, effect_described, law_described, laws_to_compare};
 use freeplay::measure::spelling::nearest;
+use freeplay::results::Folder;
 use freeplay::scenario::Law;
 use freeplay::simulate::{assemble, findings};
 use freeplay::study::compare::by_law::{LAWS_COMPARED_FILE, compare_laws};
 use freeplay::study::compare::{COMPARE_FILE, Options};
-use freeplay::study::{self, Check, Folder, Watch};
+use freeplay::study::{self, Check, Watch};
 use freeplay::{contact, effects as catalogue};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};

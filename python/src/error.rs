@@ -1,12 +1,12 @@
 //! Errors as exceptions of `pyfreeplay`, each with what, where, and what would be right.
 
 use freeplay::calibrate::result::CalibrateError;
+use freeplay::results::{FolderError, RunError};
 use freeplay::scenario::{Location, Problem, Problems};
 use freeplay::simulate::{Finding, Severity};
 use freeplay::study::compare::CompareError;
 use freeplay::study::evaluate::EvaluateError;
 use freeplay::study::sweep::SweepError;
-use freeplay::study::{FolderError, RunError};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::ffi::c_str;
 use pyo3::prelude::*;

@@ -12,8 +12,8 @@ use super::sensed::ways::by_residuals;
 use super::values::errors::{ChannelError, worst};
 use super::{plausibility, sensed};
 use crate::effects::{Kind, named};
+use crate::results::Folder;
 use crate::scenario::Scenario;
-use crate::study::Folder;
 use std::path::{Path, PathBuf};
 
 /// A rig and recordings that nothing speaks against, before anything is simulated.

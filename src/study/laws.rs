@@ -1,12 +1,12 @@
 //! What a contact law does in one hit: its force over the penetration, and what it returns over the speed.
 
-use super::files::to_json;
-use super::folder::Folder;
-use super::run_error::{RunError, refused};
 use crate::contact::laws::{LawKind, Losses};
 use crate::contact::{ForceLaw, hit, impact};
 use crate::mechanism::Bearing;
 use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
+use crate::results::Folder;
+use crate::results::to_json;
+use crate::results::{RunError, refused};
 use crate::scenario::{Law, Problem, Problems, Scenario};
 use crate::simulate::assemble;
 use serde::{Serialize, Serializer};

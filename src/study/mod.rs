@@ -6,16 +6,12 @@ mod check;
 pub mod compare;
 pub mod diff;
 pub mod evaluate;
-mod files;
 mod film;
-mod folder;
-mod forecast;
 pub mod laws;
 pub mod paper;
 mod pictures;
 mod recent;
 mod run;
-mod run_error;
 mod run_page;
 pub mod sweep;
 mod watch;
@@ -25,10 +21,5 @@ pub use check::{
     Check, CheckedBody, CheckedJoint, CheckedLeg, CheckedMachine, Engines, FindingText, IdealNeeds,
     check,
 };
-pub(crate) use files::PAGE_FILE;
-pub use folder::{Folder, FolderError, abandon, default_name};
-pub use forecast::Forecast;
 pub use run::{Recorded, RunOutcome, SUMMARY_FILE, Terms, recorded, run};
-pub use run_error::RunError;
-pub(crate) use run_error::refused;
 pub use watch::Watch;

@@ -1,17 +1,17 @@
 //! One run into a folder.
 
 use super::chaos::{self, Chaos, ComparedRow};
-use super::files::{PAGE_FILE, PLAYER_FILE, keep_scenario, scenario_files, to_json};
 use super::film::RunFilm;
-use super::folder::Folder;
-use super::forecast::Beginning;
 use super::pictures::Gallery;
-use super::run_error::{RunError, refused};
 use super::run_page::page;
 use super::wear::{WEAR_FILE, wear_csv, wear_picture, wearing};
 use crate::engine::{self, Instant};
 use crate::mechanism::Mechanism;
 use crate::report::{Picture, ReportError};
+use crate::results::Beginning;
+use crate::results::Folder;
+use crate::results::{PAGE_FILE, PLAYER_FILE, keep_scenario, scenario_files, to_json};
+use crate::results::{RunError, refused};
 use crate::scenario::Scenario;
 use crate::simulate::{Machine, Recorder, Summary, TimeSeries};
 use std::fs::{self, File};
@@ -146,7 +146,8 @@ pub fn recorded(
 ///
 /// ```
 /// use freeplay::prelude::*;
-/// use freeplay::study::{Folder, SUMMARY_FILE, Terms};
+/// use freeplay::results::Folder;
+/// use freeplay::study::{SUMMARY_FILE, Terms};
 /// use std::sync::atomic::AtomicBool;
 ///
 /// let sets = ["simulation.duration=0.01", "simulation.settle=0"].map(str::to_owned);

@@ -1,8 +1,8 @@
 //! The page of a run: the main result in words, the figures in a table, the pictures.
 
 use super::chaos;
-use super::files::{PLAYER_FILE, SCENARIO_FILE};
 use crate::report::{self, Fact, PagePart, Picture, length, number};
+use crate::results::{PLAYER_FILE, SCENARIO_FILE};
 use crate::scenario::Law;
 use crate::simulate::Summary;
 

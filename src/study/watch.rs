@@ -1,7 +1,7 @@
 //! A watch on the work of many runs, which ends it where it would take too long.
 
-use super::forecast::Forecast;
-use super::run_error::RunError;
+use crate::results::Forecast;
+use crate::results::RunError;
 use std::fmt;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -4,7 +4,7 @@ use super::{Missing, ResultsTable, emps, pendulum};
 use crate::calibrate::results::charts::{POINTS, thinned};
 use crate::calibrate::results::result::to_json;
 use crate::report::{self, Curve, PagePart, Panel, Picture, Style, panels_svg};
-use crate::study::{Folder, PAGE_FILE, RunError, refused};
+use crate::results::{Folder, PAGE_FILE, RunError, refused};
 use serde_json::json;
 use std::fs;
 use std::path::PathBuf;

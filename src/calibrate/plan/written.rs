@@ -11,9 +11,9 @@ use super::report::{
 use crate::calibrate::results::result::{CalibrateError, publish, to_json};
 use crate::calibrate::sensed::start::machine;
 use crate::mechanism::{Imposed, Mechanism, Tracker, angle_near};
+use crate::results::{Folder, PAGE_FILE, RunError};
 use crate::scenario::{self, Scenario};
 use crate::simulate::Provenance;
-use crate::study::{Folder, PAGE_FILE, RunError};
 use std::path::PathBuf;
 use std::time::Instant as Clock;
 

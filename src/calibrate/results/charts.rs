@@ -9,7 +9,7 @@ use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log};
 use crate::mechanism::{Command, Commands};
 use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg};
-use crate::study::RunError;
+use crate::results::RunError;
 
 /// Corner in Hz of the low-pass that everything is drawn through: that of the errors.
 pub(super) const CORNER: f64 = 25.0;

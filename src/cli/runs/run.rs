@@ -7,11 +7,12 @@ use crate::cli::shared::progress::Progress;
 use crate::cli::shared::signals;
 use crate::cli::shared::table::paragraph;
 use crate::report::{length, number};
+use crate::results::RunError;
 use crate::scenario::Motion;
 use crate::simulate::unacting;
 use crate::simulate::{Summary, assemble, findings};
 use crate::study::chaos::chaotic;
-use crate::study::{self, RunError, RunOutcome, SUMMARY_FILE, Terms};
+use crate::study::{self, RunOutcome, SUMMARY_FILE, Terms};
 use clap::Args;
 use std::fmt::Write as _;
 

@@ -2,10 +2,10 @@
 
 use super::output;
 use crate::measure::dialect;
+use crate::results::{FolderError, RunError};
 use crate::scenario::{Location, Problem, Problems, Scenario};
 use crate::simulate::{Finding, Severity, doubts};
 use crate::study::sweep::SweepError;
-use crate::study::{FolderError, RunError};
 use std::path::Path;
 use std::process::ExitCode;
 

@@ -1,8 +1,8 @@
 //! Options that commands share.
 
 use super::output;
+use crate::results::{Folder, FolderError, default_name};
 use crate::scenario::{Problems, Scenario, Source};
-use crate::study::{Folder, FolderError, default_name};
 use clap::Args;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@
 
 use super::failure::{Failure, GO_ON};
 use super::output::complain;
-use crate::study::abandon;
+use crate::results::abandon;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Mutex, PoisonError};
 

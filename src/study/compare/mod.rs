@@ -25,11 +25,11 @@ pub use usable::{NativeUse, QuantityVerdict};
 pub use verdict::in_words;
 
 use super::chaos::{self, Chaos, ComparedRow};
-use super::files::{PAGE_FILE, keep_scenario, scenario_files};
-use super::folder::Folder;
-use super::run_error::{RunError, refused};
 use super::watch::Watch;
 use crate::engine;
+use crate::results::Folder;
+use crate::results::{PAGE_FILE, keep_scenario, scenario_files};
+use crate::results::{RunError, refused};
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
 use plan::{ComparePlan, plan};
@@ -131,7 +131,7 @@ pub fn compare(
     let texts = [COMPARE_FILE, TABLE_FILE, SUMMARY_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let drawn = pictures.iter().map(|picture| picture.file.clone());
     comparison.files = texts.chain(scenario_files(scenario)).chain(drawn).collect();
-    let json = super::files::to_json(&comparison);
+    let json = crate::results::to_json(&comparison);
     let write = |name: &str, text: &str| fs::write(folder.file(name), text).map_err(refused(name));
     write(COMPARE_FILE, &json)?;
     write(TABLE_FILE, &table::csv(&comparison))?;

@@ -6,8 +6,8 @@ use super::statistics::Behaviour;
 use super::usable::NativeUse;
 use super::verdict::{criteria, in_words};
 use crate::report::{Fact, PagePart, PageTable, Picture, document, length, number};
+use crate::results::SCENARIO_FILE;
 use crate::scenario::Law;
-use crate::study::files::SCENARIO_FILE;
 
 /// The page as HTML.
 pub fn page(comparison: &Comparison, pictures: &[Picture]) -> String {

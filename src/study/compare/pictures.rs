@@ -7,9 +7,9 @@ use super::quantities::index;
 use super::result::{Comparison, RowResult};
 use crate::engine::{self, Schedule};
 use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, number, panels_svg};
+use crate::results::RunError;
 use crate::scenario::{Law, Scenario};
 use crate::study::chaos::{self, Chaos};
-use crate::study::run_error::RunError;
 
 /// Time in s that the curves side by side show: the first hits and what follows.
 const SHOWN: f64 = 0.06;

@@ -10,9 +10,9 @@ pub use models::{diff_models, simulated_time};
 pub use result::{Diff, FigureRow};
 pub use results::diff_results;
 
-use super::files::SCENARIO_FILE;
 use super::run::SUMMARY_FILE;
-use super::run_error::RunError;
+use crate::results::RunError;
+use crate::results::SCENARIO_FILE;
 use crate::scenario::{Problem, Problems, Scenario};
 use std::path::{Path, PathBuf};
 

@@ -6,12 +6,12 @@ use super::series::{TimeTable, overlaid};
 use super::{DiffError, FinishedDiff, Side, unlike, unlike_times};
 use crate::measure::student::t95;
 use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
+use crate::results::Folder;
+use crate::results::RunError;
 use crate::scenario::{Problem, Scenario};
 use crate::simulate::{Provenance, measured};
 use crate::study::Watch;
 use crate::study::compare::{CompareMeasured, Mean, QUANTITIES, machine, measure, tolerance};
-use crate::study::folder::Folder;
-use crate::study::run_error::RunError;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::time::Instant as Clock;
 

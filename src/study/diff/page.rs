@@ -3,9 +3,9 @@
 use super::result::{Diff, FigureRow};
 use super::{DIFF_FILE, DiffError, FinishedDiff, TABLE_FILE};
 use crate::report::{PagePart, PageTable, Picture, document, length, number};
-use crate::study::files::{PAGE_FILE, to_json};
-use crate::study::folder::Folder;
-use crate::study::run_error::{RunError, refused};
+use crate::results::Folder;
+use crate::results::{PAGE_FILE, to_json};
+use crate::results::{RunError, refused};
 use std::fs;
 
 /// The picture of every run.

@@ -8,8 +8,8 @@ use super::variants::{LARGE, SMALL, machine};
 use crate::engine;
 use crate::measure::envelope::Envelope;
 use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, panels_svg};
+use crate::results::RunError;
 use crate::scenario::Scenario;
-use crate::study::run_error::RunError;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// Stretches that a signal is kept in: about one per pixel of a picture's width.

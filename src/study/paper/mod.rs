@@ -23,10 +23,10 @@ pub use variants::{CLEARANCES, Variant, scenarios};
 pub use verdict::{ClaimVerdict, JudgedClaim};
 
 use super::chaos;
-use super::files::{PAGE_FILE, SCENARIO_FILE, to_json};
-use super::folder::Folder;
-use super::run_error::{RunError, refused};
 use super::watch::Watch;
+use crate::results::Folder;
+use crate::results::{PAGE_FILE, SCENARIO_FILE, to_json};
+use crate::results::{RunError, refused};
 use crate::scenario::{Problem, Scenario};
 use crate::simulate::Provenance;
 use claims::CLAIMS;

@@ -5,7 +5,7 @@ use super::items::QUANTITIES;
 use super::result::Paper;
 use super::verdict::{ClaimVerdict, JudgedClaim};
 use crate::report::{PagePart, PageTable, Picture, document, length, number};
-use crate::study::files::SCENARIO_FILE;
+use crate::results::SCENARIO_FILE;
 
 /// The page as HTML.
 pub fn page(paper: &Paper, pictures: &[Picture]) -> String {

@@ -1,7 +1,7 @@
 //! Why the study has no files.
 
+use crate::results::RunError;
 use crate::scenario::{Problem, Problems};
-use crate::study::run_error::RunError;
 
 /// Why the study has no files.
 #[derive(Debug, thiserror::Error)]

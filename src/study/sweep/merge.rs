@@ -3,9 +3,9 @@
 use super::result::{SweepOutcome, put, refuse_edited_table, write};
 use super::rows::journal::{self, JOURNAL_FILE, RunRows};
 use super::{RECORD_FILE, Record, Shard, SweepError};
-use crate::study::files::SCENARIO_FILE;
-use crate::study::folder::Folder;
-use crate::study::run_error::RunError;
+use crate::results::Folder;
+use crate::results::RunError;
+use crate::results::SCENARIO_FILE;
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -32,7 +32,7 @@ pub use varied::design::Design;
 pub use varied::vary::{Range, Values, Vary};
 pub use work::{Ongoing, on_threads, sweep};
 
-use super::run_error::RunError;
+use crate::results::RunError;
 use crate::scenario::Problems;
 use std::path::PathBuf;
 

@@ -3,9 +3,9 @@
 use super::result::{PARQUET_FILE, SweepOutcome, TABLE_FILE, put, refuse_edited_table, write};
 use super::rows::journal::{JOURNAL_FILE, Journal, RunRows, kept, lock};
 use super::{Identity, Plan, RECORD_FILE, Record, Shard, SweepError};
-use crate::study::files::SCENARIO_FILE;
-use crate::study::folder::Folder;
-use crate::study::run_error::{RunError, refused};
+use crate::results::Folder;
+use crate::results::SCENARIO_FILE;
+use crate::results::{RunError, refused};
 use rayon::prelude::*;
 use std::fs;
 use std::io;

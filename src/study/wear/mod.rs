@@ -21,13 +21,13 @@ pub use stage::Stage;
 
 pub(super) use around::{WEAR_FILE, wear_csv, wear_picture, wearing};
 
-use super::files::{PAGE_FILE, SCENARIO_FILE, to_json};
-use super::folder::Folder;
-use super::run_error::{RunError, refused};
 use super::watch::Watch;
 use crate::contact::Play;
 use crate::engine;
 use crate::model::{Machine, assemble, expand};
+use crate::results::Folder;
+use crate::results::{PAGE_FILE, SCENARIO_FILE, to_json};
+use crate::results::{RunError, refused};
 use crate::scenario::Scenario;
 use files::{SHAPES_FILE, STAGES_FILE, WORN_FILE};
 use rings::Ring;

@@ -9,7 +9,7 @@ use crate::report::{
     Curve, PagePart, PageTable, Panel, Picture, ReportError, Style, document, length, number,
     panels_svg,
 };
-use crate::study::files::SCENARIO_FILE;
+use crate::results::SCENARIO_FILE;
 
 /// Stages whose shapes are drawn beside the last.
 const DRAWN: usize = 4;

@@ -1,8 +1,8 @@
 //! What a prediction of wear is asked for, and why there may be none.
 
 use crate::report::ReportError;
+use crate::results::RunError;
 use crate::scenario::Problem;
-use crate::study::run_error::RunError;
 
 /// What is to be predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,9 +15,9 @@ use crate::calibrate::sensed::values::errors;
 use crate::calibrate::values::errors::{ChannelError, judged};
 use crate::effects::Setting;
 use crate::report::{Picture, Style};
+use crate::results::{Folder, RunError};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
-use crate::study::{Folder, RunError};
 use std::time::Instant as Clock;
 
 impl From<Broken> for CalibrateError {

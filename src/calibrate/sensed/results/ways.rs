@@ -15,9 +15,9 @@ use crate::calibrate::sensed::intake::prepare::{CalibratedAs, Prepared};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Stopped};
 use crate::calibrate::sensed::windows::report::into_folder as by_windows;
+use crate::results::{Folder, RunError};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
-use crate::study::{Folder, RunError};
 use std::time::Instant as Clock;
 
 /// Calibrates and writes everything about it into `folder`. `tell` hears what is being tried.

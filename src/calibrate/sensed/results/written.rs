@@ -6,8 +6,8 @@ use crate::calibrate::results::result::{
     self, CALIBRATED_FILE, CalibrateError, REPORT_FILE, publish, to_json,
 };
 use crate::report::Picture;
+use crate::results::{Folder, PAGE_FILE};
 use crate::scenario::Scenario;
-use crate::study::{Folder, PAGE_FILE};
 
 /// A finished calibration.
 pub type SensedCalibration = result::FinishedCalibration<Report>;

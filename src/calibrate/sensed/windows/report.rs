@@ -17,9 +17,9 @@ use crate::calibrate::sensed::results::written::{SensedCalibration, names_of_fil
 use crate::calibrate::sensed::rounds::words::name;
 use crate::calibrate::values::errors::ChannelError;
 use crate::report::{Curve, Picture, Style, panels_svg};
+use crate::results::{Folder, RunError};
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
-use crate::study::{Folder, RunError};
 use std::time::Instant as Clock;
 
 pub(super) const NOTE: &str = "This machine forgets its start, so errors are those of predictions over windows: the start of \

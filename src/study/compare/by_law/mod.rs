@@ -14,12 +14,12 @@ use super::quantities::{COUNT, QUANTITIES};
 use super::statistics::Mean;
 use crate::contact::laws::LawKind;
 use crate::measure::student::t95;
+use crate::results::Folder;
+use crate::results::refused;
+use crate::results::{PAGE_FILE, keep_scenario, scenario_files, to_json};
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
 use crate::study::Watch;
-use crate::study::files::{PAGE_FILE, keep_scenario, scenario_files, to_json};
-use crate::study::folder::Folder;
-use crate::study::run_error::refused;
 use matching::{Matched, own, under};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::fs;
@@ -96,7 +96,7 @@ pub fn compare_laws(
         write(&picture.file, &picture.svg)?;
     }
     write(PAGE_FILE, &page::page(&compared, &pictures))?;
-    let folder = folder.finish().map_err(crate::study::run_error::RunError::from)?;
+    let folder = folder.finish().map_err(crate::results::RunError::from)?;
     Ok(FinishedByLaw { compared, json, folder })
 }
 

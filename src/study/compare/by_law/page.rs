@@ -4,12 +4,12 @@ use super::result::{LawRow, LawsCompared};
 use crate::report::{
     Curve, Label, PagePart, PageTable, Panel, Picture, Style, document, number, panels_svg,
 };
+use crate::results::RunError;
+use crate::results::SCENARIO_FILE;
 use crate::study::compare::probe::CompareMeasured;
 use crate::study::compare::quantities::{ComparedQuantity, QUANTITIES, index};
 use crate::study::compare::statistics::Mean;
 use crate::study::compare::verdict::in_words;
-use crate::study::files::SCENARIO_FILE;
-use crate::study::run_error::RunError;
 
 /// Quantities of the first table and of the picture: where the machine is, what its joints and its output feel,
 /// how often.

@@ -5,7 +5,7 @@
 //! the run and the cells), so that a line that somebody edited is not taken for a result.
 
 use super::record::sha256;
-use crate::study::run_error::{RunError, refused};
+use crate::results::{RunError, refused};
 use crate::study::sweep::{Identity, Shard, SweepError};
 use csv::StringRecord;
 use serde::{Deserialize, Serialize};

@@ -5,8 +5,8 @@ use super::pictures;
 use super::row::{FORCES, Status, of_joint, status};
 use super::statistics::{self, Spread, groups, has_starts, shared};
 use crate::report::{self, Fact, PagePart, PageTable, Picture, number};
+use crate::results::SCENARIO_FILE;
 use crate::study::compare::QUANTITIES;
-use crate::study::files::SCENARIO_FILE;
 use crate::study::sweep::Record;
 use statrs::statistics::{Data, OrderStatistics};
 

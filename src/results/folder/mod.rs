@@ -13,7 +13,7 @@ mod making;
 mod mark;
 mod marker;
 mod swap;
-pub(in crate::study) mod sync;
+pub(crate) mod sync;
 
 pub use folder_error::FolderError;
 pub use making::abandon;
@@ -28,7 +28,7 @@ use std::path::{Path, PathBuf};
 /// final name only when all of them are there; dropped before, it leaves nothing behind.
 ///
 /// ```
-/// use freeplay::study::Folder;
+/// use freeplay::results::Folder;
 ///
 /// let place = tempfile::tempdir()?;
 /// let target = place.path().join("result");

@@ -18,7 +18,7 @@ const JUDGED_ROWS: u64 = 1000;
 /// What a whole run will cost.
 ///
 /// ```
-/// use freeplay::study::Forecast;
+/// use freeplay::results::Forecast;
 ///
 /// assert!(Forecast { seconds: Some(1e5), bytes: 0.0 }.is_too_much(), "a day");
 /// assert!(!Forecast { seconds: Some(10.0), bytes: 1e6 }.is_too_much());
@@ -59,7 +59,7 @@ impl fmt::Display for Forecast {
 
 /// Watches the beginning of a run.
 #[derive(Debug)]
-pub(super) struct Beginning {
+pub(crate) struct Beginning {
     started: Clock,
     schedule: Schedule,
     rows: u64,

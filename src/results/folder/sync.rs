@@ -8,13 +8,13 @@ use std::path::Path;
 ///
 /// # Errors
 /// If it cannot take it: some file systems find out only now that they are full.
-pub(in crate::study) fn file(path: &Path) -> io::Result<()> {
+pub(crate) fn file(path: &Path) -> io::Result<()> {
     // Windows syncs through handles that may write only.
     OpenOptions::new().write(true).open(path)?.sync_all()
 }
 
 /// Waits until the disk has the names in a folder. Where a system cannot do that, it sees to it itself.
-pub(in crate::study) fn names(folder: &Path) {
+pub(crate) fn names(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
