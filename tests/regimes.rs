@@ -22,7 +22,7 @@ use std::process::Command;
 type Speed = Option<(&'static str, [f64; 2])>;
 
 /// Templates.
-const MACHINES: [(&str, Speed); 8] = [
+const MACHINES: [(&str, Speed); Mechanism::KINDS.len()] = [
     ("3rpr", Some(("period = 1.0", [0.03, 3.0]))),
     ("3rrr", Some(("period = 1.0", [0.03, 3.0]))),
     ("five-bar", Some(("period = 1.0", [0.02, 3.0]))),
@@ -211,6 +211,12 @@ fn campaign(numbers: std::ops::Range<u64>) {
     let ran =
         all.iter().filter(|(_, word)| word.as_ref().is_ok_and(|word| word.starts_with("ran")));
     assert!(3 * ran.count() > all.len(), "most of what is legal runs");
+}
+
+#[test]
+fn every_template_is_among_the_machines() {
+    let missing = Mechanism::KINDS.map(|kind| MACHINES.iter().all(|(known, _)| *known != kind));
+    assert!(!missing.contains(&true), "{:?}", Mechanism::KINDS);
 }
 
 #[test]

@@ -1,27 +1,27 @@
 //! What happens where a journal touches its bearing: force laws as functions of plain numbers, and
 //! the forces that one clearance joint puts on its two bodies.
 //!
-//! `joint` is the geometry of a round journal in a round ring, `rings` that of other rings; [`laws`] is the list of force laws.
+//! `clearance` is the geometry of a round journal in a round ring, `rings` that of other rings; [`laws`] is the list of force laws.
 //! Nothing here knows an engine, a mechanism or a file.
 
+mod clearance;
 mod film;
 mod force_law;
 mod friction;
 mod hertz_step;
 mod impact;
-mod joint;
 pub mod laws;
 mod rings;
 mod step;
 mod stiffness;
 mod touch;
 
+pub use clearance::{Clearance, Contact, Frame, circle_in_ring, valid_penetration};
 pub use film::{Extent, Film};
 pub use force_law::ForceLaw;
 pub use friction::{CoulombFriction, Friction};
 pub use hertz_step::HertzStep;
 pub use impact::{Impact, Moment, hit, impact};
-pub use joint::{Clearance, Contact, Frame, circle_in_ring, valid_penetration};
 pub use rings::out_of_round::OutOfRound;
 pub use rings::ring_shape::RingShape;
 pub use rings::ring_table::{FEWEST_SAMPLES, RingTable};

@@ -32,7 +32,7 @@ pub(in crate::calibrate) use intake::prepare;
 pub use intake::prepare::prepare;
 pub use judged::{left, limits, unnamed};
 pub use motion::{basis, released, simulate, start};
-pub use recorded::{estimate, recording};
+pub use recorded::{recording, view};
 pub use residuals::{baseline, problem, residual};
 pub use results::ways::into_folder;
 pub(in crate::calibrate) use results::{charts, ways};

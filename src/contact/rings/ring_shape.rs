@@ -1,6 +1,6 @@
 //! A bearing ring that is not a circle, and a guide, which is none at all; how journals slide on rings of any shape.
 
-use crate::contact::joint::sliding;
+use crate::contact::clearance::sliding;
 use crate::contact::{After, Clearance, Contact, Frame, OutOfRound, RingTable, circle_in_ring};
 use nalgebra::{UnitComplex, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;

@@ -1,9 +1,9 @@
 //! What a planned motion may take of a machine: strokes, speeds, accelerations, forces of its drives, and how near it
 //! may come to singular poses.
 
-use crate::calibrate::sensed::estimate::effort_sensor;
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::start::commands;
+use crate::calibrate::sensed::view::effort_sensor;
 use crate::measure::filter::derivative;
 use crate::mechanism::{Command, JointIndex, Mechanism, Reads};
 use crate::scenario::{Joint, Scenario};

@@ -6,12 +6,12 @@
 
 use crate::calibrate::record::clean;
 use crate::calibrate::sensed::baseline::Baseline;
-use crate::calibrate::sensed::estimate::View;
 use crate::calibrate::sensed::problem::{RigProblem, Segment, Stopped};
 use crate::calibrate::sensed::recording::Recording;
 use crate::calibrate::sensed::residual::Name;
 use crate::calibrate::sensed::simulate::{record, with_noise};
 use crate::calibrate::sensed::start::{LEAD, machine};
+use crate::calibrate::sensed::view::View;
 use crate::effects::Setting;
 use crate::engine::StepControl;
 use crate::mechanism::{Drive, Mechanism};

@@ -3,8 +3,8 @@
 use super::found::{Event, events};
 use super::series::FreedomSeries;
 use crate::calibrate::sensed::motion::start::machine;
-use crate::calibrate::sensed::recorded::estimate::View;
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::View;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Stopped};
 use crate::effects::Setting;
 

@@ -2,7 +2,7 @@
 
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::motion::motions::Motions;
-use crate::calibrate::sensed::recorded::estimate::{View, position_sensor};
+use crate::calibrate::sensed::recorded::view::{View, position_sensor};
 use crate::calibrate::sensed::residuals::residual::{ResidualKind, residuals};
 use crate::measure::filter::derivative;
 use crate::mechanism::{JointIndex, Mechanism};

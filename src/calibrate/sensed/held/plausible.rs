@@ -4,8 +4,8 @@
 use super::bench::suits;
 use crate::calibrate::sensed::motion::simulate::outputs;
 use crate::calibrate::sensed::motion::start::told_by;
-use crate::calibrate::sensed::recorded::estimate::{output_sensor, position_sensor};
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::{output_sensor, position_sensor};
 use crate::calibrate::sensed::thresholds::{CLOCK, FACTORS, TOLERATED};
 use crate::calibrate::sensed::windows::plausible::{scaled_by, spliced};
 use crate::mechanism::{Cascade, Drive, Mechanism, Reads};

@@ -3,8 +3,8 @@
 
 use crate::calibrate::measured::mistaken::{Mistake, mistakes, rms};
 use crate::calibrate::sensed::motion::start::told_by;
-use crate::calibrate::sensed::recorded::estimate::{effort_sensor, position_sensor};
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::{effort_sensor, position_sensor};
 use crate::calibrate::sensed::thresholds::FACTORS;
 use crate::calibrate::sensed::windows::plausible::scaled_by;
 use crate::measure::filter::ZeroPhase;

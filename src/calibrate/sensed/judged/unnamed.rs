@@ -1,6 +1,6 @@
 //! What remains when no effect explains it: efforts in the measured joints as a table of what they depend on.
 
-use crate::calibrate::sensed::recorded::estimate::position_sensor;
+use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Split, Stopped};
 use crate::calibrate::sensed::residuals::residual::{Name, ResidualKind};
 use crate::calibrate::sensed::rounds::search::Search;

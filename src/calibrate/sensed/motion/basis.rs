@@ -6,8 +6,8 @@
 //! joints nobody measures.
 
 use super::shown::{MeasuredCommands, MeasuredPose, commanded, coordinate, pose};
-use crate::calibrate::sensed::recorded::estimate::View;
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::View;
 use crate::mechanism::{
     Actuator, Bearing, BodyState, Drive, Idle, Imposed, JointIndex, Mark, Mechanism, Reads, Tracker,
 };
@@ -262,7 +262,7 @@ mod tests {
     use super::super::motions::Motions;
     use super::super::start::machine;
     use super::*;
-    use crate::calibrate::sensed::recorded::estimate::effort_sensor;
+    use crate::calibrate::sensed::recorded::view::effort_sensor;
     use crate::calibrate::sensed::residuals::residual::{ResidualKind, residuals};
     use crate::mechanism::Command;
     use crate::scenario::Scenario;

@@ -2,7 +2,7 @@
 //! a motion takes several times as long as asking what it takes.
 
 use super::basis::{Basis, Moved};
-use crate::calibrate::sensed::recorded::estimate::View;
+use crate::calibrate::sensed::recorded::view::View;
 use crate::mechanism::{Mechanism, Posed, Tracker};
 use std::collections::{HashSet, VecDeque};
 use std::ops::Range;

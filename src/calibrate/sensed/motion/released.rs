@@ -4,8 +4,8 @@
 use super::simulate::{deviation, record};
 use super::start::{Closed, LEAD, closed, placed, release};
 use crate::calibrate::results::outcome::inverse_normal;
-use crate::calibrate::sensed::recorded::estimate::position_sensor;
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::calibrate::values::least_squares::{Best, FitEffort, Free, least_squares};
 use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};

@@ -1,7 +1,7 @@
 //! Coordinates and poses as sensors and commands show them, as commands and motions of a machine.
 
 use super::simulate::deviation;
-use crate::calibrate::sensed::recorded::estimate::{View, effort_sensor};
+use crate::calibrate::sensed::recorded::view::{View, effort_sensor};
 use crate::measure::filter::derivative;
 use crate::mechanism::motion::{Motion, PathPoint};
 use crate::mechanism::{Command, Commands, Drive, JointIndex, Mechanism, TrackerFrame};

@@ -1,8 +1,8 @@
 //! What the sensors of a machine would have recorded.
 
 use super::start::told_by;
-use crate::calibrate::sensed::recorded::estimate::position_sensor;
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::engine::{Halt, LONGEST_STEP, Schedule, StepControl, run};
 use crate::measure::filter::ZeroPhase;
 use crate::measure::spline::CubicSpline;

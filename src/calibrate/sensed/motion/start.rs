@@ -1,7 +1,7 @@
 //! The machine where a recording begins.
 
-use crate::calibrate::sensed::recorded::estimate::position_sensor;
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};
 use crate::measure::spline::CubicSpline;

@@ -1,8 +1,8 @@
 //! Files of recordings, and what they hold: which column is of which sensor ([`heads`]), rows on a grid ([`samples`]), columns of
-//! no sensor ([`cells`]), a run as a whole ([`recording`]), and its samples smoothed as needed ([`estimate`]).
+//! no sensor ([`cells`]), a run as a whole ([`recording`]), and its samples smoothed as needed ([`view`]).
 
 pub(super) mod cells;
-pub mod estimate;
-pub(super) mod heads;
+pub(super) mod columns;
 pub mod recording;
 pub(super) mod samples;
+pub mod view;

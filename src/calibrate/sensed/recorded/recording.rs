@@ -1,7 +1,7 @@
 //! Recorded runs of any mechanism: a CSV file with a column for each sensor, one row a sample.
 
 use super::cells::Cells;
-use super::heads::{TIME, choose};
+use super::columns::{TIME, choose};
 use super::samples::{FileRow, Samples, unread, wrong};
 use crate::calibrate::sensed::thresholds::{LOWEST_RATE, PLAIN_BAND, SHORTEST};
 use crate::measure::bounded;

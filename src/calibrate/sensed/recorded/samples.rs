@@ -1,7 +1,7 @@
 //! The rows of a file of samples, put on a grid where they came early or late.
 
 use super::cells::Cells;
-use super::heads::Places;
+use super::columns::Places;
 use crate::calibrate::sensed::thresholds::{LATE, LATE_SHARE, LATE_STEPS};
 use crate::measure::dialect::Rows;
 use crate::measure::log::{LogError, constant_step};

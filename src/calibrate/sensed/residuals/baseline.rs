@@ -6,8 +6,8 @@ use crate::calibrate::measured::draws::{Coefficients, difference, mean, without}
 use crate::calibrate::measured::spectrum::Noise;
 use crate::calibrate::sensed::motion::simulate::{apart, with_noise};
 use crate::calibrate::sensed::motion::start::machine;
-use crate::calibrate::sensed::recorded::estimate::View;
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::View;
 use crate::calibrate::sensed::thresholds::{DRAWS, MISSED, SEEN};
 use crate::effects::Setting;
 use crate::mechanism::Mechanism;

@@ -9,8 +9,8 @@ use crate::calibrate::sensed::motion::released::{
 };
 use crate::calibrate::sensed::motion::simulate;
 use crate::calibrate::sensed::motion::start::{machine, still};
-use crate::calibrate::sensed::recorded::estimate::View;
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::View;
 use crate::calibrate::sensed::thresholds;
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};

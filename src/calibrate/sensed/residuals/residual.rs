@@ -9,7 +9,7 @@
 use crate::calibrate::measured::spectrum::Signal;
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::motion::motions::Motions;
-use crate::calibrate::sensed::recorded::estimate::{
+use crate::calibrate::sensed::recorded::view::{
     View, effort_sensor, output_sensor, position_sensor,
 };
 use crate::calibrate::sensed::thresholds::{DYNAMICS_BAND, PLAIN_BAND};

@@ -32,7 +32,7 @@ pub const LAWS_COMPARED_FILE: &str = "compare-laws.json";
 const TABLE_FILE: &str = "compare-laws.csv";
 
 /// Half widths of a 95 % interval by which means must differ: a sixth of a per cent of differences by chance
-/// exceed it, so that of seventeen laws hardly one does.
+/// exceed it, so that of all laws hardly one does.
 const SURE: f64 = 1.5;
 
 /// Relative difference below which no conclusion hangs on the law.

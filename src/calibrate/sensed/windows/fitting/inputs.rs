@@ -1,7 +1,7 @@
 //! What drives of effort gave: what their sensors recorded, or, where nothing was recorded, their commands.
 
-use crate::calibrate::sensed::recorded::estimate::effort_sensor;
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::effort_sensor;
 use crate::mechanism::{Command, Commands, Drive, Mechanism, Reads};
 use std::sync::Arc;
 

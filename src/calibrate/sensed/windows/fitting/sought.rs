@@ -1,8 +1,8 @@
 //! Which values are sought of a machine that nothing holds, and how far they may be from what is declared.
 
 use super::shooting::SoughtValue;
-use crate::calibrate::sensed::recorded::estimate::{effort_sensor, position_sensor};
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::recorded::view::{effort_sensor, position_sensor};
 use crate::effects::{Setting, Target, named};
 use crate::mechanism::{Axes, Drive, JointIndex, Mechanism};
 
