@@ -8,7 +8,8 @@
 //! (Linux tells) says what two of them would come to on idle cores.
 
 use freeplay::scenario::Source;
-use freeplay::study::sweep::{Plan, Shard, SweepError, on_threads, sweep};
+use freeplay::study::StudyError;
+use freeplay::study::sweep::{Plan, Shard, on_threads, sweep};
 use std::fs;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -44,7 +45,7 @@ fn cost(threads: Option<usize>, vary: &str, tolerance: f64, engine: &str) -> Cos
             Ok((done, rayon::broadcast(|_| computed())))
         })
         .expect("threads")
-        .unwrap_or_else(|error: SweepError| panic!("{error}"));
+        .unwrap_or_else(|error: StudyError| panic!("{error}"));
         assert_eq!(done.record.ok, done.record.identity.runs, "every run reached its end");
         (started.elapsed().as_secs_f64(), computed.into_iter().sum::<Option<f64>>())
     };

@@ -4,9 +4,7 @@ use freeplay::calibrate::result::CalibrateError;
 use freeplay::results::{FolderError, RunError};
 use freeplay::scenario::{Location, Problem, Problems};
 use freeplay::simulate::{Finding, Severity};
-use freeplay::study::compare::CompareError;
-use freeplay::study::evaluate::EvaluateError;
-use freeplay::study::sweep::SweepError;
+use freeplay::study::StudyError;
 use pyo3::exceptions::PyUserWarning;
 use pyo3::ffi::c_str;
 use pyo3::prelude::*;
@@ -148,16 +146,17 @@ impl From<RunError> for Failure {
     }
 }
 
-impl From<SweepError> for Failure {
-    fn from(error: SweepError) -> Self {
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
         let message = error.to_string();
         match error {
-            SweepError::Input(message) | SweepError::Another(message) => Failure::Input(message),
-            SweepError::Scenario(problems) => problems.into(),
-            SweepError::Write(error) => error.into(),
-            SweepError::Interrupted { finished, runs, .. } => {
+            StudyError::Input(message) | StudyError::Another(message) => Failure::Input(message),
+            StudyError::Scenario(problems) => problems.into(),
+            StudyError::Files(error) => error.into(),
+            StudyError::Interrupted { finished, runs, .. } => {
                 Failure::Unfinished { message, finished, runs }
             }
+            _ => Failure::Run(message),
         }
     }
 }
@@ -168,24 +167,6 @@ impl From<CalibrateError> for Failure {
             CalibrateError::Input(messages) => Failure::Input(messages.join("\n")),
             CalibrateError::Halted(halt) => Failure::Run(halt.to_string()),
             CalibrateError::Files(error) => error.into(),
-        }
-    }
-}
-
-impl From<CompareError> for Failure {
-    fn from(error: CompareError) -> Self {
-        match error {
-            CompareError::Problem(problem) => problem.into(),
-            CompareError::Files(error) => error.into(),
-        }
-    }
-}
-
-impl From<EvaluateError> for Failure {
-    fn from(error: EvaluateError) -> Self {
-        match error {
-            EvaluateError::Input(message) => Failure::Input(message),
-            error => Failure::Run(error.to_string()),
         }
     }
 }

@@ -6,7 +6,8 @@ use crate::table::Table;
 use crate::value::{in_line as in_one_line, to_toml};
 use crate::work::detached;
 use freeplay::cli::threads_of_queue;
-use freeplay::study::sweep::{self, Ongoing, Shard, SweepError, on_threads};
+use freeplay::study::StudyError;
+use freeplay::study::sweep::{self, Ongoing, Shard, on_threads};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -102,7 +103,7 @@ impl Rows {
     fn with<T>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&mut Ongoing) -> Result<T, SweepError>,
+        work: impl FnOnce(&mut Ongoing) -> Result<T, StudyError>,
     ) -> PyResult<T> {
         let mut ongoing = self.ongoing.lock().unwrap_or_else(PoisonError::into_inner);
         let ongoing = ongoing.as_mut().ok_or_else(|| PyRuntimeError::new_err("closed"))?;

@@ -13,6 +13,7 @@ mod pictures;
 mod recent;
 mod run;
 mod run_page;
+mod study_error;
 pub mod sweep;
 mod watch;
 pub mod wear;
@@ -22,4 +23,5 @@ pub use check::{
     check,
 };
 pub use run::{Recorded, RunOutcome, SUMMARY_FILE, Terms, recorded, run};
+pub use study_error::StudyError;
 pub use watch::Watch;

@@ -6,7 +6,7 @@ pub mod emps;
 mod page;
 pub mod pendulum;
 
-pub use page::{STUDY_FILE, StudyError, emps_page, pendulum_page};
+pub use page::{STUDY_FILE, emps_page, pendulum_page};
 
 use crate::measure::log::LogError;
 use std::path::{Path, PathBuf};

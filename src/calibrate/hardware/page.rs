@@ -1,6 +1,6 @@
 //! The pages of the hardware studies.
 
-use super::{Missing, ResultsTable, emps, pendulum};
+use super::{ResultsTable, emps, pendulum};
 use crate::calibrate::results::charts::{POINTS, thinned};
 use crate::calibrate::results::result::to_json;
 use crate::report::{self, Curve, PagePart, Panel, Picture, Style, panels_svg};
@@ -11,17 +11,6 @@ use std::path::PathBuf;
 
 /// The JSON file of a study, by which its folder is known.
 pub const STUDY_FILE: &str = "study.json";
-
-/// Why a study has no page.
-#[derive(Debug, thiserror::Error)]
-pub enum StudyError {
-    /// Its recordings.
-    #[error(transparent)]
-    Data(#[from] Missing),
-    /// Its files.
-    #[error(transparent)]
-    Files(#[from] RunError),
-}
 
 /// A study on its way to its folder.
 struct Page<'a> {

@@ -1,8 +1,7 @@
 //! `freeplay study`: models against measured hardware.
 
 use crate::calibrate::hardware::{
-    Missing, ResultsTable, STUDY_FILE, StudyError, emps, emps_page, folder, pendulum,
-    pendulum_page, skipped,
+    Missing, ResultsTable, STUDY_FILE, emps, emps_page, folder, pendulum, pendulum_page, skipped,
 };
 use crate::cli::shared::failure::Failure;
 use crate::cli::shared::options::{FolderOptions, PrintOptions};
@@ -129,14 +128,5 @@ fn text(lead: &str, tables: &[ResultsTable], folder: &Path) -> String {
 impl From<Missing> for Failure {
     fn from(missing: Missing) -> Self {
         Failure::Input(vec![missing.to_string()])
-    }
-}
-
-impl From<StudyError> for Failure {
-    fn from(error: StudyError) -> Self {
-        match error {
-            StudyError::Data(missing) => missing.into(),
-            StudyError::Files(error) => error.into(),
-        }
     }
 }

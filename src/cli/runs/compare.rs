@@ -10,7 +10,7 @@ use crate::report::number;
 use crate::scenario::{Law, Scenario};
 use crate::simulate::{Finding, assemble, findings};
 use crate::study::compare::{
-    COMPARE_FILE, CompareError, Compared, NativeUse, Options, QUANTITIES, SAMPLE_INTERVAL, compare,
+    COMPARE_FILE, Compared, NativeUse, Options, QUANTITIES, SAMPLE_INTERVAL, compare,
     simulated_time,
 };
 use std::fmt::Write as _;
@@ -55,15 +55,6 @@ fn warn_of_law(scenario: &Scenario, law: Law) {
         let help = "leave it out, or name the laws to compare: --laws hertz-step,flores";
         let problem = scenario.problem("contact.law", message, help);
         output::complain(&Finding::warning(problem).to_string());
-    }
-}
-
-impl From<CompareError> for Failure {
-    fn from(error: CompareError) -> Self {
-        match error {
-            CompareError::Problem(problem) => problem.into(),
-            CompareError::Files(error) => error.into(),
-        }
     }
 }
 

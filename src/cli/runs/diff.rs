@@ -7,7 +7,7 @@ use crate::cli::shared::progress::Progress;
 use crate::cli::shared::table::{paragraph, table};
 use crate::simulate::{assemble, findings};
 use crate::study::diff::{
-    DIFF_FILE, DiffError, FinishedDiff, Side, diff_models, diff_results, simulated_time,
+    DIFF_FILE, FinishedDiff, Side, diff_models, diff_results, simulated_time,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -108,16 +108,6 @@ fn names(paths: [&Path; 2]) -> [String; 2] {
     let most = parts.iter().map(Vec::len).max().unwrap_or(1);
     let apart = (1..=most).map(last).find(|[a, b]| a != b);
     apart.unwrap_or_else(|| ["the first".to_owned(), "the second".to_owned()])
-}
-
-impl From<DiffError> for Failure {
-    fn from(error: DiffError) -> Self {
-        match error {
-            DiffError::Input(message) => Failure::Input(vec![message]),
-            DiffError::Scenario(problems) => problems.into(),
-            DiffError::Files(error) => error.into(),
-        }
-    }
 }
 
 /// The result for people.

@@ -5,7 +5,7 @@ use crate::cli::shared::options::ScenarioOptions;
 use crate::cli::shared::output;
 use crate::scenario::{Location, Problem, Problems};
 use crate::simulate::{assemble, findings};
-use crate::study::evaluate::{self, EvaluateError, Parameters};
+use crate::study::evaluate::{self, Parameters};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -96,13 +96,4 @@ fn named(problems: Problems, sets: &[String], file: &Path) -> Failure {
         _ => problem.to_string(),
     };
     Failure::Input(problems.0.iter().map(text).collect())
-}
-
-impl From<EvaluateError> for Failure {
-    fn from(error: EvaluateError) -> Self {
-        match error {
-            EvaluateError::Input(message) => Failure::Input(vec![message]),
-            error => Failure::Other(error.to_string()),
-        }
-    }
 }

@@ -6,7 +6,7 @@ use crate::cli::shared::progress::Progress;
 use crate::cli::shared::table::{paragraph, table};
 use crate::report::number;
 use crate::scenario::Source;
-use crate::study::paper::{PAPER_FILE, PaperError, Studied, paper, scenarios, simulated_time};
+use crate::study::paper::{PAPER_FILE, Studied, paper, scenarios, simulated_time};
 use clap::Args;
 
 /// Repeat the paper's study: figures 4 to 9, the table, and every claim checked
@@ -52,15 +52,6 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
         Progress::during(simulated, yes, quiet, |watch| paper(&scenarios, phases, folder, watch))?;
     arguments.print.result(&studied.json, || text(&studied))?;
     refuse_faults(&studied.paper.faults())
-}
-
-impl From<PaperError> for Failure {
-    fn from(error: PaperError) -> Self {
-        match error {
-            PaperError::Scenario(problems) => problems.into(),
-            PaperError::Files(error) => error.into(),
-        }
-    }
 }
 
 /// The result for people.

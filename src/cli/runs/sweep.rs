@@ -8,9 +8,8 @@ use crate::cli::shared::progress::RunsProgress;
 use crate::cli::shared::signals;
 use crate::cli::shared::table::paragraph;
 use crate::report::number;
-use crate::study::sweep::{
-    Plan, Shard, Standing, SweepError, SweepOutcome, forecast, on_threads, sweep,
-};
+use crate::study::StudyError;
+use crate::study::sweep::{Plan, Shard, Standing, SweepOutcome, forecast, on_threads, sweep};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -91,7 +90,7 @@ fn folder(plan: &Plan, options: &FolderOptions) -> PathBuf {
     }
     let others = |path: &PathBuf| {
         let there = named(path, plan.shard());
-        matches!(Standing::of(plan, plan.shard(), &there), Err(SweepError::Another(_)))
+        matches!(Standing::of(plan, plan.shard(), &there), Err(StudyError::Another(_)))
     };
     let mut names = options.numbered(&first);
     names.find(|path| !others(path)).unwrap_or_else(|| first.clone())

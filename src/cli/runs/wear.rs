@@ -8,9 +8,7 @@ use crate::cli::shared::table::table;
 use crate::report::{length, number};
 use crate::scenario::Scenario;
 use crate::simulate::{assemble, findings};
-use crate::study::wear::{
-    PredictedWear, WEAR_PREDICTED_FILE, WearError, WearRequest, period_of, wear,
-};
+use crate::study::wear::{PredictedWear, WEAR_PREDICTED_FILE, WearRequest, period_of, wear};
 use clap::Args;
 use std::fmt::Write as _;
 
@@ -55,16 +53,6 @@ Examples:
   freeplay wear my-machine.toml --cycles 1e5 --duration 3 --out worn
   freeplay wear my-machine.toml --cycles 1e5 --period 0.5 --engine direct
   freeplay run worn/worn.toml                        the worn machine";
-
-impl From<WearError> for Failure {
-    fn from(error: WearError) -> Self {
-        match error {
-            WearError::Problem(problem) => problem.into(),
-            WearError::Files(error) => error.into(),
-            error => Failure::Other(error.to_string()),
-        }
-    }
-}
 
 pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let wrong = |message: String| Failure::Input(vec![message]);

@@ -5,7 +5,7 @@ use crate::measure::dialect;
 use crate::results::{FolderError, RunError};
 use crate::scenario::{Location, Problem, Problems, Scenario};
 use crate::simulate::{Finding, Severity, doubts};
-use crate::study::sweep::SweepError;
+use crate::study::StudyError;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -91,15 +91,16 @@ impl From<RunError> for Failure {
     }
 }
 
-impl From<SweepError> for Failure {
-    fn from(error: SweepError) -> Self {
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
         match error {
-            SweepError::Input(message) | SweepError::Another(message) => {
+            StudyError::Input(message) | StudyError::Another(message) => {
                 Failure::Input(vec![message])
             }
-            SweepError::Scenario(problems) => problems.into(),
-            SweepError::Write(error) => error.into(),
-            SweepError::Interrupted { .. } => Failure::GoOn(error.to_string()),
+            StudyError::Scenario(problems) => problems.into(),
+            StudyError::Files(error) => error.into(),
+            StudyError::Interrupted { .. } => Failure::GoOn(error.to_string()),
+            error => Failure::Other(error.to_string()),
         }
     }
 }

@@ -32,6 +32,7 @@ use crate::results::{PAGE_FILE, keep_scenario, scenario_files};
 use crate::results::{RunError, refused};
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
+use crate::study::StudyError;
 use plan::{ComparePlan, plan};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use statrs::statistics::{Data, OrderStatistics};
@@ -56,17 +57,6 @@ pub struct Compared {
     pub folder: PathBuf,
 }
 
-/// Why a comparison has no files.
-#[derive(Debug, thiserror::Error)]
-pub enum CompareError {
-    /// The scenario has something that cannot be read.
-    #[error(transparent)]
-    Problem(#[from] Problem),
-    /// A file cannot be written.
-    #[error(transparent)]
-    Files(#[from] RunError),
-}
-
 /// Simulated time in s of a comparison, by which its progress counts.
 ///
 /// # Errors
@@ -80,13 +70,13 @@ pub fn simulated_time(scenario: &Scenario, options: &Options) -> Result<f64, Pro
 /// sees the time simulated so far, in s.
 ///
 /// # Errors
-/// [`CompareError`]; the folder is left as it was.
+/// [`StudyError`]; the folder is left as it was.
 pub fn compare(
     scenario: &Scenario,
     options: &Options,
     folder: Folder,
     watch: &Watch,
-) -> Result<Compared, CompareError> {
+) -> Result<Compared, StudyError> {
     let started = Clock::now();
     let plan = plan(scenario, options)?;
     let jobs = plan.runs();

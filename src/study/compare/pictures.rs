@@ -1,6 +1,5 @@
 //! The pictures of a comparison.
 
-use super::CompareError;
 use super::plan::{ComparePlan, machine};
 use super::probe::CompareMeasured;
 use super::quantities::index;
@@ -9,6 +8,7 @@ use crate::engine::{self, Schedule};
 use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, number, panels_svg};
 use crate::results::RunError;
 use crate::scenario::{Law, Scenario};
+use crate::study::StudyError;
 use crate::study::chaos::{self, Chaos};
 
 /// Time in s that the curves side by side show: the first hits and what follows.
@@ -24,7 +24,7 @@ pub fn draw(
     plan: &ComparePlan,
     runs: &[Vec<CompareMeasured>],
     looks: &[Chaos],
-) -> Result<Vec<Picture>, CompareError> {
+) -> Result<Vec<Picture>, StudyError> {
     let draw = |picture: Result<Picture, ReportError>| picture.map_err(RunError::from);
     let mut pictures = vec![
         draw(over_step(comparison))?,
@@ -120,10 +120,7 @@ struct MotionBeginning {
     curves: [Vec<(f64, f64)>; 3],
 }
 
-fn beginnings(
-    scenario: &Scenario,
-    plan: &ComparePlan,
-) -> Result<Vec<MotionBeginning>, CompareError> {
+fn beginnings(scenario: &Scenario, plan: &ComparePlan) -> Result<Vec<MotionBeginning>, StudyError> {
     let mut beginnings = Vec::new();
     for law in super::plan::LAWS {
         let Some(row) = plan.rows.iter().rfind(|row| row.law == law) else { continue };

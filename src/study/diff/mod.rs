@@ -11,9 +11,9 @@ pub use result::{Diff, FigureRow};
 pub use results::diff_results;
 
 use super::run::SUMMARY_FILE;
-use crate::results::RunError;
 use crate::results::SCENARIO_FILE;
-use crate::scenario::{Problem, Problems, Scenario};
+use crate::scenario::{Problem, Scenario};
+use crate::study::StudyError;
 use std::path::{Path, PathBuf};
 
 /// The JSON file by which a difference is known.
@@ -35,7 +35,7 @@ impl Side {
     ///
     /// # Errors
     /// What is wrong with the scenario, or a folder that holds no run.
-    pub fn read(path: &Path, sets: &[String]) -> Result<Self, DiffError> {
+    pub fn read(path: &Path, sets: &[String]) -> Result<Self, StudyError> {
         if !path.is_dir() {
             return Ok(Side::Model(Box::new(Scenario::load(Some(path), sets)?)));
         }
@@ -45,7 +45,7 @@ impl Side {
                     "`{}` holds no {file}: expected the folder of a `freeplay run`, or a scenario file",
                     path.display()
                 );
-                return Err(DiffError::Input(message));
+                return Err(StudyError::Input(message));
             }
         }
         let scenario = Scenario::load(Some(&path.join(SCENARIO_FILE)), sets)?;
@@ -61,7 +61,7 @@ impl Side {
 }
 
 /// A warning where the machines have unlike parts: figures of the one then say little of the other.
-fn unlike(sides: &[Side; 2]) -> Result<Option<String>, DiffError> {
+fn unlike(sides: &[Side; 2]) -> Result<Option<String>, StudyError> {
     let parts = |side: &Side| -> Result<[Vec<String>; 2], Problem> {
         let machine = crate::model::parts_of(side.scenario())?;
         let bodies = machine.bodies.into_iter().map(|body| body.name).collect();
@@ -103,24 +103,4 @@ pub struct FinishedDiff {
     pub json: String,
     /// Where all files are.
     pub folder: PathBuf,
-}
-
-/// Why there is none.
-#[derive(Debug, thiserror::Error)]
-pub enum DiffError {
-    /// Wrong input.
-    #[error("{0}")]
-    Input(String),
-    /// A scenario with problems.
-    #[error(transparent)]
-    Scenario(#[from] Problems),
-    /// A file cannot be written.
-    #[error(transparent)]
-    Files(#[from] RunError),
-}
-
-impl From<Problem> for DiffError {
-    fn from(problem: Problem) -> Self {
-        Self::Scenario(problem.into())
-    }
 }

@@ -3,13 +3,14 @@
 use super::page::{self, RUNS_FILE};
 use super::result::{Diff, FigureRow};
 use super::series::{TimeTable, overlaid};
-use super::{DiffError, FinishedDiff, Side, unlike, unlike_times};
+use super::{FinishedDiff, Side, unlike, unlike_times};
 use crate::measure::student::t95;
 use crate::report::{Curve, Label, Panel, Picture, Style, panels_svg};
 use crate::results::Folder;
 use crate::results::RunError;
 use crate::scenario::{Problem, Scenario};
 use crate::simulate::{Provenance, measured};
+use crate::study::StudyError;
 use crate::study::Watch;
 use crate::study::compare::{CompareMeasured, Mean, QUANTITIES, machine, measure, tolerance};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -39,7 +40,7 @@ pub fn diff_models(
     starts: usize,
     folder: Folder,
     watch: &Watch,
-) -> Result<FinishedDiff, DiffError> {
+) -> Result<FinishedDiff, StudyError> {
     let started = Clock::now();
     let both = [0, 1].map(|i| sides[i].scenario());
     let runs = simulate(both, starts, watch)?;
@@ -72,7 +73,7 @@ fn simulate(
     both: [&Scenario; 2],
     starts: usize,
     watch: &Watch,
-) -> Result<[Vec<CompareMeasured>; 2], DiffError> {
+) -> Result<[Vec<CompareMeasured>; 2], StudyError> {
     let jobs: Vec<(usize, usize)> =
         (0..starts).flat_map(|start| [(0, start), (1, start)]).collect();
     let results = jobs
@@ -153,7 +154,7 @@ fn every_run(diff: &Diff, runs: &[Vec<CompareMeasured>; 2]) -> Result<Picture, R
 }
 
 /// The first start of both over time.
-fn over_time(both: [&Scenario; 2], names: &[String; 2]) -> Result<Option<Picture>, DiffError> {
+fn over_time(both: [&Scenario; 2], names: &[String; 2]) -> Result<Option<Picture>, StudyError> {
     let [first, second] = [series(both[0])?, series(both[1])?];
     let mut panels = Vec::new();
     for head in &first.heads[1..] {
@@ -178,7 +179,7 @@ fn over_time(both: [&Scenario; 2], names: &[String; 2]) -> Result<Option<Picture
 }
 
 /// Path error, acceleration and efforts of one run as its scenario says.
-fn series(scenario: &Scenario) -> Result<TimeTable, DiffError> {
+fn series(scenario: &Scenario) -> Result<TimeTable, StudyError> {
     let mut machine = crate::simulate::assemble(scenario)?;
     let drives = machine.mechanism.actuators.iter().map(|drive| drive.name.clone());
     let heads = ["t", "path error", "acceleration"].map(str::to_owned).into_iter();

@@ -1,11 +1,12 @@
 //! The page and the files of a difference.
 
 use super::result::{Diff, FigureRow};
-use super::{DIFF_FILE, DiffError, FinishedDiff, TABLE_FILE};
+use super::{DIFF_FILE, FinishedDiff, TABLE_FILE};
 use crate::report::{PagePart, PageTable, Picture, document, length, number};
 use crate::results::Folder;
 use crate::results::{PAGE_FILE, to_json};
 use crate::results::{RunError, refused};
+use crate::study::StudyError;
 use std::fs;
 
 /// The picture of every run.
@@ -16,7 +17,7 @@ pub fn write(
     mut diff: Diff,
     pictures: &[Picture],
     folder: Folder,
-) -> Result<FinishedDiff, DiffError> {
+) -> Result<FinishedDiff, StudyError> {
     let texts = [DIFF_FILE, TABLE_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     diff.files = texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect();
     let json = to_json(&diff);

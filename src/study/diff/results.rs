@@ -3,12 +3,13 @@
 use super::page;
 use super::result::{Diff, FigureRow};
 use super::series::{TimeTable, overlaid};
-use super::{DiffError, FinishedDiff, Side, unlike, unlike_times};
+use super::{FinishedDiff, Side, unlike, unlike_times};
 use crate::measure::bounded;
 use crate::report::{Panel, Picture, panels_svg};
 use crate::results::Folder;
 use crate::results::RunError;
 use crate::simulate::Provenance;
+use crate::study::StudyError;
 use crate::study::chaos;
 use crate::study::compare::QUANTITIES;
 use crate::study::run::{SUMMARY_FILE, TIME_SERIES_FILE};
@@ -37,14 +38,14 @@ struct Read {
 }
 
 impl Read {
-    fn of(folder: &Path) -> Result<Self, DiffError> {
+    fn of(folder: &Path) -> Result<Self, StudyError> {
         let file = folder.join(SUMMARY_FILE);
         let wrong = |error: &dyn std::fmt::Display| {
-            DiffError::Input(format!("{}: cannot be read: {error}", file.display()))
+            StudyError::Input(format!("{}: cannot be read: {error}", file.display()))
         };
         let text = bounded::text(&file, bounded::TABLE).map_err(|error| wrong(&error))?;
         let summary = serde_json::from_str(&text).map_err(|error| wrong(&error))?;
-        let series = TimeTable::read(&folder.join(TIME_SERIES_FILE)).map_err(DiffError::Input)?;
+        let series = TimeTable::read(&folder.join(TIME_SERIES_FILE)).map_err(StudyError::Input)?;
         Ok(Self { summary, series })
     }
 
@@ -68,7 +69,7 @@ pub fn diff_results(
     folders: [&Path; 2],
     names: [String; 2],
     folder: Folder,
-) -> Result<FinishedDiff, DiffError> {
+) -> Result<FinishedDiff, StudyError> {
     let started = Clock::now();
     let both = [Read::of(folders[0])?, Read::of(folders[1])?];
     let chaotic = both.iter().any(Read::chaotic);

@@ -8,21 +8,8 @@ use super::sweep::row;
 use crate::measure::spelling::nearest;
 use crate::scenario::Scenario;
 use crate::simulate::{Machine, measured_until};
+use crate::study::StudyError;
 use std::sync::atomic::AtomicBool;
-
-/// Why a run has no figures for somebody who asks.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum EvaluateError {
-    /// Wrong input: what, where, what would be right.
-    #[error("{0}")]
-    Input(String),
-    /// The run broke down, does not balance, or has no such figure.
-    #[error("{0}")]
-    Failed(String),
-    /// It was told to stop.
-    #[error("the run was interrupted")]
-    Interrupted,
-}
 
 /// The figures that a run of this scenario has, by the names of `summary.json` and of a sweep's columns.
 pub fn names(scenario: &Scenario) -> Vec<String> {
@@ -33,7 +20,7 @@ pub fn names(scenario: &Scenario) -> Vec<String> {
 }
 
 /// Where the figures that are asked for stand among those that there are.
-fn places(scenario: &Scenario, asked: &[String]) -> Result<Vec<usize>, EvaluateError> {
+fn places(scenario: &Scenario, asked: &[String]) -> Result<Vec<usize>, StudyError> {
     let names = names(scenario);
     let known: Vec<&str> = names.iter().map(String::as_str).collect();
     let place = |name: &String| {
@@ -42,7 +29,7 @@ fn places(scenario: &Scenario, asked: &[String]) -> Result<Vec<usize>, EvaluateE
                 || format!("known here: {}", known.join(", ")),
                 |near| format!("did you mean `{near}`?"),
             );
-            EvaluateError::Input(format!("`{name}` is no figure of a run; {help}"))
+            StudyError::Input(format!("`{name}` is no figure of a run; {help}"))
         })
     };
     asked.iter().map(place).collect()
@@ -67,25 +54,25 @@ fn places(scenario: &Scenario, asked: &[String]) -> Result<Vec<usize>, EvaluateE
 /// ```
 ///
 /// # Errors
-/// [`EvaluateError`] for an unknown name, before anything is simulated; for a run that broke down, does not balance or
+/// [`StudyError`] for an unknown name, before anything is simulated; for a run that broke down, does not balance or
 /// has no such figure (it ended before `simulation.settle`, or takes no step of its own); once `stop` is true.
 pub fn figures(
     scenario: &Scenario,
     machine: &mut Machine,
     asked: &[String],
     stop: &AtomicBool,
-) -> Result<Vec<String>, EvaluateError> {
+) -> Result<Vec<String>, StudyError> {
     let places = places(scenario, asked)?;
     let summary = measured_until(scenario, machine, stop, &mut |_, _, _| {});
     if summary.interrupted {
-        return Err(EvaluateError::Interrupted);
+        return Err(StudyError::Stopped);
     }
     let row = row::of_summary(Vec::new(), &summary, &row::more(scenario));
     if row::said(row.last().map(String::as_str)) != row::Status::Ok {
-        return Err(EvaluateError::Failed(row.last().cloned().unwrap_or_default()));
+        return Err(StudyError::Failed(row.last().cloned().unwrap_or_default()));
     }
     let figure = |(place, name): (usize, &String)| match row[place].as_str() {
-        "" => Err(EvaluateError::Failed(format!("this run has no `{name}`"))),
+        "" => Err(StudyError::Failed(format!("this run has no `{name}`"))),
         cell => Ok(cell.to_owned()),
     };
     places.into_iter().zip(asked).map(figure).collect()

@@ -1,7 +1,7 @@
 //! Parameters of one run as other programs write them.
 
-use super::EvaluateError;
 use crate::measure::bounded;
+use crate::study::StudyError;
 use serde_json::{Map, Value};
 use std::path::Path;
 
@@ -18,9 +18,9 @@ impl Parameters {
     /// `{ DAKOTA_VARS = N }`; what follows the N variables is Dakota's own and is not read).
     ///
     /// # Errors
-    /// [`EvaluateError::Input`] with file and line.
-    pub fn read(path: &Path) -> Result<Parameters, EvaluateError> {
-        let wrong = |what: String| EvaluateError::Input(format!("{}{what}", path.display()));
+    /// [`StudyError::Input`] with file and line.
+    pub fn read(path: &Path) -> Result<Parameters, StudyError> {
+        let wrong = |what: String| StudyError::Input(format!("{}{what}", path.display()));
         let text = bounded::text(path, bounded::SCENARIO)
             .map_err(|error| wrong(format!(": cannot be read: {error}")))?;
         let parameters = Self::parse(&text).map_err(|(line, what)| match line {

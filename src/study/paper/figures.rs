@@ -1,7 +1,6 @@
 //! The paper's figures 4 to 9, and three before them: what is left of the numbers when the assumptions
 //! move.
 
-use super::PaperError;
 use super::items::Item;
 use super::result::{Paper, VariantResult};
 use super::variants::{LARGE, SMALL, machine};
@@ -10,6 +9,7 @@ use crate::measure::envelope::Envelope;
 use crate::report::{Curve, Label, Panel, Picture, ReportError, Style, panels_svg};
 use crate::results::RunError;
 use crate::scenario::Scenario;
+use crate::study::StudyError;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// Stretches that a signal is kept in: about one per pixel of a picture's width.
@@ -19,12 +19,12 @@ const STRETCHES: usize = 800;
 const SIZES: [(f64, &str); 2] = [(LARGE, "(a) C = 0.5 mm"), (SMALL, "(b) C = 0.00001 mm")];
 
 /// Draws all pictures, in the order of the page: so the paper's have their own numbers there.
-pub fn draw(scenario: &Scenario, paper: &Paper) -> Result<Vec<Picture>, PaperError> {
+pub fn draw(scenario: &Scenario, paper: &Paper) -> Result<Vec<Picture>, StudyError> {
     let mut pictures = bands(paper).map_err(RunError::from)?;
     let traces = SIZES
         .into_par_iter()
         .map(|(clearance, _)| trace(scenario, clearance))
-        .collect::<Result<Vec<_>, PaperError>>()?;
+        .collect::<Result<Vec<_>, StudyError>>()?;
     pictures.extend(figures(&traces).map_err(RunError::from)?);
     Ok(pictures)
 }
@@ -47,7 +47,7 @@ impl PairedSignal {
 }
 
 /// One run: x'', y'', φ'' of the platform, then the actuator forces.
-fn trace(scenario: &Scenario, clearance: f64) -> Result<Vec<PairedSignal>, PaperError> {
+fn trace(scenario: &Scenario, clearance: f64) -> Result<Vec<PairedSignal>, StudyError> {
     let mut machine = machine(scenario, clearance, 0, 1)?;
     let (mechanism, ideal) = (&machine.mechanism, &mut machine.ideal);
     let mut signals: Vec<PairedSignal> =

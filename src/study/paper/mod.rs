@@ -7,7 +7,6 @@ mod figures;
 mod items;
 mod judgement;
 mod page;
-mod paper_error;
 mod parameters;
 mod probe;
 mod result;
@@ -16,7 +15,6 @@ mod verdict;
 
 pub use estimate::{Estimate, RunMean};
 pub use items::Item;
-pub use paper_error::PaperError;
 pub use parameters::{Origin, PaperParameter};
 pub use result::{CaseResult, ClaimMoves, ClaimResult, Paper, VariantResult};
 pub use variants::{CLEARANCES, Variant, scenarios};
@@ -29,6 +27,7 @@ use crate::results::{PAGE_FILE, SCENARIO_FILE, to_json};
 use crate::results::{RunError, refused};
 use crate::scenario::{Problem, Scenario};
 use crate::simulate::Provenance;
+use crate::study::StudyError;
 use claims::CLAIMS;
 use judgement::judge;
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -61,13 +60,13 @@ pub fn simulated_time(scenarios: &[(Variant, Scenario)], phases: usize) -> f64 {
 /// [`scenarios`], the scenario as it stands first. `watch` sees the time simulated so far, in s.
 ///
 /// # Errors
-/// [`PaperError`]; the folder is left as it was.
+/// [`StudyError`]; the folder is left as it was.
 pub fn paper(
     scenarios: &[(Variant, Scenario)],
     phases: usize,
     folder: Folder,
     watch: &Watch,
-) -> Result<Studied, PaperError> {
+) -> Result<Studied, StudyError> {
     let started = Clock::now();
     let variants = scenarios
         .par_iter()

@@ -1,8 +1,8 @@
 //! What the study varies: clearances, starts, and everything that the paper leaves open.
 
-use super::paper_error::PaperError;
 use crate::scenario::{Law, Mechanism, Motion, PerJoint, Problem, Problems, Scenario, Source};
 use crate::simulate::{Machine, Severity, assemble, findings};
+use crate::study::StudyError;
 use crate::study::compare::SAMPLE_INTERVAL;
 use nalgebra::{Rotation2, Vector2};
 use std::f64::consts::TAU;
@@ -90,7 +90,7 @@ pub fn scenarios(
     source: &Source,
     sets: &[String],
     starts: usize,
-) -> Result<Vec<(Variant, Scenario)>, PaperError> {
+) -> Result<Vec<(Variant, Scenario)>, StudyError> {
     let base = source.scenario(sets)?;
     if !matches!(base.mechanism, Mechanism::ThreeRpr(_)) {
         let help =

@@ -2,10 +2,11 @@
 
 use super::result::{SweepOutcome, put, refuse_edited_table, write};
 use super::rows::journal::{self, JOURNAL_FILE, RunRows};
-use super::{RECORD_FILE, Record, Shard, SweepError};
+use super::{RECORD_FILE, Record, Shard};
 use crate::results::Folder;
 use crate::results::RunError;
 use crate::results::SCENARIO_FILE;
+use crate::study::StudyError;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -17,14 +18,14 @@ const NAMED: usize = 5;
 /// in `target` later. With `force` an earlier result there is replaced.
 ///
 /// # Errors
-/// [`SweepError`] if a part is damaged or of another sweep, if parts contradict each other, if rows
+/// [`StudyError`] if a part is damaged or of another sweep, if parts contradict each other, if rows
 /// are missing, or if files cannot be written. Nothing is lost.
 pub fn merge(
     parts: &[PathBuf],
     target: &Path,
     force: bool,
     partial: bool,
-) -> Result<SweepOutcome, SweepError> {
+) -> Result<SweepOutcome, StudyError> {
     refuse_twice(parts)?;
     let records: Vec<Record> =
         parts.iter().map(|part| Record::read(part)).collect::<Result<_, _>>()?;
@@ -35,7 +36,7 @@ pub fn merge(
         refuse_edited_table(part, record)?;
         for (run, row) in journal::read(part, identity, record.shard)? {
             if rows.get(&run).is_some_and(|before| *before != row) {
-                return Err(SweepError::input(format!(
+                return Err(StudyError::input(format!(
                     "`{}` contradicts another part about run {}; both were made by the same \
                      version on the same scenario, so one of the machines computes wrongly or \
                      differently. Leave out the part that you do not trust",
@@ -53,7 +54,7 @@ pub fn merge(
     let file = first_part.join(SCENARIO_FILE);
     let scenario = fs::read_to_string(&file).map_err(|error| {
         let file = file.display();
-        SweepError::input(format!(
+        StudyError::input(format!(
             "cannot read `{file}`: {error}; each part has the sweep's scenario"
         ))
     })?;
@@ -67,20 +68,20 @@ pub fn merge(
 }
 
 /// Fails if a folder is given twice, under whatever names.
-fn refuse_twice(parts: &[PathBuf]) -> Result<(), SweepError> {
+fn refuse_twice(parts: &[PathBuf]) -> Result<(), StudyError> {
     let real: Vec<PathBuf> =
         parts.iter().map(|part| part.canonicalize().unwrap_or_else(|_| part.clone())).collect();
     let again = (0..real.len()).find(|&i| real[..i].contains(&real[i]));
     again.map_or(Ok(()), |i| {
         let part = parts[i].display();
-        Err(SweepError::input(format!("`{part}` is given twice; expected each part once")))
+        Err(StudyError::input(format!("`{part}` is given twice; expected each part once")))
     })
 }
 
 /// Fails if parts belong to another sweep than the first, and names all of them.
-fn refuse_foreign(parts: &[PathBuf], records: &[Record]) -> Result<(), SweepError> {
+fn refuse_foreign(parts: &[PathBuf], records: &[Record]) -> Result<(), StudyError> {
     let (Some(first), Some(first_part)) = (records.first(), parts.first()) else {
-        return Err(SweepError::input("nothing to merge; give the folders of the parts"));
+        return Err(StudyError::input("nothing to merge; give the folders of the parts"));
     };
     let mut said = String::new();
     for (part, record) in parts.iter().zip(records) {
@@ -98,7 +99,7 @@ fn refuse_foreign(parts: &[PathBuf], records: &[Record]) -> Result<(), SweepErro
         };
         said += &differences.join("; ");
     }
-    if said.is_empty() { Ok(()) } else { Err(SweepError::input(said)) }
+    if said.is_empty() { Ok(()) } else { Err(StudyError::input(said)) }
 }
 
 /// Fails if a run has no row, and says which parts are not there and which are unfinished.
@@ -107,7 +108,7 @@ fn refuse_missing(
     runs: usize,
     parts: &[PathBuf],
     records: &[Record],
-) -> Result<(), SweepError> {
+) -> Result<(), StudyError> {
     let missing: Vec<usize> = (0..runs).filter(|run| !rows.contains_key(run)).collect();
     let Some(record) = records.first().filter(|_| !missing.is_empty()) else {
         return Ok(());
@@ -129,7 +130,7 @@ fn refuse_missing(
         1 => said.insert(0, format!("shard {shards} is not among the parts")),
         _ => said.insert(0, format!("shards {shards} are not among the parts")),
     }
-    Err(SweepError::input(format!(
+    Err(StudyError::input(format!(
         "{} of {runs} rows are missing (runs {}): {}; give all parts, let the same sweep \
          finish there, or merge what there is with --partial",
         missing.len(),

@@ -3,11 +3,12 @@
 use super::doubts::doubts;
 use super::rows::record::{hexadecimal, sha256};
 use super::rows::row;
-use super::{Design, Identity, Shard, SweepError, Vary};
+use super::{Design, Identity, Shard, Vary};
 use crate::measure::bounded;
 use crate::scenario::{Location, Problem, Scenario, Source};
 use crate::simulate::unacting;
 use crate::simulate::{Machine, Provenance, Severity, assemble, findings, measured_until};
+use crate::study::StudyError;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::io::Read as _;
@@ -60,14 +61,14 @@ impl Plan {
     /// this process is to run the part `shard`. Every run of every part is checked, on all threads.
     ///
     /// # Errors
-    /// [`SweepError`] if a `--vary` makes no sense, a run's scenario is refused (unknown path, value
+    /// [`StudyError`] if a `--vary` makes no sense, a run's scenario is refused (unknown path, value
     /// out of range), or the machine can do none of the runs.
     pub fn new(
         source: Source,
         sets: &[String],
         vary: &[String],
         shard: Shard,
-    ) -> Result<Plan, SweepError> {
+    ) -> Result<Plan, StudyError> {
         let mut plan = Self::unchecked(source, sets, vary, shard)?;
         plan.check()?;
         Ok(plan)
@@ -77,13 +78,13 @@ impl Plan {
     /// elsewhere. It stands for no folder, as nothing says what its runs are.
     ///
     /// # Errors
-    /// [`SweepError`] if the scenario or a `--vary` makes no sense.
+    /// [`StudyError`] if the scenario or a `--vary` makes no sense.
     pub fn unchecked(
         source: Source,
         sets: &[String],
         vary: &[String],
         shard: Shard,
-    ) -> Result<Plan, SweepError> {
+    ) -> Result<Plan, StudyError> {
         let base = source.scenario(sets)?;
         let varied = vary.iter().map(|text| Vary::parse(text)).collect::<Result<Vec<_>, _>>()?;
         let design = Design::new(varied, base.seed)?;
@@ -144,19 +145,19 @@ impl Plan {
     /// [`Plan::row`] for somebody else's plan, who says what the run's mark is there.
     ///
     /// # Errors
-    /// [`SweepError::Input`] where the run is another one here: a file that its scenario reads differs.
+    /// [`StudyError::Input`] where the run is another one here: a file that its scenario reads differs.
     pub fn row_of_mark(
         &self,
         run: usize,
         mark: u64,
         stop: &AtomicBool,
-    ) -> Result<Option<Vec<String>>, SweepError> {
+    ) -> Result<Option<Vec<String>>, StudyError> {
         let here = match self.checked(run) {
             Ok(checked) => mark_of(&checked.hash),
-            Err(problem) => return Err(SweepError::input(self.in_words(&problem))),
+            Err(problem) => return Err(StudyError::input(self.in_words(&problem))),
         };
         if here != mark {
-            return Err(SweepError::input(format!(
+            return Err(StudyError::input(format!(
                 "{} is not the same here and where the sweep was planned: a file that the scenario reads \
                  differs, or is not there; workers need the same files",
                 self.name(run)
@@ -196,7 +197,7 @@ impl Plan {
     }
 
     /// Checks every run, and notes what they are.
-    fn check(&mut self) -> Result<(), SweepError> {
+    fn check(&mut self) -> Result<(), StudyError> {
         let runs = self.design.runs();
         let checked: Vec<Result<Checked, Problem>> =
             (0..runs).into_par_iter().map(|run| self.checked(run)).collect();
@@ -205,7 +206,7 @@ impl Plan {
         let mut idle: Option<Vec<String>> = None;
         for (run, checked) in checked.into_iter().enumerate() {
             let checked = checked.map_err(|problem| {
-                SweepError::input(format!("{} ({})", self.in_words(&problem), self.name(run)))
+                StudyError::input(format!("{} ({})", self.in_words(&problem), self.name(run)))
             })?;
             hash.update(&checked.hash);
             self.marks.push(mark_of(&checked.hash));
@@ -224,7 +225,7 @@ impl Plan {
         if let Some((run, reason)) = refused.first() {
             let name = self.name(*run);
             if refused.len() == runs {
-                return Err(SweepError::input(format!(
+                return Err(StudyError::input(format!(
                     "the machine can do none of the {runs} runs: {reason} ({name})"
                 )));
             }

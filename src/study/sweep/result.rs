@@ -4,10 +4,11 @@ use super::rows::journal::{JOURNAL_FILE, RunRows};
 use super::rows::record::sha256;
 use super::rows::row::{Status, status};
 use super::rows::{page, pictures, statistics};
-use super::{Identity, RECORD_FILE, Record, Shard, SweepError};
+use super::{Identity, RECORD_FILE, Record, Shard};
 use crate::results::sync;
 use crate::results::{PAGE_FILE, SCENARIO_FILE};
 use crate::results::{RunError, refused};
+use crate::study::StudyError;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -113,16 +114,16 @@ pub(super) fn put(place: &Path, name: &str, content: impl AsRef<[u8]>) -> Result
 }
 
 /// Refuses a folder whose table is not as it was written: somebody's work may be in it.
-pub(super) fn refuse_edited_table(folder: &Path, record: &Record) -> Result<(), SweepError> {
+pub(super) fn refuse_edited_table(folder: &Path, record: &Record) -> Result<(), StudyError> {
     let path = folder.join(TABLE_FILE);
     let table = match fs::read(&path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        read => read.map_err(refused(TABLE_FILE)).map_err(SweepError::Write)?,
+        read => read.map_err(refused(TABLE_FILE)).map_err(StudyError::Files)?,
     };
     if record.table_sha256.as_ref() == Some(&sha256(&table)) {
         return Ok(());
     }
-    Err(SweepError::input(format!(
+    Err(StudyError::input(format!(
         "`{}` was truncated or edited since it was written. Nothing was changed; keep it under \
          another name, or delete it, and it is written again from {JOURNAL_FILE}",
         path.display()

@@ -2,7 +2,8 @@
 
 use super::rows::journal::{self, lock};
 use super::work::refuse_other;
-use super::{Plan, RECORD_FILE, Record, Shard, SweepError};
+use super::{Plan, RECORD_FILE, Record, Shard};
+use crate::study::StudyError;
 use std::path::Path;
 
 /// How far a part of a sweep has come.
@@ -20,8 +21,8 @@ impl Standing {
     /// That of part `shard` of a plan, whose folder is `target` if it has begun.
     ///
     /// # Errors
-    /// [`SweepError`] if the folder holds another sweep, or is damaged.
-    pub fn of(plan: &Plan, shard: Shard, target: &Path) -> Result<Standing, SweepError> {
+    /// [`StudyError`] if the folder holds another sweep, or is damaged.
+    pub fn of(plan: &Plan, shard: Shard, target: &Path) -> Result<Standing, StudyError> {
         let identity = plan.identity();
         if !target.join(RECORD_FILE).exists() {
             let missing = shard.runs(identity.runs).collect();

@@ -2,10 +2,11 @@
 
 use super::result::{PARQUET_FILE, SweepOutcome, TABLE_FILE, put, refuse_edited_table, write};
 use super::rows::journal::{JOURNAL_FILE, Journal, RunRows, kept, lock};
-use super::{Identity, Plan, RECORD_FILE, Record, Shard, SweepError};
+use super::{Identity, Plan, RECORD_FILE, Record, Shard};
 use crate::results::Folder;
 use crate::results::SCENARIO_FILE;
 use crate::results::{RunError, refused};
+use crate::study::StudyError;
 use rayon::prelude::*;
 use std::fs;
 use std::io;
@@ -16,15 +17,15 @@ use std::sync::{Mutex, PoisonError};
 /// Does `work` on so many threads, by default one for each core.
 ///
 /// # Errors
-/// [`SweepError::Input`] if the system does not give so many.
+/// [`StudyError::Input`] if the system does not give so many.
 pub fn on_threads<R: Send>(
     threads: Option<usize>,
     work: impl FnOnce() -> R + Send,
-) -> Result<R, SweepError> {
+) -> Result<R, StudyError> {
     // To rayon, zero means one for each core.
     let built = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
     let pool = built.map_err(|error| {
-        SweepError::input(format!("cannot start the threads: {error}; give fewer with --threads"))
+        StudyError::input(format!("cannot start the threads: {error}; give fewer with --threads"))
     })?;
     Ok(pool.install(work))
 }
@@ -49,14 +50,14 @@ pub fn on_threads<R: Send>(
 /// ```
 ///
 /// # Errors
-/// [`SweepError`]; what the folder held stands.
+/// [`StudyError`]; what the folder held stands.
 pub fn sweep(
     plan: &Plan,
     target: &Path,
     force: bool,
     stop: &AtomicBool,
     progress: &(dyn Fn(usize, usize) + Sync),
-) -> Result<SweepOutcome, SweepError> {
+) -> Result<SweepOutcome, StudyError> {
     let ongoing = Ongoing::begin(plan, target, force)?;
     let (pending, of) = (ongoing.missing(), ongoing.runs());
     progress(ongoing.finished(), of);
@@ -92,8 +93,8 @@ impl Ongoing {
     /// Makes the folder `target`, or goes on in it; with `force`, it begins anew.
     ///
     /// # Errors
-    /// [`SweepError`]: it holds something else, or another process is at work there; what it held stands.
-    pub fn begin(plan: &Plan, target: &Path, force: bool) -> Result<Ongoing, SweepError> {
+    /// [`StudyError`]: it holds something else, or another process is at work there; what it held stands.
+    pub fn begin(plan: &Plan, target: &Path, force: bool) -> Result<Ongoing, StudyError> {
         let (journal, rows) = open(plan, target, force)?;
         let (identity, shard) = (plan.identity().clone(), plan.shard());
         let ongoing = Ongoing { target: target.to_owned(), identity, shard, journal, rows };
@@ -105,7 +106,7 @@ impl Ongoing {
 
     /// The tables of a sweep that is not complete (as merge leaves one) do not outlive this: they go before
     /// the record that vouches for them.
-    fn forget_tables(&self) -> Result<(), SweepError> {
+    fn forget_tables(&self) -> Result<(), StudyError> {
         for table in [TABLE_FILE, PARQUET_FILE] {
             match fs::remove_file(self.target.join(table)) {
                 Err(error) if error.kind() != io::ErrorKind::NotFound => {
@@ -136,12 +137,12 @@ impl Ongoing {
     /// Keeps the row of run `run`. One that is there already, as a worker sends that was held for lost, changes nothing.
     ///
     /// # Errors
-    /// [`SweepError`] if the run is none of this part, its row is no row of this table or contradicts the one
+    /// [`StudyError`] if the run is none of this part, its row is no row of this table or contradicts the one
     /// that is there, or the file system refuses.
-    pub fn add(&mut self, run: usize, row: Vec<String>) -> Result<(), SweepError> {
+    pub fn add(&mut self, run: usize, row: Vec<String>) -> Result<(), StudyError> {
         let (cells, columns) = (row.len(), self.identity.columns.len());
         if run >= self.identity.runs || !self.shard.holds(run) || cells != columns {
-            return Err(SweepError::input(format!(
+            return Err(StudyError::input(format!(
                 "a row of {cells} cells for run {} is none of this sweep: expected {columns} cells and a run \
                  of part {} of {} runs",
                 run + 1,
@@ -152,7 +153,7 @@ impl Ongoing {
         let kept = kept(&row);
         match self.rows.get(&run) {
             Some(before) if *before == kept => Ok(()),
-            Some(_) => Err(SweepError::input(format!(
+            Some(_) => Err(StudyError::input(format!(
                 "run {} was made twice and came out differently: one of the machines computes wrongly",
                 run + 1
             ))),
@@ -165,8 +166,8 @@ impl Ongoing {
     }
 
     /// Ends before all rows are there, and says how far it came.
-    pub fn interrupted(&self) -> SweepError {
-        SweepError::Interrupted {
+    pub fn interrupted(&self) -> StudyError {
+        StudyError::Interrupted {
             finished: self.finished(),
             runs: self.runs(),
             folder: self.target.clone(),
@@ -176,14 +177,14 @@ impl Ongoing {
     /// Writes everything that follows from the rows. The journal stays locked until then.
     ///
     /// # Errors
-    /// [`SweepError`] if files cannot be written; the rows stand.
-    pub fn finish(self) -> Result<SweepOutcome, SweepError> {
+    /// [`StudyError`] if files cannot be written; the rows stand.
+    pub fn finish(self) -> Result<SweepOutcome, StudyError> {
         Ok(write(&self.target, &self.target, &self.identity, self.shard, &self.rows)?)
     }
 }
 
 /// The journal of this sweep in `target`, and the rows that are there.
-fn open(plan: &Plan, target: &Path, force: bool) -> Result<(Journal, RunRows), SweepError> {
+fn open(plan: &Plan, target: &Path, force: bool) -> Result<(Journal, RunRows), StudyError> {
     Folder::mend(target, RECORD_FILE).map_err(RunError::from)?;
     // Held until the journal is replaced: nobody works on what is thrown away.
     let replaced =
@@ -200,7 +201,7 @@ fn open(plan: &Plan, target: &Path, force: bool) -> Result<(Journal, RunRows), S
 }
 
 /// Makes the folder of a sweep without rows. It gets its name when record and journal are in it.
-fn create(plan: &Plan, target: &Path, force: bool) -> Result<(), SweepError> {
+fn create(plan: &Plan, target: &Path, force: bool) -> Result<(), StudyError> {
     let folder = Folder::prepare(target, RECORD_FILE, force).map_err(RunError::from)?;
     let record = Record::new(plan.identity().clone(), plan.shard(), &RunRows::new(), target);
     let put = |name, text: &str| put(folder.path(), name, text);
@@ -217,7 +218,7 @@ pub(super) fn refuse_other(
     identity: &Identity,
     shard: Shard,
     folder: &Path,
-) -> Result<(), SweepError> {
+) -> Result<(), StudyError> {
     let mut differences = record.identity.differences(identity);
     if record.shard != shard {
         differences.push(format!("--shard {} there, {shard} here", record.shard));
@@ -225,7 +226,7 @@ pub(super) fn refuse_other(
     if differences.is_empty() {
         return Ok(());
     }
-    Err(SweepError::Another(format!(
+    Err(StudyError::Another(format!(
         "`{}` holds another sweep: {}; choose another folder with --out, or replace it with --force",
         folder.display(),
         differences.join("; ")

@@ -4,10 +4,11 @@
 //! one run rubs (Euler's method, with the cycles for time). Each jump is made twice, in one and in two halves with a run
 //! between them; their distance is the error of the one, and twice that of the two, which are kept.
 
-use super::request::{WearError, WearRequest};
+use super::request::WearRequest;
 use super::rings::Ring;
 use super::stage::Stage;
 use crate::contact::Play;
+use crate::study::StudyError;
 
 /// Depth of the first jump tried, as a share of the clearance: a twentieth is surely seen, and hardly changes the motion.
 const FIRST: f64 = 0.05;
@@ -22,7 +23,7 @@ const LARGEST_SHRINKAGE: f64 = 0.2;
 const SHORTEST: f64 = 1e-3;
 
 /// What a run with rings that leave these rooms rubs, J per cycle; `cycles` is when, for what is said of it.
-pub(super) type Rub<'a> = dyn FnMut(&[Play], f64) -> Result<Vec<Vec<f64>>, WearError> + 'a;
+pub(super) type Rub<'a> = dyn FnMut(&[Play], f64) -> Result<Vec<Vec<f64>>, StudyError> + 'a;
 
 /// The stages from the start to the last cycle.
 ///
@@ -34,7 +35,7 @@ pub(super) fn predict(
     request: WearRequest,
     rub: &mut Rub,
     come: &dyn Fn(f64),
-) -> Result<Vec<Stage>, WearError> {
+) -> Result<Vec<Stage>, StudyError> {
     let WearRequest { cycles, tolerance, .. } = request;
     let errors = vec![0.0; rings.len()];
     let rubbed = rub(&start, 0.0)?;
@@ -56,7 +57,7 @@ pub(super) fn predict(
         if ratio > 1.0 {
             jump *= factor;
             if jump < SHORTEST * cycles {
-                return Err(WearError::TooShort { cycles: now.cycles, jump });
+                return Err(StudyError::TooShort { cycles: now.cycles, jump });
             }
             continue;
         }
@@ -154,6 +155,6 @@ mod tests {
         };
         let start = vec![Play::of(1e-4, None, WEAR_DIRECTIONS)];
         let ended = predict(&[ring()], start, request(1e-4), rub, &|_| {});
-        assert!(matches!(ended, Err(WearError::TooShort { .. })), "{ended:?}");
+        assert!(matches!(ended, Err(StudyError::TooShort { .. })), "{ended:?}");
     }
 }

@@ -15,7 +15,7 @@ mod rings;
 mod stage;
 
 pub use files::WEAR_PREDICTED_FILE;
-pub use request::{WearError, WearRequest};
+pub use request::WearRequest;
 pub use result::{JointWear, RingWear, WearSummary};
 pub use stage::Stage;
 
@@ -29,6 +29,7 @@ use crate::results::Folder;
 use crate::results::{PAGE_FILE, SCENARIO_FILE, to_json};
 use crate::results::{RunError, refused};
 use crate::scenario::Scenario;
+use crate::study::StudyError;
 use files::{SHAPES_FILE, STAGES_FILE, WORN_FILE};
 use rings::Ring;
 use std::fs;
@@ -65,13 +66,13 @@ pub fn period_of(scenario: &Scenario) -> Option<f64> {
 /// Predicts wear and writes everything about it into `folder`. `watch` sees the cycles reached.
 ///
 /// # Errors
-/// [`WearError`]; the folder is left as it was.
+/// [`StudyError`]; the folder is left as it was.
 pub fn wear(
     scenario: &Scenario,
     request: WearRequest,
     folder: Folder,
     watch: &Watch,
-) -> Result<PredictedWear, WearError> {
+) -> Result<PredictedWear, StudyError> {
     let started = Clock::now();
     let expanded = expand(scenario)?;
     let machine = assemble(scenario)?;
@@ -80,7 +81,7 @@ pub fn wear(
     let mut rub = |plays: &[Play], cycles: f64| {
         let rubbed = rubbed(scenario, &machine, &rings, plays, request.period, watch);
         watch.ended()?;
-        rubbed.map_err(|reason| WearError::Halted { cycles, reason })
+        rubbed.map_err(|reason| StudyError::Halted { cycles, reason })
     };
     let stages = jumps::predict(&rings, start, request, &mut rub, &|cycles| watch.come(cycles))?;
     let mut summary = result::summary(scenario, &rings, request, &stages);

@@ -7,7 +7,6 @@ mod result;
 
 pub use result::{Dependence, LawRow, LawsCompared};
 
-use super::CompareError;
 use super::plan::{machine, no_contacts, tolerance};
 use super::probe::{CompareMeasured, measure};
 use super::quantities::{COUNT, QUANTITIES};
@@ -19,6 +18,7 @@ use crate::results::refused;
 use crate::results::{PAGE_FILE, keep_scenario, scenario_files, to_json};
 use crate::scenario::{Law, Problem, Scenario};
 use crate::simulate::{FIT_SPEED, Provenance};
+use crate::study::StudyError;
 use crate::study::Watch;
 use matching::{Matched, own, under};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -53,14 +53,14 @@ pub struct FinishedByLaw {
 /// sees the time simulated so far, in s.
 ///
 /// # Errors
-/// [`CompareError`]; the folder is left as it was.
+/// [`StudyError`]; the folder is left as it was.
 pub fn compare_laws(
     scenario: &Scenario,
     kinds: &[&'static LawKind],
     starts: usize,
     folder: Folder,
     watch: &Watch,
-) -> Result<FinishedByLaw, CompareError> {
+) -> Result<FinishedByLaw, StudyError> {
     let started = Clock::now();
     let base = own(scenario)?;
     let others = others(kinds, base.kind)
@@ -127,7 +127,7 @@ fn simulate(
     laws: &[Matched],
     starts: usize,
     watch: &Watch,
-) -> Result<Vec<Vec<CompareMeasured>>, CompareError> {
+) -> Result<Vec<Vec<CompareMeasured>>, StudyError> {
     let jobs: Vec<(usize, usize)> =
         (0..laws.len()).flat_map(|law| (0..starts).map(move |start| (law, start))).collect();
     let results = jobs

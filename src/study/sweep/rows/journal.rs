@@ -6,7 +6,8 @@
 
 use super::record::sha256;
 use crate::results::{RunError, refused};
-use crate::study::sweep::{Identity, Shard, SweepError};
+use crate::study::StudyError;
+use crate::study::sweep::{Identity, Shard};
 use csv::StringRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -49,12 +50,12 @@ impl Journal {
     /// line.
     ///
     /// # Errors
-    /// [`SweepError`] if another process works on it, or it was edited.
+    /// [`StudyError`] if another process works on it, or it was edited.
     pub fn open(
         folder: &Path,
         identity: &Identity,
         shard: Shard,
-    ) -> Result<(Journal, RunRows), SweepError> {
+    ) -> Result<(Journal, RunRows), StudyError> {
         let path = folder.join(JOURNAL_FILE);
         let mut file = lock(folder)?;
         let mut text = Vec::new();
@@ -86,13 +87,13 @@ impl Journal {
 }
 
 /// Opens the journal of a folder for this process alone.
-pub(in crate::study::sweep) fn lock(folder: &Path) -> Result<File, SweepError> {
+pub(in crate::study::sweep) fn lock(folder: &Path) -> Result<File, StudyError> {
     let path = folder.join(JOURNAL_FILE);
     let opened = OpenOptions::new().read(true).append(true).open(&path);
     let file = opened.map_err(|error| unreadable(&path, &error))?;
     match file.try_lock() {
         Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(SweepError::input(format!(
+        Err(TryLockError::WouldBlock) => Err(StudyError::input(format!(
             "another freeplay is at work on `{}`; wait for it, or choose another folder with --out",
             folder.display()
         ))),
@@ -106,7 +107,7 @@ pub(in crate::study::sweep) fn read(
     folder: &Path,
     identity: &Identity,
     shard: Shard,
-) -> Result<RunRows, SweepError> {
+) -> Result<RunRows, StudyError> {
     let path = folder.join(JOURNAL_FILE);
     let text = std::fs::read(&path).map_err(|error| unreadable(&path, &error))?;
     Ok(parse(&text, &path, identity, shard)?.0)
@@ -124,8 +125,8 @@ pub(in crate::study::sweep) fn text(identity: &Identity, rows: &RunRows) -> Stri
         .collect()
 }
 
-fn unreadable(path: &Path, error: &io::Error) -> SweepError {
-    SweepError::input(format!(
+fn unreadable(path: &Path, error: &io::Error) -> StudyError {
+    StudyError::input(format!(
         "`{}` cannot be read: {error}; without this file the folder holds no sweep",
         path.display()
     ))
@@ -137,13 +138,13 @@ fn parse(
     path: &Path,
     identity: &Identity,
     shard: Shard,
-) -> Result<(RunRows, usize), SweepError> {
+) -> Result<(RunRows, usize), StudyError> {
     let hash = identity.hash();
     let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
     let mut rows = RunRows::new();
     for (number, line) in (1..).zip(text[..whole].split_inclusive(|byte| *byte == b'\n')) {
         let damaged = |what: String| {
-            SweepError::input(format!(
+            StudyError::input(format!(
                 "{}:{number}: {what}. Nothing was changed; restore the file, or delete this line \
                  and the sweep makes its run again",
                 path.display()

@@ -1,8 +1,9 @@
 //! `sweep.json`: what sweep a folder belongs to, and how far it has come.
 
 use crate::simulate::Provenance;
+use crate::study::StudyError;
 use crate::study::sweep::varied::design::MOST_RUNS;
-use crate::study::sweep::{Shard, SweepError, Vary};
+use crate::study::sweep::{Shard, Vary};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Display;
@@ -94,17 +95,17 @@ impl Record {
     /// Reads the record of a folder.
     ///
     /// # Errors
-    /// [`SweepError::Input`] if there is none or it is no record.
-    pub fn read(folder: &Path) -> Result<Record, SweepError> {
+    /// [`StudyError::Input`] if there is none or it is no record.
+    pub fn read(folder: &Path) -> Result<Record, StudyError> {
         let file = folder.join(RECORD_FILE);
         let file = file.display();
         let text = fs::read_to_string(folder.join(RECORD_FILE)).map_err(|error| {
-            SweepError::input(format!(
+            StudyError::input(format!(
                 "`{file}` cannot be read: {error}; expected the folder of a sweep"
             ))
         })?;
         let wrong = |what: &str| {
-            SweepError::input(format!(
+            StudyError::input(format!(
                 "`{file}` is no record of a sweep: {what}; it was truncated or edited. Nothing was \
                  changed; restore it, or choose another folder with --out"
             ))

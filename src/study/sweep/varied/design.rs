@@ -6,7 +6,8 @@
 //! fills the cube evenly at every n, in any number of keys, and run n follows from n alone.
 
 use super::vary::Values;
-use crate::study::sweep::{SweepError, Vary};
+use crate::study::StudyError;
+use crate::study::sweep::Vary;
 
 /// Most runs of a sweep. Checking that many takes minutes, running them weeks: more is a slip.
 pub(in crate::study::sweep) const MOST_RUNS: usize = 1_000_000;
@@ -20,7 +21,7 @@ pub(in crate::study::sweep) const MOST_RUNS: usize = 1_000_000;
 /// let design = Design::new(varied.into_iter().collect::<Result<_, _>>()?, 1)?;
 /// assert_eq!(design.runs(), 6, "each value of the one with each of the other");
 /// assert_ne!(design.values(0), design.values(5));
-/// # Ok::<(), freeplay::study::sweep::SweepError>(())
+/// # Ok::<(), freeplay::study::sweep::StudyError>(())
 /// ```
 #[derive(Debug)]
 pub struct Design {
@@ -43,11 +44,11 @@ impl Design {
     /// The runs that `varied` asks for; `seed` is that of the random sample.
     ///
     /// # Errors
-    /// [`SweepError::Input`]: nothing varied, a key varied twice, random keys that disagree about the
+    /// [`StudyError::Input`]: nothing varied, a key varied twice, random keys that disagree about the
     /// number of values, or too many runs.
-    pub fn new(varied: Vec<Vary>, seed: u64) -> Result<Design, SweepError> {
+    pub fn new(varied: Vec<Vary>, seed: u64) -> Result<Design, StudyError> {
         if varied.is_empty() {
-            return Err(SweepError::input(
+            return Err(StudyError::input(
                 "nothing is varied; give --vary PATH=…, such as --vary joints.clearance=1e-4,5e-4",
             ));
         }
@@ -56,7 +57,7 @@ impl Design {
         for (key, vary) in varied.iter().enumerate() {
             if varied[..key].iter().any(|before| before.path == vary.path) {
                 let path = &vary.path;
-                return Err(SweepError::input(format!(
+                return Err(StudyError::input(format!(
                     "--vary {path} is given twice; write all values into one"
                 )));
             }
@@ -64,7 +65,7 @@ impl Design {
                 Some(at) if vary.is_random() => {
                     let levels = factors[at].levels;
                     if levels != vary.count() {
-                        return Err(SweepError::input(format!(
+                        return Err(StudyError::input(format!(
                             "--vary {vary}: all random keys are one joint sample and need the same \
                              number of values; another one has {levels}"
                         )));
@@ -82,7 +83,7 @@ impl Design {
         let product = factors.iter().try_fold(1usize, |runs, f| runs.checked_mul(f.levels));
         let Some(runs) = product.filter(|runs| *runs <= MOST_RUNS) else {
             let levels: Vec<String> = factors.iter().map(|f| f.levels.to_string()).collect();
-            return Err(SweepError::input(format!(
+            return Err(StudyError::input(format!(
                 "--vary asks for {} runs, one for each combination; expected at most {MOST_RUNS}: \
                  vary fewer values, or draw them together (:random:)",
                 levels.join(" × ")
@@ -163,7 +164,7 @@ fn unit(bits: u64) -> f64 {
 mod tests {
     use super::*;
 
-    fn design(varied: &[&str]) -> Result<Design, SweepError> {
+    fn design(varied: &[&str]) -> Result<Design, StudyError> {
         let varied = varied.iter().map(|text| Vary::parse(text)).collect::<Result<_, _>>()?;
         Design::new(varied, 1)
     }

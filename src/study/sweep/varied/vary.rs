@@ -1,6 +1,6 @@
 //! One `--vary PATH=…`: which key of the scenario, and which values it takes.
 
-use crate::study::sweep::SweepError;
+use crate::study::StudyError;
 use std::fmt;
 
 /// How all of it is written, for messages.
@@ -14,7 +14,7 @@ const FORMS: &str = "write PATH=a,b,c or PATH=lo..hi:N, lo..hi:log:N, lo..hi:ran
 /// let vary = Vary::parse("joints.clearance=1e-6..1e-4:log:3")?;
 /// assert_eq!((vary.path.as_str(), vary.count(), vary.is_random()), ("joints.clearance", 3, false));
 /// assert_eq!(vary.value(1).parse::<f64>(), Ok(1e-5));
-/// # Ok::<(), freeplay::study::sweep::SweepError>(())
+/// # Ok::<(), freeplay::study::sweep::StudyError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vary {
@@ -52,11 +52,11 @@ impl Vary {
     /// Reads `PATH=…`. Whether the scenario has such a key and takes such values is not known here.
     ///
     /// # Errors
-    /// [`SweepError::Input`] that says what is wrong and what would be right.
-    pub fn parse(text: &str) -> Result<Vary, SweepError> {
+    /// [`StudyError::Input`] that says what is wrong and what would be right.
+    pub fn parse(text: &str) -> Result<Vary, StudyError> {
         let (path, values) = text.split_once('=').unwrap_or((text, ""));
         let (path, values) = (path.trim(), values.trim());
-        let refuse = |what: String| SweepError::input(format!("--vary {text}: {what}; {FORMS}"));
+        let refuse = |what: String| StudyError::input(format!("--vary {text}: {what}; {FORMS}"));
         if path.is_empty() || values.is_empty() {
             return Err(refuse("has no values or no path".to_owned()));
         }
