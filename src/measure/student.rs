@@ -8,6 +8,9 @@ pub fn t(share: f64, degrees: f64) -> f64 {
     distribution.map_or(f64::INFINITY, |distribution| distribution.inverse_cdf(share))
 }
 
+/// So many standard deviations on either side of a normal variable's mean hold it 95 times in 100.
+pub const NORMAL95: f64 = 1.96;
+
 /// Half width of a 95 % interval in standard errors.
 ///
 /// ```

@@ -8,6 +8,7 @@
 use super::commands::LEAD;
 use super::rattle::noise;
 use super::replica::Simulator;
+use crate::calibrate::sensed::thresholds::ERROR_CORNER;
 use crate::engine::{Halt, Schedule};
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log};
@@ -33,11 +34,9 @@ const APART: f64 = 0.25 / SWING;
 const SIZES: [f64; 3] = [1e-3, 1e-3, 2e-2];
 
 /// Time in s from the first row over which a swing is seen, until most of it has died, and shorter times
-/// before: a swing's frequency hangs on its amplitude, which takes a few periods to be seen. Below the
-/// corner in Hz the model may be wrong for other reasons.
+/// before: a swing's frequency hangs on its amplitude, which takes a few periods to be seen.
 const SEEN: f64 = 0.6;
 const FIRST: [f64; 2] = [0.1, 0.25];
-const CORNER: f64 = 25.0;
 
 /// Steps of Gauss and Newton over the whole time, at most, and the share of the squares that one has to
 /// promise to be tried, and to bring for another to be.
@@ -332,7 +331,7 @@ pub fn as_seen(
 
 /// What a log's pose shows of a swing that a simulated one does not, in units of its sensors' noise.
 fn swing(log: &Log, simulated: &Log, sensors: &Sensors) -> DVector<f64> {
-    let filter = ZeroPhase::butterworth(4, CORNER, log.interval);
+    let filter = ZeroPhase::butterworth(4, ERROR_CORNER, log.interval);
     let channels = (0..3).filter_map(|k| {
         let channel = Channel::Pose(k);
         let unit = noise(sensors, channel)?;

@@ -2,6 +2,7 @@
 //! is another unit, another sign or another leg's force a mix-up.
 
 use crate::calibrate::measured::mistaken::{Mistake, mistakes, rms};
+use crate::calibrate::sensed::thresholds::ERROR_CORNER;
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log, LogError};
 use crate::scenario::{Drive, DriveMode};
@@ -14,12 +15,9 @@ const LARGE: f64 = 200.0;
 /// So many times the force that the servo's law gives is no force in N: gains may be wrong, but not so.
 const BEYOND_LAW: f64 = 30.0;
 
-/// Corner of that low-pass in Hz: most of a rattle and of a sensor's noise lies above.
-const CORNER: f64 = 25.0;
-
 /// Forces with the wrong sign, or of another leg: of servos, whose law says what they should be.
 pub fn mixed_up(path: &str, log: &Log, drive: &Drive) -> Vec<LogError> {
-    let filter = ZeroPhase::butterworth(4, CORNER, log.interval);
+    let filter = ZeroPhase::butterworth(4, ERROR_CORNER, log.interval);
     let leg = |leg: usize| {
         let (force, law) = (log.get(Channel::Force(leg))?, servo(log, drive, leg)?);
         Some([filter.apply(force), filter.apply(&law)])
@@ -51,7 +49,7 @@ pub fn mixed_up(path: &str, log: &Log, drive: &Drive) -> Vec<LogError> {
 
 /// Forces of another order of magnitude than the declared model's, whose noiseless log is given.
 pub fn forces(path: &str, log: &Log, declared: &Log, drive: &Drive) -> Vec<LogError> {
-    let filter = ZeroPhase::butterworth(4, CORNER, log.interval);
+    let filter = ZeroPhase::butterworth(4, ERROR_CORNER, log.interval);
     let size = |values: &[f64]| rms(filter.apply(values).iter().copied());
     let mut found = Vec::new();
     for leg in 0..3 {

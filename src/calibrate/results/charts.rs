@@ -3,6 +3,7 @@
 use super::outcome::LegsOutcome;
 use super::unnamed_picture;
 use crate::calibrate::measured::recording::stem;
+use crate::calibrate::sensed::thresholds::ERROR_CORNER;
 use crate::calibrate::values::model::{LegsCase, LegsSegment};
 use crate::effects::Setting;
 use crate::measure::filter::ZeroPhase;
@@ -10,9 +11,6 @@ use crate::measure::log::{Channel, Log};
 use crate::mechanism::{Command, Commands};
 use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg};
 use crate::results::RunError;
-
-/// Corner in Hz of the low-pass that everything is drawn through: that of the errors.
-pub(super) const CORNER: f64 = 25.0;
 
 /// Left out at both ends in s, where the low-pass sees beyond the log.
 const TRIM: f64 = 0.06;
@@ -102,7 +100,7 @@ pub fn of_run(
             file: format!("forces-{name}.svg"),
             title: format!("Actuator forces, {} ({role})", log.name),
             caption: format!(
-                "Measured and {listed}, through a zero-phase low-pass of {CORNER} Hz."
+                "Measured and {listed}, through a zero-phase low-pass of {ERROR_CORNER} Hz."
             ),
             svg: panels_svg(&panels.collect::<Vec<_>>())?,
         });
@@ -158,7 +156,7 @@ fn curve(name: &str, log: &Log, values: Option<&[f64]>, style: Style) -> Option<
 
 /// A signal over time (s) through the low-pass, without the ends that see beyond the log.
 pub(super) fn low_passed(log: &Log, values: &[f64]) -> Vec<(f64, f64)> {
-    let filtered = ZeroPhase::butterworth(4, CORNER, log.interval).apply(values);
+    let filtered = ZeroPhase::butterworth(4, ERROR_CORNER, log.interval).apply(values);
     let trim = (TRIM / log.interval).round() as usize;
     let inner = trim..filtered.len().saturating_sub(trim);
     inner.map(|i| (log.start + i as f64 * log.interval, filtered[i])).collect()
@@ -223,7 +221,7 @@ fn dependence(
             title: format!("Force that is not accounted for, over {what}"),
             caption: format!(
                 "Measured actuator force less what inverse dynamics of the measured motion takes, \
-                 {}, through the low-pass of {CORNER} Hz: a shape is something that the model lacks, a \
+                 {}, through the low-pass of {ERROR_CORNER} Hz: a shape is something that the model lacks, a \
                  shapeless band is noise and rattle.",
                 run.log.name
             ),
@@ -238,7 +236,7 @@ fn residual(case: &LegsCase, effects: &[Setting]) -> [Vec<f64>; 3] {
     let run = &case.runs[0];
     let segment = LegsSegment { run: 0, rows: run.rows() };
     let interval = run.log.interval * run.lens.stride() as f64;
-    let filter = ZeroPhase::butterworth(4, CORNER, interval);
+    let filter = ZeroPhase::butterworth(4, ERROR_CORNER, interval);
     // A model that could be simulated can be looked at.
     case.plain(effects, &segment).map_or_else(
         |_| [const { Vec::new() }; 3],

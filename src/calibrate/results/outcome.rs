@@ -10,6 +10,7 @@ use crate::calibrate::values::model::{LegsCase, LegsRun, LegsSegment, SearchErro
 use crate::calibrate::values::settle::{FitData, Settled};
 use crate::effects::{Scan, Setting, UNNAMED};
 use crate::measure::log::Log;
+use crate::measure::student::NORMAL95;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -55,7 +56,7 @@ pub struct ValueEstimate {
 impl ValueEstimate {
     /// The interval that holds the true value 95 times in 100.
     pub fn ci95(&self) -> [f64; 2] {
-        [self.value - 1.96 * self.std, self.value + 1.96 * self.std]
+        [self.value - NORMAL95 * self.std, self.value + NORMAL95 * self.std]
     }
 }
 

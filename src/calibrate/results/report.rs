@@ -9,6 +9,7 @@ use crate::calibrate::rounds::way::name;
 use crate::calibrate::values::errors::ChannelError;
 use crate::calibrate::values::model::LegsCase;
 use crate::effects::{DependsOn, Over, OverTime, Setting, Target};
+use crate::measure::student::NORMAL95;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
 use serde::{Serialize, Serializer};
@@ -154,8 +155,7 @@ pub struct Fitted {
 impl Fitted {
     /// A value with its standard deviation.
     pub fn new(value: f64, std: f64) -> Self {
-        // 97.5 % of a normal variable lie below 1.96 standard deviations.
-        Self { value, std, ci95: [value - 1.96 * std, value + 1.96 * std] }
+        Self { value, std, ci95: [value - NORMAL95 * std, value + NORMAL95 * std] }
     }
 }
 

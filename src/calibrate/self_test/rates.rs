@@ -1,6 +1,7 @@
 //! What counts of a trial's values, and shares with what chance leaves open.
 
 use super::HiddenValue;
+use crate::measure::student::NORMAL95;
 
 /// The largest relative error of a value that counts as near.
 const NEAR: f64 = 0.1;
@@ -17,7 +18,7 @@ pub(in crate::calibrate) fn near(value: &HiddenValue) -> bool {
 
 /// Whether the true value lies in the 95 % interval of the one that was found.
 pub(in crate::calibrate) fn covered(value: &HiddenValue) -> bool {
-    value.std.is_some_and(|std| (value.value - value.truth).abs() < 1.96 * std)
+    value.std.is_some_and(|std| (value.value - value.truth).abs() < NORMAL95 * std)
 }
 
 /// `9 of 10 (90 %, 60–98)`.
@@ -33,14 +34,14 @@ pub(in crate::calibrate) fn share(of: &[bool]) -> String {
 /// The 95 % interval of a share of `of` independent trials of which `right` were right (Wilson, J. Am.
 /// Stat. Assoc. 22 (1927) 209–212); none without trials.
 fn wilson(right: usize, of: usize) -> Option<[f64; 2]> {
-    const Z: f64 = 1.96;
     if of == 0 {
         return None;
     }
     let n = of as f64;
     let share = right as f64 / n;
-    let middle = (share + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
-    let half = Z / (1.0 + Z * Z / n) * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
+    let middle = (share + NORMAL95 * NORMAL95 / (2.0 * n)) / (1.0 + NORMAL95 * NORMAL95 / n);
+    let half = NORMAL95 / (1.0 + NORMAL95 * NORMAL95 / n)
+        * (share * (1.0 - share) / n + NORMAL95 * NORMAL95 / (4.0 * n * n)).sqrt();
     Some([middle - half, middle + half])
 }
 

@@ -12,6 +12,10 @@ pub const SHORTEST: f64 = 1.0;
 /// Corner in Hz of the low-pass before that: below half the rate.
 pub const PREFILTER: f64 = 100.0;
 
+/// Corner in Hz of the low-pass that errors are looked at through, as agreed on with whoever reads them: most of a rattle and of
+/// a sensor's noise lies above.
+pub const ERROR_CORNER: f64 = 25.0;
+
 /// Corner in Hz of the low-pass of coordinates before they are differentiated twice: noise grows with the
 /// square of the frequency.
 pub const CORNER: f64 = 80.0;

@@ -2,14 +2,13 @@
 
 use super::model::LegsCase;
 use crate::calibrate::measured::replica;
+use crate::calibrate::sensed::thresholds::ERROR_CORNER;
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::{Channel, Log};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Corner in Hz of the low-pass that errors are looked at through, and what is left out at both ends
-/// of a log in s: as agreed on with whoever reads them.
-const CORNER: f64 = 25.0;
+/// What is left out at both ends of a log in s, as agreed on with whoever reads the errors.
 const TRIM: f64 = 0.06;
 
 /// Draws of noise that a floor is taken from: one of each replica that a prediction is the mean of.
@@ -80,7 +79,7 @@ pub fn ensemble(logs: &[Log]) -> Log {
 pub fn rms(a: &Log, b: &Log, channel: Channel) -> Option<f64> {
     let difference: Vec<f64> =
         a.get(channel)?.iter().zip(b.get(channel)?).map(|(a, b)| a - b).collect();
-    let filtered = ZeroPhase::butterworth(4, CORNER, a.interval).apply(&difference);
+    let filtered = ZeroPhase::butterworth(4, ERROR_CORNER, a.interval).apply(&difference);
     let trim = (TRIM / a.interval).round() as usize;
     let inner = filtered.get(trim..filtered.len().checked_sub(trim)?)?;
     let squares: f64 = inner.iter().map(|v| v * v).sum();

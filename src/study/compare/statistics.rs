@@ -1,5 +1,6 @@
 //! Means over starts, and what they tend to as the step shrinks.
 
+use crate::measure::student::NORMAL95;
 use serde::Serialize;
 
 /// A mean with its standard error.
@@ -101,7 +102,7 @@ pub fn trend(points: &[(f64, Mean)], order: f64) -> Trend {
         data.pop();
         fit = line(&data);
     }
-    let half = 1.96 * fit.intercept_std;
+    let half = NORMAL95 * fit.intercept_std;
     let ci95 = Some([fit.intercept - half, fit.intercept + half]);
     Trend { behaviour, power, power_std, limit: Some(fit.intercept), ci95 }
 }

@@ -4,6 +4,7 @@ use super::quantities::{ComparedQuantity, QUANTITIES, index};
 use super::result::{Comparison, RowResult};
 use super::statistics::{Behaviour, Mean, Trend};
 use super::usable::{NativeUse, QuantityVerdict};
+use crate::measure::student::NORMAL95;
 use crate::report::{length, number};
 use crate::scenario::Law;
 
@@ -88,7 +89,7 @@ fn verdict(
     let (Some(limit), Some([low, high])) = (trend.limit, trend.ci95) else {
         return (NativeUse::Unclear, format!("too few steps to see a limit; {expected}"));
     };
-    let sem = (high - low) / (2.0 * 1.96);
+    let sem = (high - low) / (2.0 * NORMAL95);
     let reason =
         format!("tends to {} ({} to {}); {expected}", value(limit), value(low), value(high));
     let difference = (limit - law.mean).abs();

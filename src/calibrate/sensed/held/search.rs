@@ -10,6 +10,7 @@ use super::terms::HeldTerm;
 use crate::calibrate::results::report::Fitted;
 use crate::calibrate::sensed::thresholds::{BETTER, STRETCH, WORTH};
 use crate::effects::{Kind, Setting, Target};
+use crate::measure::student::NORMAL95;
 use crate::scenario::Problem;
 
 /// A candidate in a round.
@@ -255,7 +256,7 @@ fn certain(
         let sizes = model.terms.iter().zip(&deviations).map(|((_, value), std)| value.abs() / std);
         let least = sizes
             .enumerate()
-            .filter(|(i, size)| !kept(&terms[*i]) && *size < BETTER * 1.96)
+            .filter(|(i, size)| !kept(&terms[*i]) && *size < BETTER * NORMAL95)
             .min_by(|a, b| a.1.total_cmp(&b.1));
         let Some((least, _)) = least else { return Ok(Some((model, deviations))) };
         terms.remove(least);

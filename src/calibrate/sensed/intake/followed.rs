@@ -5,16 +5,13 @@ use crate::calibrate::measured::mistaken::{Mistake, mistakes, rms};
 use crate::calibrate::sensed::motion::start::told_by;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::{effort_sensor, position_sensor};
+use crate::calibrate::sensed::thresholds::ERROR_CORNER;
 use crate::calibrate::sensed::thresholds::FACTORS;
 use crate::calibrate::sensed::windows::plausible::scaled_by;
 use crate::measure::filter::ZeroPhase;
 use crate::measure::log::LogError;
 use crate::mechanism::{Drive, Mechanism, Reads};
 use crate::scenario::Scenario;
-
-/// Corner in Hz of the low-pass of efforts and of what servos make of readings: most of a rattle and of a sensor's noise
-/// lies above.
-const CORNER: f64 = 25.0;
 
 /// Share of its command's motion below which a reading stands still: far below what any drive gives.
 const STILL: f64 = 1e-3;
@@ -58,8 +55,8 @@ fn readings(machine: &Mechanism, recording: &Recording) -> FollowedColumns {
 /// Efforts of servos beside `k_p (q_cmd − q)`; their damping is small where motion is slow.
 fn efforts(machine: &Mechanism, recording: &Recording) -> FollowedColumns {
     let nyquist = 0.5 / recording.interval;
-    let filter =
-        (CORNER < 0.9 * nyquist).then(|| ZeroPhase::butterworth(4, CORNER, recording.interval));
+    let filter = (ERROR_CORNER < 0.9 * nyquist)
+        .then(|| ZeroPhase::butterworth(4, ERROR_CORNER, recording.interval));
     let slow = |values: &[f64]| filter.as_ref().map_or(values.to_vec(), |f| f.apply(values));
     let of = |(index, drive): (usize, &crate::mechanism::Actuator)| {
         let Drive::Servo { stiffness, .. } = drive.drive else { return None };

@@ -14,6 +14,7 @@ use crate::calibrate::sensed::intake::noise;
 use crate::calibrate::sensed::motion::released::{StartError, released};
 use crate::calibrate::sensed::motion::simulate::{apart, record};
 use crate::calibrate::sensed::recorded::recording::Recording;
+use crate::calibrate::sensed::thresholds::ERROR_CORNER;
 use crate::calibrate::sensed::thresholds::{PREDICTING, SEEN};
 use crate::calibrate::sensed::values::errors::{self, mean};
 use crate::calibrate::sensed::windows::report::remarks;
@@ -67,9 +68,7 @@ pub fn prepare(model: &Scenario, path: &Path) -> Result<PreparedPrediction, Cali
     let lacking = columns.and_then(|named| recording.lacks(&machine.sensors, named));
     refuse(lacking.into_iter().collect())?;
     refuse(held::plausible::wrong(model, &machine, &recording))?;
-    refuse(
-        recording.too_slow("predict", errors::LOWEST_RATE, errors::CORNER).into_iter().collect(),
-    )?;
+    refuse(recording.too_slow("predict", errors::LOWEST_RATE, ERROR_CORNER).into_iter().collect())?;
     refuse(followed::wrong(model, &machine, &recording))?;
     let mut machine = machine;
     if held::bench::suits(&machine) {

@@ -3,19 +3,16 @@
 use super::by_chance::up_to;
 use crate::calibrate::sensed::motion::simulate::noisy;
 use crate::calibrate::sensed::recorded::recording::Recording;
-use crate::calibrate::sensed::thresholds::{DRAWS, MET, TRIM};
+use crate::calibrate::sensed::thresholds::{DRAWS, ERROR_CORNER, MET, TRIM};
 use crate::calibrate::values::errors::ChannelError;
 use crate::measure::filter::ZeroPhase;
 use crate::mechanism::Mechanism;
-
-/// Corner in Hz of the low-pass that errors are looked at through: as agreed on with whoever reads them.
-pub const CORNER: f64 = 25.0;
 
 /// Values that [`in_floors`] has for each that is independent of the others: four a period of the corner, where two say all.
 pub const OVERSAMPLED: f64 = 2.0;
 
 /// Lowest rate in Hz of a recording that they are looked at in: four samples a period.
-pub const LOWEST_RATE: f64 = 4.0 * CORNER;
+pub const LOWEST_RATE: f64 = 4.0 * ERROR_CORNER;
 
 /// The mean of noiseless recordings: the best prediction of one whose rattle nobody knows.
 pub fn mean(recordings: &[Recording], sensors: usize) -> Recording {
@@ -32,7 +29,7 @@ pub fn mean(recordings: &[Recording], sensors: usize) -> Recording {
 fn missed(a: &Recording, b: &Recording, sensor: usize) -> Option<Vec<f64>> {
     let difference: Vec<f64> =
         a.get(sensor)?.iter().zip(b.get(sensor)?).map(|(a, b)| a - b).collect();
-    let filtered = ZeroPhase::butterworth(4, CORNER, a.interval).apply(&difference);
+    let filtered = ZeroPhase::butterworth(4, ERROR_CORNER, a.interval).apply(&difference);
     let trim = (TRIM / a.interval).round() as usize;
     Some(filtered.get(trim..filtered.len().checked_sub(trim)?)?.to_vec())
 }
@@ -52,7 +49,7 @@ pub fn in_floors(
     floors: &[Option<f64>],
 ) -> Vec<f64> {
     let predicted = mean(replicas, machine.sensors.len());
-    let stride = (0.25 / (CORNER * recording.interval)).floor().max(1.0) as usize;
+    let stride = (0.25 / (ERROR_CORNER * recording.interval)).floor().max(1.0) as usize;
     let of = |(i, floor): (usize, &Option<f64>)| {
         let missed = missed(recording, &predicted, i)?;
         let floor = floor.filter(|floor| *floor > 0.0)?;
