@@ -13,7 +13,7 @@ use crate::calibrate::sensed::rounds::words::names;
 use crate::calibrate::sensed::thresholds::{BY_LOOKS, GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
 use crate::calibrate::sensed::values::linear::Derivatives;
 use crate::calibrate::sensed::values::model::{Model, price};
-use crate::effects::Setting;
+use crate::effects::{SELDOM, Setting};
 use rayon::prelude::*;
 
 /// Difference of cost below which rivals are compared at values from whole simulations: those from looks are a little off, by
@@ -25,10 +25,12 @@ const CLOSE: f64 = 10.0 * TWINS[0];
 const STEPS: usize = 6;
 
 /// Of effects that explain recordings alike the one that is named, by its place: an instrument's error before one of the
-/// machine, the earlier before the later.
+/// machine, a common effect before one that imitates it, the earlier before the later.
 fn preferred(alike: &[Setting]) -> Option<usize> {
     let instrument = alike.iter().position(|effect| effect.kind.is_instrument());
-    instrument.or((!alike.is_empty()).then_some(0))
+    let seldom = |effect: &Setting| SELDOM.iter().any(|kind| kind.name == effect.kind.name);
+    let common = || alike.iter().position(|effect| !seldom(effect));
+    instrument.or_else(common).or((!alike.is_empty()).then_some(0))
 }
 
 impl Search<'_> {
@@ -197,7 +199,7 @@ mod tests {
     use super::preferred;
     use crate::effects::{Setting, Target, named};
 
-    /// A machine is blamed only where no instrument would explain as much.
+    /// A machine is blamed only where no instrument would explain as much, and of something seldom only where nothing common would.
     #[test]
     fn instruments_are_named_before_the_machine() {
         let wear = Setting::on(
@@ -212,6 +214,13 @@ mod tests {
         );
         assert_eq!(preferred(&[]), None);
         assert_eq!(preferred(std::slice::from_ref(&wear)), Some(0));
+        let round = Setting::on(
+            named("out-of-round").unwrap(),
+            wear.target.clone(),
+            &[("amplitude_m", 1e-5)],
+        );
+        assert_eq!(preferred(&[round.clone(), wear.clone()]), Some(1));
+        assert_eq!(preferred(std::slice::from_ref(&round)), Some(0));
         assert_eq!(preferred(&[wear, zero.clone(), zero]), Some(1));
     }
 }

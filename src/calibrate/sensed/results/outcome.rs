@@ -253,31 +253,47 @@ fn what_does_not_last(
     beside(problem, effects, &simulated)
 }
 
-/// Puts a model that predicts the recordings in the place of what was found where that leaves noise and misses them; and what
-/// speaks against it although it leaves no more than noise.
+/// Puts a model that predicts the recordings in the place of what was found where that leaves noise and misses them: those that
+/// values are fitted to, then the others; and what speaks against it although it leaves no more than noise.
 fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped> {
-    // What no simulation bears out is nothing that the declared model lacks.
-    let against = |model: &Model, rest: Option<Rest>| {
-        let uncertain = || uncertain(search.problem, model, &search.split.on).map(Rest::Uncertain);
-        let named = search.is_noise(model) && !model.fit.effects.is_empty();
-        named.then(|| rest.or_else(uncertain)).flatten()
-    };
+    let rest = predicting(search, found)?;
+    if rest.is_none()
+        && let Some((wider, round)) = search.wider(&found.best)?
+    {
+        found.best = wider;
+        found.rounds.push(round);
+        return Ok(against(search, &found.best, None));
+    }
+    Ok(rest)
+}
+
+/// The same for the recordings that values are fitted to.
+fn predicting(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped> {
     found.best = search.certain(found.best.clone())?;
     let best = &found.best;
-    let rest = against(best, found.rest.take());
+    let rest = against(search, best, found.rest.take());
     let mut better = match search.is_noise(best) && rest.is_none() {
         true => search.predicting(best)?,
         false => None,
     };
     // How a machine falls shows effects that its accelerations hardly do, and imitate one another in.
     if better.is_none() && !best.fit.effects.is_empty() && search.problem.falls(&[])? {
-        let fails = rest.is_some() || !search.is_noise(best) || search.misses(best)?;
+        let fails =
+            rest.is_some() || !search.is_noise(best) || search.misses(best, &search.split.on)?;
         better = if fails { search.predicting(&found.declared)? } else { None };
     }
     let Some((model, round)) = better else { return Ok(rest) };
     found.best = search.certain(model)?;
     found.rounds.extend(round);
-    Ok(against(&found.best, None))
+    Ok(against(search, &found.best, None))
+}
+
+/// What speaks against a model that leaves no more than noise: what no simulation bears out is nothing that the declared model
+/// lacks.
+fn against(search: &Search, model: &Model, rest: Option<Rest>) -> Option<Rest> {
+    let uncertain = || uncertain(search.problem, model, &search.split.on).map(Rest::Uncertain);
+    let named = search.is_noise(model) && !model.fit.effects.is_empty();
+    named.then(|| rest.or_else(uncertain)).flatten()
 }
 
 /// Whether the errors of all runs are met: a model that misses the run that it was fitted to lacks something.

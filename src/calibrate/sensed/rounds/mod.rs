@@ -1,5 +1,5 @@
 //! One effect after another ([`search`]), several hypotheses at once, in a [`round`] each: which promise ([`screen`]), those that are
-//! simulated ([`hypotheses`]), what residuals hardly see ([`unseen`], [`other_laws`], [`calm`]), values that agree with simulations
+//! simulated ([`hypotheses`]), what residuals hardly see ([`unseen`], [`other_laws`], [`calm`]) or one run alone shows ([`wider`]), values that agree with simulations
 //! ([`settle`]); what still stands out ([`rest`]), and effects in [`words`].
 
 pub(super) mod calm;
@@ -11,4 +11,5 @@ pub(super) mod screen;
 pub mod search;
 pub mod settle;
 pub(super) mod unseen;
+pub(super) mod wider;
 pub(super) mod words;

@@ -115,7 +115,8 @@ impl Search<'_> {
         &self,
         model: &Model,
     ) -> Result<Option<(Model, Option<Round>)>, Stopped> {
-        if !self.misses(model)? {
+        let on = &self.split.on;
+        if !self.misses(model, on)? {
             return Ok(None);
         }
         let effects = &model.fit.effects;
@@ -128,14 +129,14 @@ impl Search<'_> {
             self.fitted(effects, Far::All).ok().flatten().filter(|closer| self.is_noise(closer))
         };
         if let Some(closer) = &closer
-            && !self.misses(closer)?
+            && !self.misses(closer, on)?
         {
             return Ok(Some((closer.clone(), None)));
         }
         let mut round = Round::default();
         let found = self.unseen(closer.as_ref().unwrap_or(model), &mut round.tried)?;
         for found in found.into_iter().filter(|found| self.is_noise(found)) {
-            if !self.misses(&found)? {
+            if !self.misses(&found, on)? {
                 round.added = found.fit.effects.last().cloned();
                 round.as_good = twins(&round, TWINS[usize::from(found.baseline.rattles)]);
                 return Ok(Some((found, Some(round))));
@@ -152,13 +153,17 @@ impl Search<'_> {
         Ok(foretold.filter(|foretold| self.is_noise(foretold)))
     }
 
-    /// Whether a model's predictions miss a run that its values were fitted to.
-    pub(in crate::calibrate::sensed) fn misses(&self, model: &Model) -> Result<bool, Stopped> {
+    /// Whether a model's predictions miss a run of these segments.
+    pub(in crate::calibrate::sensed) fn misses(
+        &self,
+        model: &Model,
+        segments: &[Segment],
+    ) -> Result<bool, Stopped> {
         let (problem, effects) = (self.problem, &model.fit.effects);
         let starts = problem.starts(effects)?;
         let replicas = 0..problem.replicas;
         let clean = problem.simulated_about(effects, &model.fit.deviations(), &starts, replicas)?;
-        Ok(self.split.on.iter().any(|segment| {
+        Ok(segments.iter().any(|segment| {
             let (clean, run) = (&clean[segment.run], &problem.runs[segment.run]);
             let errors = of_run(&problem.declared, &run.recording, "calibration", clean, clean);
             !are_met(&problem.declared, &errors, clean)
