@@ -21,29 +21,34 @@ impl Search<'_> {
         &self,
         model: &Model,
     ) -> Result<Option<(Model, Round)>, Stopped> {
-        if model.baseline.rattles
-            || !self.is_noise(model)
-            || !self.misses(model, &self.split.hold)?
-        {
+        let effects = &model.fit.effects;
+        let pairs = effects.iter().enumerate().flat_map(|(i, own)| {
+            let all = self.candidates.iter();
+            all.filter(move |candidate| contains(candidate, own)).map(move |outer| (i, outer))
+        });
+        let wider: Vec<(usize, &Setting)> = pairs.collect();
+        // Simulations are dear: most effects are contained in none.
+        if wider.is_empty() || model.baseline.rattles || !self.is_noise(model) {
             return Ok(None);
         }
+        if !self.misses(model, &self.split.hold)? {
+            return Ok(None);
+        }
+        let all = [self.split.on.as_slice(), &self.split.hold].concat();
         let target = self.target(&model.baseline, false);
-        for (i, own) in model.fit.effects.iter().enumerate() {
-            let mut others = model.fit.effects.clone();
+        for (i, candidate) in wider {
+            let mut others = effects.clone();
             others.remove(i);
             let Some(without) = target.look(&others) else { continue };
-            for candidate in self.candidates.iter().filter(|candidate| contains(candidate, own)) {
-                for start in starts(&target, &without, candidate) {
-                    let effects = [others.as_slice(), &[start]].concat();
-                    (self.tell)(&format!("fitting whole simulations with {}", names(&effects)));
-                    let Some(wider) = self.fitted(&effects, Far::All).ok().flatten() else {
-                        continue;
-                    };
-                    let all = [self.split.on.as_slice(), &self.split.hold].concat();
-                    if self.is_noise(&wider) && !self.misses(&wider, &all)? {
-                        let round = round(&wider, model);
-                        return Ok(Some((wider, round)));
-                    }
+            for start in starts(&target, &without, candidate) {
+                let effects = [others.as_slice(), &[start]].concat();
+                (self.tell)(&format!("fitting whole simulations with {}", names(&effects)));
+                if let Some(wider) = self.fitted(&effects, Far::All).ok().flatten()
+                    && self.is_noise(&wider)
+                    && !self.misses(&wider, &all)?
+                {
+                    let round = round(&wider, model);
+                    return Ok(Some((wider, round)));
                 }
             }
         }
