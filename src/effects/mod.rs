@@ -95,10 +95,7 @@ pub const CALMING: &[&Kind] = &[&joints::journal_friction::KIND, &bodies::drag::
 /// out too.
 pub const CONTAINS: &[(&Kind, &Kind)] =
     // With as much friction near rest as in motion.
-    &[
-        (&drives::stribeck_friction::KIND, &drives::actuator_friction::KIND),
-        (&drives::stribeck_friction::KIND, &joints::joint_friction::KIND),
-    ];
+    &[(&drives::stribeck_friction::KIND, &drives::actuator_friction::KIND)];
 
 /// The effect called `name`.
 pub fn named(name: &str) -> Option<&'static Kind> {

@@ -1,6 +1,6 @@
 //! Effects that go by two names on some machines: a search tries one of the two, under the name that says more.
 
-use super::{Setting, Target, named};
+use super::{CONTAINS, Setting, Target, named};
 use crate::mechanism::{JointIndex, Mechanism, Reads, Use};
 
 impl Setting {
@@ -42,6 +42,18 @@ impl Setting {
 }
 
 impl Setting {
+    /// Whether it becomes another effect, on the same target, at some of its values.
+    pub fn contains(&self, inner: &Setting) -> bool {
+        // In a prismatic joint both are −(F_c sign(q̇) + F_v q̇).
+        let inner_name = match inner.kind.name {
+            "joint-friction" => "actuator-friction",
+            name => name,
+        };
+        let kinds = (self.kind.name, inner_name);
+        self.target == inner.target
+            && CONTAINS.iter().any(|(outer, inner)| (outer.name, inner.name) == kinds)
+    }
+
     /// `pivot-friction` of named joints as `joint-friction`, which says the same of any joint; none of other effects.
     pub fn as_joint_friction(&self) -> Option<Setting> {
         if self.kind.name != "pivot-friction" || self.target.names().is_empty() {
@@ -58,8 +70,8 @@ impl Setting {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ALL;
     use super::super::rigs::{SLIDER_CRANK, closed};
+    use crate::effects::{ALL, Setting, named};
     use crate::mechanism::Mechanism;
     use crate::model::parts_of;
     use crate::scenario::Scenario;
@@ -72,6 +84,16 @@ mod tests {
         let mut twins: Vec<String> = twins.collect();
         twins.dedup();
         twins
+    }
+
+    #[test]
+    fn friction_that_falls_contains_plain_friction_of_the_same_joint() {
+        let at = |kind: &str, joint| Setting::new(named(kind).unwrap(), Some(joint), &[]);
+        let falling = at("stribeck-friction", "S");
+        assert!(falling.contains(&at("joint-friction", "S")));
+        assert!(falling.contains(&at("actuator-friction", "S")));
+        assert!(!falling.contains(&at("joint-friction", "B")));
+        assert!(!at("joint-friction", "S").contains(&falling));
     }
 
     #[test]

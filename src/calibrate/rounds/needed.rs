@@ -70,13 +70,6 @@ fn lesser(effects: &[Setting], which: usize) -> Vec<Vec<Setting>> {
     lesser
 }
 
-/// Whether an effect is another one, of the same joint, at some of its values.
-pub fn contains(outer: &Setting, inner: &Setting) -> bool {
-    let kinds = (outer.kind.name, inner.kind.name);
-    outer.target == inner.target
-        && CONTAINS.iter().any(|(outer, inner)| (outer.name, inner.name) == kinds)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -92,8 +85,8 @@ mod tests {
         let stribeck = of("stribeck-friction", Some("P3"), &values);
         let friction =
             of("actuator-friction", Some("P3"), &[("coulomb_N", 3.0), ("viscous_Ns_m", 0.0)]);
-        assert!(contains(&stribeck, &friction) && !contains(&friction, &stribeck));
-        assert!(!contains(&stribeck, &payload));
+        assert!(stribeck.contains(&friction) && !friction.contains(&stribeck));
+        assert!(!stribeck.contains(&payload));
         let both = [payload.clone(), stribeck.clone()];
         assert_eq!(lesser(&both, 0), [vec![stribeck.clone()]]);
         assert_eq!(lesser(&both, 1), [vec![payload.clone()], vec![payload, friction.clone()]]);

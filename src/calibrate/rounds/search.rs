@@ -3,7 +3,7 @@
 
 use super::beside::{CHANCE, Fan};
 use super::left::{is_noise, left};
-use super::needed::{contains, needed};
+use super::needed::needed;
 use super::way::{LegsRound, Way, names};
 use crate::calibrate::values::fit::LegsFitTarget;
 use crate::calibrate::values::instrument::changed;
@@ -155,7 +155,7 @@ impl Way {
     fn rename_added(&mut self) {
         let kept = &self.model.fit.effects;
         for added in self.rounds.iter_mut().filter_map(|round| round.added.as_mut()) {
-            let inner = kept.iter().find(|effect| contains(added, effect));
+            let inner = kept.iter().find(|effect| added.contains(effect));
             *added = inner.unwrap_or(added).clone();
         }
     }

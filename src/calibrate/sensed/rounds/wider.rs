@@ -7,7 +7,7 @@ use crate::calibrate::sensed::residuals::problem::Stopped;
 use crate::calibrate::sensed::values::candidates::starts;
 use crate::calibrate::sensed::values::model::Model;
 use crate::calibrate::sensed::values::trajectory::Far;
-use crate::effects::{CONTAINS, Setting};
+use crate::effects::Setting;
 
 impl Search<'_> {
     /// A model that meets the predictions of all runs, with an effect in place of one that it contains, and the round that
@@ -24,7 +24,7 @@ impl Search<'_> {
         let effects = &model.fit.effects;
         let pairs = effects.iter().enumerate().flat_map(|(i, own)| {
             let all = self.candidates.iter();
-            all.filter(move |candidate| contains(candidate, own)).map(move |outer| (i, outer))
+            all.filter(move |candidate| candidate.contains(own)).map(move |outer| (i, outer))
         });
         let wider: Vec<(usize, &Setting)> = pairs.collect();
         // Simulations are dear: most effects are contained in none.
@@ -54,13 +54,6 @@ impl Search<'_> {
         }
         Ok(None)
     }
-}
-
-/// Whether an effect becomes another at some of its values.
-fn contains(outer: &Setting, inner: &Setting) -> bool {
-    let kinds = (outer.kind.name, inner.kind.name);
-    outer.target == inner.target
-        && CONTAINS.iter().any(|(outer, inner)| (outer.name, inner.name) == kinds)
 }
 
 /// The round that led from one model to one with another last effect.
