@@ -27,3 +27,11 @@ fn an_oval_bearing_of_a_pendulum_shows_in_how_it_falls() {
         assert!((value.value - value.truth).abs() < 0.1 * value.truth.abs(), "{answer:#?}");
     }
 }
+
+/// Friction of a six-bar's slide that falls with speed shows along the other run alone: plain friction leaves no more than noise
+/// along the first.
+#[test]
+#[ignore = "two minutes"]
+fn friction_that_falls_with_speed_is_told_from_plain_friction() {
+    right(211_000_006);
+}
