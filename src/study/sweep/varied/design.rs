@@ -21,7 +21,7 @@ pub(in crate::study::sweep) const MOST_RUNS: usize = 1_000_000;
 /// let design = Design::new(varied.into_iter().collect::<Result<_, _>>()?, 1)?;
 /// assert_eq!(design.runs(), 6, "each value of the one with each of the other");
 /// assert_ne!(design.values(0), design.values(5));
-/// # Ok::<(), freeplay::study::sweep::StudyError>(())
+/// # Ok::<(), freeplay::study::StudyError>(())
 /// ```
 #[derive(Debug)]
 pub struct Design {

@@ -14,7 +14,7 @@ const FORMS: &str = "write PATH=a,b,c or PATH=lo..hi:N, lo..hi:log:N, lo..hi:ran
 /// let vary = Vary::parse("joints.clearance=1e-6..1e-4:log:3")?;
 /// assert_eq!((vary.path.as_str(), vary.count(), vary.is_random()), ("joints.clearance", 3, false));
 /// assert_eq!(vary.value(1).parse::<f64>(), Ok(1e-5));
-/// # Ok::<(), freeplay::study::sweep::StudyError>(())
+/// # Ok::<(), freeplay::study::StudyError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vary {
