@@ -28,7 +28,7 @@ pub(in crate::cli) struct Sets {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
     /// What steps the machine: the physics engine, or the equations of motion integrated directly, two to
-    /// four times as fast; short for --set simulation.engine=ENGINE
+    /// four times as fast for the same error; short for --set simulation.engine=ENGINE
     #[arg(long, value_parser = ["rapier", "direct"])]
     engine: Option<String>,
 }

@@ -1,6 +1,6 @@
 //! One effect after another ([`search`]), several hypotheses at once, in a [`round`] each: which promise ([`screen`]), those that are
-//! simulated ([`hypotheses`]), what residuals hardly see ([`unseen`], [`other_laws`], [`calm`]) or one run alone shows ([`wider`]), values that agree with simulations
-//! ([`settle`]); what still stands out ([`rest`]), and effects in [`words`].
+//! simulated ([`hypotheses`]), what residuals hardly see ([`unseen`], [`other_laws`], [`calm`]) or one run alone shows ([`wider`]), values
+//! that agree with simulations ([`settle`]); what still stands out ([`rest`]), and effects in [`words`].
 
 pub(super) mod calm;
 pub(super) mod hypotheses;
