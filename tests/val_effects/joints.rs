@@ -134,7 +134,7 @@ fn a_film_is_the_integral_of_its_pressure() {
         states[1].position = states[6].position + ring_arm + e - journal_arm;
         states[1].twist = wrench(v - turned(journal_arm) * spins[1], spins[1]);
         let mut wrenches = vec![Vector3::zeros(); 7];
-        let at = Situation { t: 0.0, mechanism: &machine, states: &states };
+        let at = Situation { t: 0.0, mechanism: &machine, states: &states, angles: None };
         machine.loads[0].add(at, &mut wrenches);
 
         let mean = 0.5 * (spins[0] + spins[1]);
@@ -166,6 +166,6 @@ fn a_film_is_the_integral_of_its_pressure() {
         state.twist = wrench(around, 3.0);
     }
     let mut wrenches = vec![Vector3::zeros(); 7];
-    machine.loads[0].add(Situation { t: 0.0, mechanism: &machine, states: &states }, &mut wrenches);
+    machine.loads[0].add(Situation { t: 0.0, mechanism: &machine, states: &states, angles: None }, &mut wrenches);
     assert!(wrenches.iter().all(|w| w.amax() < 1e-12));
 }

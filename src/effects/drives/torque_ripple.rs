@@ -61,7 +61,7 @@ impl Load for TorqueRipple {
     }
 
     fn begin(&self, at: Situation) -> Memory {
-        [at.mechanism.start_coordinate(self.joint), 0.0]
+        [at.counted_from(self.joint), 0.0]
     }
 
     fn remember(&self, at: Situation, memory: Memory) -> Memory {

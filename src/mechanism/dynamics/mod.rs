@@ -164,7 +164,7 @@ impl Dynamics {
                 .loads
                 .iter()
                 .map(|load| {
-                    load.begin(Situation { t: mechanism.epoch, mechanism, states: &starts })
+                    load.begin(Situation { t: mechanism.epoch, mechanism, states: &starts, angles: None })
                 })
                 .collect(),
             touches: touches(mechanism, &starts),
@@ -265,7 +265,7 @@ impl Dynamics {
     /// Adds what loads do.
     #[inline]
     fn load(&self, mechanism: &Mechanism, t: f64, states: &[BodyState], out: &mut Evaluation) {
-        let at = Situation { t: mechanism.epoch + t, mechanism, states };
+        let at = Situation { t: mechanism.epoch + t, mechanism, states, angles: None };
         for (load, memory) in mechanism.loads.iter().zip(&self.memories) {
             load.add_after(at, *memory, &mut out.wrenches);
         }
@@ -274,7 +274,7 @@ impl Dynamics {
     /// Lets loads and drives remember time `t` (s) and these states: what is looked at from now on comes
     /// after them.
     pub fn remember(&mut self, mechanism: &Mechanism, t: f64, states: &[BodyState]) {
-        let at = Situation { t: mechanism.epoch + t, mechanism, states };
+        let at = Situation { t: mechanism.epoch + t, mechanism, states, angles: None };
         for (load, memory) in mechanism.loads.iter().zip(&mut self.memories) {
             *memory = load.remember(at, *memory);
         }

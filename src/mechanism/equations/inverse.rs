@@ -27,6 +27,8 @@ pub struct Posed {
     /// Time in s.
     t: f64,
     states: Vec<BodyState>,
+    /// Angle of each body in rad, whole turns included.
+    angles: Vec<f64>,
     accelerations: Vec<Vector3<f64>>,
     /// Each body's reference point, from the centre of mass that the motion is given for.
     references: Vec<Vector2<f64>>,
@@ -76,6 +78,7 @@ impl Tracker {
         Some(Posed {
             t: self.time(),
             states: self.states().to_vec(),
+            angles: self.angles().to_vec(),
             accelerations: (0..bodies).map(|i| self.acceleration(i)).collect(),
             references: self.mechanism().bodies.iter().map(|body| body.reference).collect(),
             drives: self.mechanism().actuators.len(),
@@ -96,11 +99,16 @@ impl Posed {
         self.t
     }
 
-    /// Memory that it takes, in numbers of eight bytes, all but a few: twelve of each body's state, acceleration and reference
-    /// point, and the matrices.
+    /// Angle of each body in rad, whole turns included: from that of its start on.
+    pub fn angles(&self) -> &[f64] {
+        &self.angles
+    }
+
+    /// Memory that it takes, in numbers of eight bytes, all but a few: thirteen of each body's state, angle, acceleration and
+    /// reference point, and the matrices.
     pub fn size(&self) -> usize {
         let matrices = [&self.driven, &self.efforts, &self.forces, &self.shifts];
-        12 * self.states.len() + matrices.map(|matrix| matrix.len()).iter().sum::<usize>()
+        13 * self.states.len() + matrices.map(|matrix| matrix.len()).iter().sum::<usize>()
     }
 
     /// Centre of mass of a body of `mechanism` (m, in its own axes) from the one that the motion is given for.
@@ -216,8 +224,9 @@ impl Posed {
     ) -> DVector<f64> {
         let mut given: Vec<Vector3<f64>> =
             mechanism.bodies.iter().map(|body| (mechanism.gravity * body.mass).push(0.0)).collect();
+        let at = Situation { t, mechanism, states, angles: Some(&self.angles) };
         for load in &mechanism.loads {
-            load.add(Situation { t, mechanism, states }, &mut given);
+            load.add(at, &mut given);
         }
         for (joint, effort) in applied {
             mechanism.add_effort(*joint, *effort, states, &mut given);

@@ -5,7 +5,7 @@ use super::assembly::matrix;
 use super::factors::Factors;
 use super::rows::Row;
 use crate::mechanism::motion::Motion;
-use crate::mechanism::{Attachment, BodyState, Command, Mechanism};
+use crate::mechanism::{Attachment, Body, BodyState, Command, Mechanism, angle_near};
 use nalgebra::{DVector, Dim, Matrix, RawStorage, UnitComplex, Vector2, Vector3};
 use std::sync::Arc;
 
@@ -15,6 +15,10 @@ const CLOSED: f64 = 1e-12;
 /// How far in rad, or in sizes of the mechanism, Newton's method may move a predicted state. The two
 /// branches of a loop are farther apart wherever it does not nearly lock.
 const TRUSTED: f64 = 0.05;
+
+/// How far in rad a body may turn in one step: well within the half turn from which a rotation alone no longer says how often
+/// it went round.
+const TURN: f64 = 1.0;
 
 /// Shortest step in s, in shares of what is asked for, below which a mechanism cannot go on.
 const SHORTEST: f64 = 1e-7;
@@ -61,6 +65,8 @@ pub struct Tracker {
     size: f64,
     t: f64,
     states: Vec<BodyState>,
+    /// Angle of each body in rad, whole turns included.
+    angles: Vec<f64>,
     accelerations: DVector<f64>,
 }
 
@@ -79,6 +85,9 @@ struct System {
     accelerations: DVector<f64>,
 }
 
+/// Closed states, and the conditions on them.
+type Closed = (Vec<BodyState>, System);
+
 impl Tracker {
     /// `mechanism` has ideal joints; `states` are near its pose at time `t` (s), and are closed there.
     ///
@@ -92,9 +101,11 @@ impl Tracker {
     ) -> Result<Self, Stuck> {
         let size = mechanism.size();
         let accelerations = DVector::zeros(3 * states.len());
-        let mut tracker = Self { mechanism, imposed, size, t, states, accelerations };
-        let states = tracker.close(tracker.states.clone(), t, f64::INFINITY).ok_or(Stuck { t })?;
-        tracker.accept(states, t).ok_or(Stuck { t })?;
+        let turned = |(body, state): (&Body, &BodyState)| angle_near(state.rotation, body.angle);
+        let angles = mechanism.bodies.iter().zip(&states).map(turned).collect();
+        let mut tracker = Self { mechanism, imposed, size, t, states, angles, accelerations };
+        let closed = tracker.close(tracker.states.clone(), t, f64::INFINITY).ok_or(Stuck { t })?;
+        tracker.accept(closed, t).ok_or(Stuck { t })?;
         Ok(tracker)
     }
 
@@ -106,6 +117,11 @@ impl Tracker {
     /// States of all bodies.
     pub fn states(&self) -> &[BodyState] {
         &self.states
+    }
+
+    /// Angle of each body in rad, whole turns included: from that of its start on.
+    pub fn angles(&self) -> &[f64] {
+        &self.angles
     }
 
     /// The mechanism that moves.
@@ -132,8 +148,9 @@ impl Tracker {
             }
             let next = if step == left { t } else { self.t + step };
             let accepted = self
-                .close(self.predicted(next - self.t), next, TRUSTED)
-                .and_then(|states| self.accept(states, next));
+                .predicted(next - self.t)
+                .and_then(|states| self.close(states, next, TRUSTED))
+                .and_then(|closed| self.accept(closed, next));
             match accepted {
                 Some(()) => step *= 2.0,
                 None if step.abs() < SHORTEST * whole => return Err(Stuck { t: self.t }),
@@ -143,21 +160,24 @@ impl Tracker {
         Ok(())
     }
 
-    fn predicted(&self, tau: f64) -> Vec<BodyState> {
+    /// States some time `tau` (s) on as they move now; none where a body turns [too far](TURN) until then.
+    fn predicted(&self, tau: f64) -> Option<Vec<BodyState>> {
         let moved = |(i, state): (usize, &BodyState)| {
-            state.moved(self.acceleration(i), Vector3::zeros(), tau)
+            let acceleration = self.acceleration(i);
+            let turn = (state.twist.z + 0.5 * acceleration.z * tau) * tau;
+            (turn.abs() <= TURN).then(|| state.moved(acceleration, Vector3::zeros(), tau))
         };
         self.states.iter().enumerate().map(moved).collect()
     }
 
-    /// Closed states at time `t` near the given ones, if there are any no farther than `trusted`.
-    fn close(&self, mut states: Vec<BodyState>, t: f64, trusted: f64) -> Option<Vec<BodyState>> {
+    /// Closed states at time `t` near the given ones, if there are any no farther than `trusted`, and the conditions on them.
+    fn close(&self, mut states: Vec<BodyState>, t: f64, trusted: f64) -> Option<Closed> {
         let mut moved = DVector::zeros(3 * states.len());
         for pass in 0..25 {
             let system = self.system(&states, t);
             let gap = system.gaps.amax();
             if gap < CLOSED && pass > 0 {
-                return Some(states);
+                return Some((states, system));
             }
             let shift = solve(&system.rows, states.len(), &-&system.gaps)?;
             moved += &shift;
@@ -171,16 +191,12 @@ impl Tracker {
                 state.position += shift.fixed_rows::<2>(3 * i);
                 state.rotation *= UnitComplex::new(shift[3 * i + 2]);
             }
-            if gap < CLOSED {
-                return Some(states);
-            }
         }
         None
     }
 
     /// Takes closed states, with the velocities and accelerations that belong to them.
-    fn accept(&mut self, mut states: Vec<BodyState>, t: f64) -> Option<()> {
-        let system = self.system(&states, t);
+    fn accept(&mut self, (mut states, system): Closed, t: f64) -> Option<()> {
         let factors = Factors::of(finite(matrix(&system.rows, states.len()))?);
         let rates = finite(factors.solve(&system.rates)?)?;
         for (i, state) in states.iter_mut().enumerate() {
@@ -189,6 +205,9 @@ impl Tracker {
         // Biases depend on the velocities, and rows do not.
         let system = self.system(&states, t);
         self.accelerations = finite(factors.solve(&system.accelerations)?)?;
+        for ((angle, before), now) in self.angles.iter_mut().zip(&self.states).zip(&states) {
+            *angle = angle_near(now.rotation, *angle + before.rotation.angle_to(&now.rotation));
+        }
         (self.states, self.t) = (states, t);
         Some(())
     }

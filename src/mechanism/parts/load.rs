@@ -16,6 +16,9 @@ pub struct Situation<'a> {
     pub mechanism: &'a Mechanism,
     /// State of each body.
     pub states: &'a [BodyState],
+    /// Angle of each body in rad, whole turns included, where these are known by themselves: what remembers them for itself has
+    /// no need.
+    pub angles: Option<&'a [f64]>,
 }
 
 /// What a load remembers of the end of the last step, where its wrenches depend on the way there: two
@@ -112,6 +115,18 @@ impl Situation<'_> {
                 angle_near(self.mechanism.revolutes[i].rotation(self.states), near),
                 self.turning(i),
             ],
+        }
+    }
+
+    /// Where a joint's coordinate (m or rad) is counted from: as its bodies are known to have turned, or else as they start.
+    pub fn counted_from(self, joint: JointIndex) -> f64 {
+        match (joint, self.angles) {
+            (JointIndex::Revolute(i), Some(angles)) => {
+                let [ring, journal] = self.mechanism.revolutes[i].bodies();
+                let of = |body: Option<usize>| body.map_or(0.0, |body| angles[body]);
+                of(journal) - of(ring)
+            }
+            _ => self.mechanism.start_coordinate(joint),
         }
     }
 

@@ -122,13 +122,6 @@ pub struct Stop {
     pub law: HertzStep,
 }
 
-fn start(at: Situation, joint: JointIndex) -> f64 {
-    match joint {
-        JointIndex::Prismatic(_) => 0.0,
-        JointIndex::Revolute(i) => at.mechanism.start_angle(i),
-    }
-}
-
 /// What pushes in a joint by its coordinate and rate.
 trait JointEffort {
     fn joint(&self) -> JointIndex;
@@ -181,7 +174,7 @@ macro_rules! joint_load {
             }
 
             fn begin(&self, at: Situation) -> [f64; 2] {
-                [start(at, self.joint()), 0.0]
+                [at.counted_from(self.joint()), 0.0]
             }
 
             fn remember(&self, at: Situation, memory: [f64; 2]) -> [f64; 2] {
@@ -232,7 +225,7 @@ mod tests {
     fn wrench(mechanism: &Mechanism, load: &dyn Load) -> Vector3<f64> {
         let states = vec![mechanism.bodies[0].start];
         let mut wrenches = vec![Vector3::zeros()];
-        load.add(Situation { t: 0.0, mechanism, states: &states }, &mut wrenches);
+        load.add(Situation { t: 0.0, mechanism, states: &states, angles: None }, &mut wrenches);
         wrenches[0]
     }
 

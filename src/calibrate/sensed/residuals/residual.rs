@@ -102,10 +102,9 @@ pub fn residuals(
     let mut found = Residuals::default();
     look.names(&mut found);
     let poses = motions.of(view, mechanism, basis, rows.clone())?;
-    let mut angles: Vec<f64> = mechanism.bodies.iter().map(|body| body.angle).collect();
     let mut now = Evaluation::new(mechanism);
     for (row, pose) in rows.step_by(view.stride).zip(poses.iter()) {
-        look.row(pose, row, &mut angles, &mut now, &mut found.signals)?;
+        look.row(pose, row, &mut now, &mut found.signals)?;
     }
     Some(found)
 }
@@ -244,7 +243,6 @@ impl<'a> Look<'a> {
         &self,
         pose: &Posed,
         row: usize,
-        angles: &mut [f64],
         now: &mut Evaluation,
         signals: &mut [Signal],
     ) -> Option<()> {
@@ -284,10 +282,10 @@ impl<'a> Look<'a> {
                 push(effort - taken);
             }
         }
-        for (angle, state) in angles.iter_mut().zip(&leaning) {
-            *angle = angle_near(state.rotation, *angle);
-        }
-        self.fill(pose, &leaning, angles, now);
+        let turned = leaning.iter().zip(pose.angles());
+        let angles: Vec<f64> =
+            turned.map(|(state, near)| angle_near(state.rotation, *near)).collect();
+        self.fill(pose, &leaning, &angles, now);
         let states = pose.states(self.mechanism);
         for sensor in self.others() {
             let of = &self.mechanism.sensors[sensor];
@@ -295,7 +293,7 @@ impl<'a> Look<'a> {
                 Reads::Acceleration(..) => &states,
                 _ => &leaning,
             };
-            let reading = of.reading(self.mechanism, states, angles, now);
+            let reading = of.reading(self.mechanism, states, &angles, now);
             // Waves are among what it reads.
             let errors = Sensor { waves: Vec::new(), ..of.clone() };
             push(self.view.shown(&errors, self.view.plain(sensor)?, row) - reading);

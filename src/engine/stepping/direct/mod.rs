@@ -130,7 +130,7 @@ impl Direct {
     /// after it may be.
     fn bounds(&self, mechanism: &Mechanism) -> [f64; 2] {
         let Node { t, states, evaluation, .. } = &self.start;
-        let at = Situation { t: mechanism.epoch + t, mechanism, states };
+        let at = Situation { t: mechanism.epoch + t, mechanism, states, angles: None };
         let loads = mechanism.loads.iter().filter_map(|load| load.longest_step_at(at));
         let fastest = states.iter().map(|state| state.twist.z.abs()).fold(0.0, f64::max);
         let longest = loads.map(|step| STIFF * step).fold(LONGEST_STEP, f64::min);
