@@ -148,18 +148,17 @@ fn begun(kind: &'static Kind, mechanism: &Mechanism) -> Option<Setting> {
     if kind.name == "unnamed" {
         return None;
     }
-    let values = match kind.variants_of(mechanism, &target).into_iter().next() {
-        Some(variant) if !(kind.starts)(variant).is_empty() => {
-            let start = (kind.starts)(variant).into_iter().last()?;
-            variant.iter().copied().zip(start).collect::<Vec<_>>()
+    if let Some(variant) = kind.variants_of(mechanism, &target).into_iter().next() {
+        let zeros: Vec<_> = variant.iter().map(|name| (*name, 0.0)).collect();
+        let setting = Setting::on(kind, target.clone(), &zeros);
+        if let Some(start) = setting.starts(mechanism).last() {
+            return Some(setting.with(start));
         }
-        _ => {
-            let stepped = |p: &Parameter| {
-                (p.name, (p.default.unwrap_or(0.0) + p.step).clamp(p.bounds[0], p.bounds[1]))
-            };
-            kind.parameters.iter().map(stepped).collect()
-        }
+    }
+    let stepped = |p: &Parameter| {
+        (p.name, (p.default.unwrap_or(0.0) + p.step).clamp(p.bounds[0], p.bounds[1]))
     };
+    let values: Vec<_> = kind.parameters.iter().map(stepped).collect();
     Some(Setting::on(kind, target, &values))
 }
 

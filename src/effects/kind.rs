@@ -241,9 +241,9 @@ pub struct Kind {
     pub variants: &'static [&'static [&'static str]],
     /// The values (of a variant's parameters) at which the effect changes nothing; empty where none do.
     pub neutral: fn(&Mechanism, &Setting) -> Vec<f64>,
-    /// Where a search starts beside the neutral point, for parameters in which the machine's response
-    /// is not linear: values of a variant's parameters. Empty where neutral is enough.
-    pub starts: fn(variant: &[&str]) -> Vec<Vec<f64>>,
+    /// Where a search on a machine starts beside the neutral point, for parameters in which the machine's response
+    /// is not linear: values of a setting's parameters, whatever it has now ([`Setting::starts`]). Empty where neutral is enough.
+    pub starts: fn(&Mechanism, &Setting) -> Vec<Vec<f64>>,
     /// How to find a repeating effect, if it is one.
     pub scan: Option<Scan>,
     /// Changes a mechanism as the effect does.
@@ -414,6 +414,6 @@ pub(super) fn defaults(_: &Mechanism, setting: &Setting) -> Vec<f64> {
 }
 
 /// The starts of effects to which the machine responds linearly.
-pub(super) fn linear(_: &[&str]) -> Vec<Vec<f64>> {
+pub(super) fn linear(_: &Mechanism, _: &Setting) -> Vec<Vec<f64>> {
     Vec::new()
 }

@@ -97,6 +97,12 @@ impl Setting {
         (neutral.len() == variant.len()).then(|| setting.with(&neutral))
     }
 
+    /// Where a search on `mechanism` starts beside where it changes nothing: lists of its values, in order. Empty where that is
+    /// enough.
+    pub fn starts(&self, mechanism: &Mechanism) -> Vec<Vec<f64>> {
+        (self.kind.starts)(mechanism, self)
+    }
+
     /// The joint that it is given, if it is given one alone.
     pub fn joint(&self) -> Option<&str> {
         match &self.target {

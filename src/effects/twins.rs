@@ -1,7 +1,7 @@
 //! Effects that go by two names on some machines: a search tries one of the two, under the name that says more.
 
 use super::{CONTAINS, Setting, Target, named};
-use crate::mechanism::{JointIndex, Mechanism, Reads, Use};
+use crate::mechanism::{JointIndex, Mechanism, NamedPoint, Reads, Sensor, Use};
 
 impl Setting {
     /// The name under which another kind in the catalogue says the same of `mechanism`, if that is the name to
@@ -10,6 +10,7 @@ impl Setting {
     /// * friction in a prismatic joint is `actuator-friction` where a drive moves it, `joint-friction` where none
     ///   does: both are −(F_c sign(q̇) + F_v q̇) along its axis;
     /// * a point of the ground that carries one bearing and nothing else is moved by `anchor-offset`;
+    /// * so is the only other point of the ground, the other way, where no sensor tells where the machine stands;
     /// * the wrong zero of a driven prismatic joint's encoder is `sensor-offset`, with the other sign.
     pub fn better_known_as(&self, mechanism: &Mechanism) -> Option<&'static str> {
         let index = |name: &str| mechanism.joints().find(|(joint, _)| *joint == name);
@@ -26,9 +27,17 @@ impl Setting {
                 joint.filter(|j| prismatic(*j) && !driven(*j)).map(|_| "joint-friction")
             }
             ("point-offset", Target::Point(name)) => {
-                let point = mechanism.names.points.get(name)?;
-                let bearing = matches!(point.uses[..], [Use::Ring(_)]);
-                (bearing && point.mark.body.is_none()).then_some("anchor-offset")
+                let points = || mechanism.names.points.iter();
+                let grounded = || {
+                    points()
+                        .filter(|(_, point)| point.mark.body.is_none() && !point.uses.is_empty())
+                };
+                let bearing = |point: &NamedPoint| matches!(point.uses[..], [Use::Ring(_)]);
+                let (_, own) = grounded().find(|(known, _)| *known == name)?;
+                let mut others = grounded().filter(|(known, _)| *known != name);
+                let only = matches!((others.next(), others.next()), (Some((_, one)), None) if bearing(one));
+                let placed = mechanism.sensors.iter().any(Sensor::tracks);
+                (bearing(own) || only && !placed).then_some("anchor-offset")
             }
             ("encoder-zero", Target::Sensors(columns)) => {
                 let [column] = &columns[..] else { return None };
@@ -113,10 +122,13 @@ mod tests {
             "encoder-zero at q3: sensor-offset",
         ];
         assert_eq!(left_out(&legs), expected);
-        let crank = left_out(&closed(SLIDER_CRANK).mechanism);
-        assert_eq!(
-            crank,
-            ["actuator-friction at S: joint-friction", "point-offset at ground.O: anchor-offset"]
-        );
+        let mut machine = closed(SLIDER_CRANK).mechanism.clone();
+        let (friction, anchor) =
+            ("actuator-friction at S: joint-friction", "point-offset at ground.O: anchor-offset");
+        assert_eq!(left_out(&machine), [friction, anchor]);
+        // Where nobody sees the place of the machine its slide is moved as its anchor is the other way.
+        machine.sensors.retain(|sensor| !sensor.tracks());
+        let slide = "point-offset at ground.S: anchor-offset";
+        assert_eq!(left_out(&machine), [friction, anchor, slide]);
     }
 }

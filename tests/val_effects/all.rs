@@ -57,11 +57,15 @@ fn what_is_said_of_an_effect_fits_together() {
             );
             assert!(parameter.step > 0.0 && parameter.bounds[0] < parameter.bounds[1]);
         }
-        for variant in kind.variants {
-            for start in (kind.starts)(variant) {
-                assert_eq!(start.len(), variant.len(), "{}", kind.name);
-                let fits = variant.iter().zip(&start).all(|(name, value)| inside(name, *value));
-                assert!(fits, "{}: {start:?}", kind.name);
+        for target in kind.targets_of(&mechanism) {
+            for variant in kind.variants_of(&mechanism, &target) {
+                let zeros: Vec<_> = variant.iter().map(|name| (*name, 0.0)).collect();
+                let starts = Setting::on(kind, target.clone(), &zeros).starts(&mechanism);
+                for start in starts {
+                    assert_eq!(start.len(), variant.len(), "{}", kind.name);
+                    let fits = variant.iter().zip(&start).all(|(name, value)| inside(name, *value));
+                    assert!(fits, "{}: {start:?}", kind.name);
+                }
             }
         }
     }

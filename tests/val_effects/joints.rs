@@ -166,6 +166,9 @@ fn a_film_is_the_integral_of_its_pressure() {
         state.twist = wrench(around, 3.0);
     }
     let mut wrenches = vec![Vector3::zeros(); 7];
-    machine.loads[0].add(Situation { t: 0.0, mechanism: &machine, states: &states, angles: None }, &mut wrenches);
+    machine.loads[0].add(
+        Situation { t: 0.0, mechanism: &machine, states: &states, angles: None },
+        &mut wrenches,
+    );
     assert!(wrenches.iter().all(|w| w.amax() < 1e-12));
 }

@@ -219,7 +219,10 @@ impl<'a> MeasuredMachine<'a> {
             *wrench = (mechanism.gravity * body.mass).push(0.0);
         }
         for load in &mechanism.loads {
-            load.add(Situation { t, mechanism, states: &self.states, angles: None }, &mut self.wrenches);
+            load.add(
+                Situation { t, mechanism, states: &self.states, angles: None },
+                &mut self.wrenches,
+            );
         }
         for (needed, given) in needed.iter_mut().zip(&self.wrenches) {
             *needed -= given;

@@ -71,7 +71,7 @@ fn pose(
     match question {
         Question::Detect(effect, size) => {
             let found = size_of(effect, (reference, seen), frozen, others)?;
-            let mut ways = sized(effect, size.unwrap_or(found));
+            let mut ways = sized(reference.declared(), effect, size.unwrap_or(found));
             ways.retain(|way| {
                 shows(reference, seen, way) || others.iter().any(|seen| shows(frozen, seen, way))
             });
@@ -84,7 +84,10 @@ fn pose(
             let given = neutral.is_none_or(|neutral| *a != neutral);
             let large = |effect: &Setting| -> Result<Setting, String> {
                 let size = LARGE * size_of(effect, (reference, seen), frozen, others)?;
-                Ok(sized(effect, size).into_iter().next().unwrap_or_else(|| effect.clone()))
+                Ok(sized(reference.declared(), effect, size)
+                    .into_iter()
+                    .next()
+                    .unwrap_or_else(|| effect.clone()))
             };
             let by = |truth: &Setting, rival: &Setting| {
                 let found = nearest(reference, seen, std::slice::from_ref(truth), rival);

@@ -67,7 +67,7 @@ pub fn screen(case: &LegsCase, question: &FitData, model: &Settled) -> Vec<(Scor
             let blind = fewer.as_ref().unwrap_or(&present);
             let own = LegsFitTarget { fixed: &others, blind: blind.as_ref(), ..target };
             let plain = own.look(&[])?;
-            let tuned = candidates::tune(&own, &plain, candidate)?;
+            let tuned = candidates::tune(&own, &machine, &plain, candidate)?;
             let fitted = plain.chi2 - tuned.chi2;
             let mut effects = [others, tuned.effects.clone()].concat();
             // All values together, where it is worth the time.

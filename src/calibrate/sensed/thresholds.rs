@@ -104,8 +104,12 @@ pub const MOSTLY: f64 = 0.5;
 pub const PROMISING: f64 = 0.6;
 
 /// Simulations of a run after which no further effect is looked for: what two slow cores do in two minutes, at
-/// some 0.8 s for one of three seconds, leaves as much for what follows.
-pub const BUDGET: usize = 100;
+/// some 0.8 s for one of three seconds, leaves as much for what follows. Where joints rattle a model takes
+/// [several](REPLICAS) times as many: of a trial with two effects the second was not looked for within 100.
+pub const BUDGET: [usize; 2] = [100, 300];
+
+/// Sizes of a machine beyond which a place is afar: what sits there acts as if it had no place.
+pub const AFAR: f64 = 2.0;
 
 /// Drop of −2 log likelihood from which an effect has calmed the rattle of recordings, for each residual: misfits
 /// of one and the same model of a 3-RPR with nine of them, settled again, were up to 1050 apart, and friction of

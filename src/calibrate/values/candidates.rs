@@ -45,9 +45,14 @@ fn targets(kind: &Kind, mechanism: &Mechanism) -> Vec<On> {
 }
 
 /// The best values of a candidate on a target: first what is linear, then Gauss–Newton from the most
-/// promising starts. `model` is the target's residual without the candidate.
-pub fn tune(target: &LegsFitTarget, model: &LegsFit, candidate: &Setting) -> Option<LegsFit> {
-    let starts = starts(target, model, candidate);
+/// promising starts. `model` is the target's residual without the candidate, `mechanism` a machine of the rig.
+pub fn tune(
+    target: &LegsFitTarget,
+    mechanism: &Mechanism,
+    model: &LegsFit,
+    candidate: &Setting,
+) -> Option<LegsFit> {
+    let starts = starts(target, mechanism, model, candidate);
     let fits = starts.into_iter().filter_map(|start| fit::fit(target, &[start], 8));
     fits.min_by(|a, b| a.chi2.total_cmp(&b.chi2))
 }
@@ -55,7 +60,12 @@ pub fn tune(target: &LegsFitTarget, model: &LegsFit, candidate: &Setting) -> Opt
 /// Starts that are kept for Gauss–Newton.
 const KEPT: usize = 3;
 
-fn starts(target: &LegsFitTarget, model: &LegsFit, candidate: &Setting) -> Vec<Setting> {
+fn starts(
+    target: &LegsFitTarget,
+    mechanism: &Mechanism,
+    model: &LegsFit,
+    candidate: &Setting,
+) -> Vec<Setting> {
     let kind = candidate.kind;
     let change = |values: &[f64]| {
         target.look(&[candidate.with(values)]).map(|there| there.white - &model.white)
@@ -63,8 +73,7 @@ fn starts(target: &LegsFitTarget, model: &LegsFit, candidate: &Setting) -> Vec<S
     if let Some(scan) = kind.scan {
         return scanned(target, model, candidate, scan, &change);
     }
-    let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
-    let listed = (kind.starts)(&names);
+    let listed = candidate.starts(mechanism);
     if listed.is_empty() {
         return vec![candidate.clone()];
     }

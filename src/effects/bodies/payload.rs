@@ -4,6 +4,9 @@ use crate::effects::{Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::Mechanism;
 use nalgebra::Vector2;
 
+/// Farthest place in m along an axis: what a large robot reaches.
+const FAR: f64 = 3.0;
+
 pub(in crate::effects) const KIND: Kind = Kind {
     name: "payload",
     summary: "a point mass on a body: the platform, where none is named",
@@ -18,7 +21,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
             name: "com_x_m",
             unit: "m",
             about: "where it sits, along the x axis of the body's own axes, from their origin",
-            bounds: [-0.3, 0.3],
+            bounds: [-FAR, FAR],
             step: 2e-3,
             default: Some(0.0),
         },
@@ -26,17 +29,26 @@ pub(in crate::effects) const KIND: Kind = Kind {
             name: "com_y_m",
             unit: "m",
             about: "where it sits, along the y axis of the body's own axes, from their origin",
-            bounds: [-0.3, 0.3],
+            bounds: [-FAR, FAR],
             step: 2e-3,
             default: Some(0.0),
         },
     ],
     variants: &[&["mass_kg", "com_x_m", "com_y_m"]],
     neutral: crate::effects::kind::defaults,
-    starts: |_| vec![vec![0.05, 0.0, 0.0]],
+    starts,
     scan: None,
     apply,
 };
+
+/// A tenth of the body's mass in its centre of mass, where it turns nothing, and two radii of gyration from there, about where a
+/// bar ends: least squares come from there to wherever it sits.
+fn starts(mechanism: &Mechanism, setting: &Setting) -> Vec<Vec<f64>> {
+    let Ok((body, axes)) = setting.body(mechanism) else { return Vec::new() };
+    let (body, centre) = (&mechanism.bodies[body], axes.centred());
+    let far = 2.0 * (body.inertia / body.mass).sqrt();
+    [0.0, far].map(|along| vec![0.1 * body.mass, centre.x + along, centre.y]).to_vec()
+}
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let point = Vector2::new(setting.number("com_x_m"), setting.number("com_y_m"));

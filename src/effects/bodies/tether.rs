@@ -7,8 +7,11 @@ use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// Farthest anchor in m along an axis, and longest cable: what hangs in a hall.
+const FAR: f64 = 15.0;
+
 const fn anchor(name: &'static str, about: &'static str) -> Parameter {
-    Parameter { name, unit: "m", about, bounds: [-1.5, 1.5], step: 1e-3, default: Some(0.0) }
+    Parameter { name, unit: "m", about, bounds: [-FAR, FAR], step: 1e-3, default: Some(0.0) }
 }
 
 pub(in crate::effects) const KIND: Kind = Kind {
@@ -23,23 +26,28 @@ pub(in crate::effects) const KIND: Kind = Kind {
         Parameter::size("stiffness_N_m", "N/m", "stiffness k", 1e5, 0.2),
         anchor("anchor_x_m", "anchor along x"),
         anchor("anchor_y_m", "anchor along y"),
-        Parameter::size("rest_length_m", "m", "length at which it does not pull yet", 1.5, 1e-3),
+        Parameter::size("rest_length_m", "m", "length at which it does not pull yet", FAR, 1e-3),
     ],
     variants: &[&["stiffness_N_m", "anchor_x_m", "anchor_y_m", "rest_length_m"]],
     neutral: defaults,
-    starts: |_| {
-        // Anchors around the machine, near and far, taut and slack for a part of the motion.
-        let ring = |radius: f64| (0..8).map(move |k| (radius, TAU * f64::from(k) / 8.0));
-        let anchors = [0.15, 0.35, 0.8].into_iter().flat_map(ring);
-        anchors
-            .flat_map(|(r, angle)| {
-                [0.5, 0.9, 1.0].map(|slack| vec![20.0, r * angle.cos(), r * angle.sin(), slack * r])
-            })
-            .collect()
-    },
+    starts,
     scan: None,
     apply,
 };
+
+/// Anchors around the machine, near and far by its own size, taut and slack for a part of the motion.
+fn starts(mechanism: &Mechanism, _: &Setting) -> Vec<Vec<f64>> {
+    let bodies = &mechanism.bodies;
+    let middle = bodies.iter().map(|body| body.start.position).sum::<Vector2<f64>>();
+    let (middle, size) = (middle / bodies.len().max(1) as f64, mechanism.size());
+    let ring = |share: f64| (0..8).map(move |k| (share * size, TAU * f64::from(k) / 8.0));
+    let around = [0.25, 0.5, 1.25].into_iter().flat_map(ring);
+    let slack = |(r, angle): (f64, f64)| {
+        let anchor = middle + Vector2::new(angle.cos(), angle.sin()) * r;
+        [0.5, 0.9, 1.0].map(|slack| vec![20.0, anchor.x, anchor.y, slack * r])
+    };
+    around.flat_map(slack).collect()
+}
 
 #[derive(Debug)]
 struct Tether {

@@ -49,16 +49,16 @@ pub(in crate::effects) const KIND: Kind = Kind {
     ],
     neutral: defaults,
     // A fall over the slowest tenth of the motion, and over most of it.
-    starts: |variant| {
+    starts: |_, setting| {
         [0.01, 0.1]
             .map(|fall| {
-                let value = |name: &&str| match *name {
+                let value = |(name, _): (&str, f64)| match name {
                     "coulomb_N" => 0.1,
                     "static_N" => 0.2,
                     "stribeck_m_s" => fall,
                     _ => 0.0,
                 };
-                variant.iter().map(value).collect()
+                setting.values().map(value).collect()
             })
             .into()
     },

@@ -77,9 +77,10 @@ pub(in crate::effects) const KIND: Kind = Kind {
     apply,
 };
 
-fn starts(variant: &[&str]) -> Vec<Vec<f64>> {
+fn starts(_: &Mechanism, setting: &Setting) -> Vec<Vec<f64>> {
     let (speed, time, mass) = HIT;
-    let value = |e: f64| match variant {
+    let variant: Vec<&str> = setting.values().map(|(name, _)| name).collect();
+    let value = |e: f64| match variant[..] {
         [RESTITUTION] => Some(e),
         // e = 1 - alpha v.
         [HYSTERESIS] => Some((1.0 - e) / speed),
@@ -157,6 +158,7 @@ pub(super) fn change(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::Target;
 
     fn of(values: &[(&'static str, f64)]) -> Result<Loss, Wrong> {
         loss(&Setting::new(&KIND, None, values))
@@ -174,11 +176,15 @@ mod tests {
 
     #[test]
     fn each_form_has_its_list() {
+        let listed = |form| {
+            let setting = Setting::on(&KIND, Target::Machine, &[(form, 0.0)]);
+            starts(&Mechanism::free(Vec::new()), &setting)
+        };
         for form in [RESTITUTION, HYSTERESIS, VISCOUS, FADING] {
-            let listed = starts(&[form]);
+            let listed = listed(form);
             assert_eq!(listed.len(), STARTS, "{form}");
             assert!(listed.iter().flatten().all(|value| *value > 0.0), "{form}");
         }
-        assert_eq!(starts(&["d_max_m"]), Vec::<Vec<f64>>::new());
+        assert_eq!(listed(D_MAX_KEY), Vec::<Vec<f64>>::new());
     }
 }

@@ -50,8 +50,8 @@ pub(in crate::effects) const KIND: Kind = Kind {
         }
         values
     },
-    starts: |variant| match variant {
-        [_, _, _] => RATES.map(|velocity| vec![1e-3, 0.0, velocity]).to_vec(),
+    starts: |_, setting| match setting.values().count() {
+        3 => RATES.map(|velocity| vec![1e-3, 0.0, velocity]).to_vec(),
         _ => Vec::new(),
     },
     scan: None,

@@ -42,7 +42,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     variants: &[&["amplitude_m", "direction_rad"]],
     neutral: defaults,
     // A slight oval in eight directions of its half turn: it has to be less than the clearance.
-    starts: |_| (0..8).map(|k| vec![5e-6, TAU * f64::from(k) / 16.0]).collect(),
+    starts: |_, _| (0..8).map(|k| vec![5e-6, TAU * f64::from(k) / 16.0]).collect(),
     scan: None,
     apply,
 };

@@ -36,7 +36,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     variants: &[&["amplitude", "phase_rad"]],
     neutral: defaults,
     // Half a degree, in eight directions.
-    starts: |_| (0..8).map(|k| vec![0.01, TAU * f64::from(k) / 8.0]).collect(),
+    starts: |_, _| (0..8).map(|k| vec![0.01, TAU * f64::from(k) / 8.0]).collect(),
     scan: None,
     apply,
 };

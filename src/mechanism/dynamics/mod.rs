@@ -164,7 +164,12 @@ impl Dynamics {
                 .loads
                 .iter()
                 .map(|load| {
-                    load.begin(Situation { t: mechanism.epoch, mechanism, states: &starts, angles: None })
+                    load.begin(Situation {
+                        t: mechanism.epoch,
+                        mechanism,
+                        states: &starts,
+                        angles: None,
+                    })
                 })
                 .collect(),
             touches: touches(mechanism, &starts),

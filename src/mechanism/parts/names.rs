@@ -32,6 +32,11 @@ impl Axes {
     pub fn turned(&self, v: Vector2<f64>) -> Vector2<f64> {
         if self.angle == 0.0 { v } else { UnitComplex::new(self.angle) * v }
     }
+
+    /// The described body's centre of mass, as declared, in these axes.
+    pub fn centred(&self) -> Vector2<f64> {
+        UnitComplex::new(-self.angle) * (self.centre.point - self.origin.point)
+    }
 }
 
 /// A named point, and what is there.

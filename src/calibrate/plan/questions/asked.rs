@@ -56,7 +56,7 @@ pub fn between(text: &str, mechanism: &Mechanism) -> Result<Vec<Question>, Strin
         match size {
             Some(size) if rivals.is_empty() => {
                 within(&found[0], size).map_err(told)?;
-                found = sized(&found[0], size);
+                found = sized(mechanism, &found[0], size);
             }
             Some(_) => {
                 let wrong =

@@ -16,6 +16,7 @@ use crate::calibrate::sensed::thresholds::{GAIN, GAIN_PER_VALUE, SURE, TWINS};
 use crate::calibrate::values::fit::{free, values, with_values};
 use crate::calibrate::values::least_squares::{FitEffort, jacobian, least_squares};
 use crate::effects::Setting;
+use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -160,7 +161,7 @@ pub fn nearest(
         })
         .flat_map(|neutral| {
             let first = neutral.values().next().map_or(0.0, |(_, value)| value);
-            stepped(&neutral).into_iter().map(move |start| (first, start))
+            stepped(mechanism, &neutral).into_iter().map(move |start| (first, start))
         })
         .collect();
     let scored = |(neutral, start): &(f64, Setting)| {
@@ -198,12 +199,12 @@ pub fn nearest(
 }
 
 /// An effect a small step from where it changes nothing, in each of its ways.
-fn stepped(neutral: &Setting) -> Vec<Setting> {
+fn stepped(mechanism: &Mechanism, neutral: &Setting) -> Vec<Setting> {
     let Some((name, value)) = neutral.values().next() else { return Vec::new() };
     let Some(parameter) = neutral.kind.parameter(name) else { return Vec::new() };
     let step =
         if value + parameter.step > parameter.bounds[1] { -parameter.step } else { parameter.step };
-    ways(neutral, value, step).iter().map(|values| neutral.with(values)).collect()
+    ways(mechanism, neutral, value, step).iter().map(|values| neutral.with(values)).collect()
 }
 
 /// The size of an effect at which a look would name it in all of its ways that show at all, its first value's distance
@@ -220,7 +221,12 @@ pub fn detectable(sight: &Sight, seen: &Seen, effect: &Setting) -> Option<f64> {
         let size = named() * (value - neutral).abs() / column.norm();
         (size.is_finite() && size <= room).then_some(size)
     };
-    stepped(effect).par_iter().filter_map(one).collect::<Vec<f64>>().into_iter().reduce(f64::max)
+    stepped(sight.declared(), effect)
+        .par_iter()
+        .filter_map(one)
+        .collect::<Vec<f64>>()
+        .into_iter()
+        .reduce(f64::max)
 }
 
 /// Whether a model changes what is seen of a machine at all.
@@ -230,11 +236,11 @@ pub fn shows(sight: &Sight, seen: &Seen, effect: &Setting) -> bool {
 }
 
 /// The effect in all its ways at a size (the first value's distance from neutral), within bounds.
-pub fn sized(effect: &Setting, size: f64) -> Vec<Setting> {
+pub fn sized(mechanism: &Mechanism, effect: &Setting, size: f64) -> Vec<Setting> {
     let Some((name, neutral)) = effect.values().next() else { return Vec::new() };
     let Some(parameter) = effect.kind.parameter(name) else { return Vec::new() };
     let value = neutral + size;
     let step = if value > parameter.bounds[1] { -size } else { size };
     let step = parameter.clamped(neutral + step) - neutral;
-    ways(effect, neutral, step).iter().map(|values| effect.with(values)).collect()
+    ways(mechanism, effect, neutral, step).iter().map(|values| effect.with(values)).collect()
 }

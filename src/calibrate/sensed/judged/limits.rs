@@ -11,6 +11,7 @@ use crate::calibrate::sensed::values::candidates::within;
 use crate::calibrate::sensed::values::fit::FitTarget as Fitted;
 use crate::calibrate::sensed::values::model::Model;
 use crate::effects::{Kind, ScanRange, Setting, Target};
+use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -61,7 +62,7 @@ pub fn limits(search: &Search, model: &Model) -> Vec<DetectionLimit> {
         .filter_map(|candidate| {
             let (parameter, neutral) = candidate.values().next()?;
             let step = candidate.kind.parameter(parameter)?;
-            let ways = ways(candidate, neutral, step.step);
+            let ways = ways(&search.problem.declared, candidate, neutral, step.step);
             let change = |values: &[f64]| {
                 let with = [model.fit.effects.as_slice(), &[candidate.with(values)]].concat();
                 Some(hold.look(&with)?.white - &base.white)
@@ -97,7 +98,12 @@ fn simplest<'a>(candidates: impl Iterator<Item = &'a Setting>) -> Vec<&'a Settin
 }
 
 /// Values at which a candidate is looked at: a step from neutral, for each place where a search for it starts.
-pub(in crate::calibrate) fn ways(candidate: &Setting, neutral: f64, step: f64) -> Vec<Vec<f64>> {
+pub(in crate::calibrate) fn ways(
+    mechanism: &Mechanism,
+    candidate: &Setting,
+    neutral: f64,
+    step: f64,
+) -> Vec<Vec<f64>> {
     let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
     let own: Vec<f64> = candidate.values().map(|(_, value)| value).collect();
     let moved = |mut values: Vec<f64>| {
@@ -124,7 +130,7 @@ pub(in crate::calibrate) fn ways(candidate: &Setting, neutral: f64, step: f64) -
         };
         return tried.into_iter().flat_map(with).collect();
     }
-    let listed = (candidate.kind.starts)(&names);
+    let listed = candidate.starts(mechanism);
     if listed.is_empty() { vec![moved(own)] } else { listed.into_iter().map(moved).collect() }
 }
 

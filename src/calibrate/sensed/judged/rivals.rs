@@ -25,12 +25,15 @@ const CLOSE: f64 = 10.0 * TWINS[0];
 const STEPS: usize = 6;
 
 /// Of effects that explain recordings alike the one that is named, by its place: an instrument's error before one of the
-/// machine, a common effect before one that imitates it, the earlier before the later.
-fn preferred(alike: &[Setting]) -> Option<usize> {
-    let instrument = alike.iter().position(|effect| effect.kind.is_instrument());
+/// machine, a common effect before one that imitates it, of several the one with the fewest values, the earlier before the later.
+fn preferred(alike: &[&Setting]) -> Option<usize> {
     let seldom = |effect: &Setting| SELDOM.iter().any(|kind| kind.name == effect.kind.name);
-    let common = || alike.iter().position(|effect| !seldom(effect));
-    instrument.or_else(common).or((!alike.is_empty()).then_some(0))
+    let rank = |place: &usize| {
+        let effect = alike[*place];
+        let sort = if effect.kind.is_instrument() { 0 } else { 1 + u8::from(seldom(effect)) };
+        (sort, effect.values().count())
+    };
+    (0..alike.len()).min_by_key(rank)
 }
 
 impl Search<'_> {
@@ -58,7 +61,7 @@ impl Search<'_> {
             // What is as good by chance alone is no reason to blame the machine.
             let least = self.whole(&all[0].1) + TWINS[0];
             let twins = all.iter().take_while(|(_, model)| self.whole(model) < least);
-            let twins: Vec<Setting> = twins.map(|(effect, _)| effect.clone()).collect();
+            let twins: Vec<&Setting> = twins.map(|(effect, _)| effect).collect();
             let (won, model) = all.swap_remove(preferred(&twins).unwrap_or(0));
             let round = rounds
                 .iter_mut()
@@ -96,7 +99,8 @@ impl Search<'_> {
             let times = if model.baseline.rattles { 1 } else { 4 };
             let Some(settled) = self.settle(&effects, times)? else { continue };
             // What does not come down to noise explains nothing, whatever it costs.
-            if self.is_noise(&settled) {
+            let imitates = settled.fit.effects.last().is_some_and(|own| self.imitates(own));
+            if self.is_noise(&settled) && !imitates {
                 all.push((rival, settled));
             }
         }
@@ -133,16 +137,21 @@ impl Search<'_> {
         let all: Vec<Tried> = self.screened(&without).into_par_iter().map(fitted).collect();
         for tried in all {
             let known = found.iter().any(|(_, known)| known.is(&tried.effect));
-            if !known && !tried.effect.is(&own) && tried.gain > RIVAL * gain {
+            if !known
+                && !tried.effect.is(&own)
+                && tried.gain > RIVAL * gain
+                && !self.imitates(&tried.effect)
+            {
                 let as_well =
                     !model.baseline.rattles && tried.gain > gain - TWINS[0].max(BY_LOOKS * gain);
                 found.push((as_well, tried.effect));
             }
         }
-        // One of them is an instrument's error, where such a one does as well.
-        let instrument =
-            |(as_well, effect): &(bool, Setting)| *as_well && effect.kind.is_instrument();
-        if let Some(place) = found.iter().position(instrument)
+        // One of them is what would be named of those that do as well.
+        let alike = |place: &usize| found[*place].0;
+        let places: Vec<usize> = (0..found.len()).filter(alike).collect();
+        let named: Vec<&Setting> = places.iter().map(|&place| &found[place].1).collect();
+        if let Some(place) = preferred(&named).map(|first| places[first])
             && place >= RIVALS
         {
             found[RIVALS - 1..=place].rotate_right(1);
@@ -199,28 +208,25 @@ mod tests {
     use super::preferred;
     use crate::effects::{Setting, Target, named};
 
-    /// A machine is blamed only where no instrument would explain as much, and of something seldom only where nothing common would.
+    /// A machine is blamed only where no instrument would explain as much, and of something seldom only where nothing common
+    /// would; many values are no explanation where one is.
     #[test]
     fn instruments_are_named_before_the_machine() {
-        let wear = Setting::on(
-            named("joint-wear").unwrap(),
-            Target::Joints(vec!["A".to_owned()]),
-            &[("clearance_m", 3e-4)],
-        );
-        let zero = Setting::on(
-            named("encoder-zero").unwrap(),
-            Target::Sensors(vec!["q_A".to_owned()]),
-            &[("offset", 1e-4)],
-        );
+        let on = |kind, target: &Target, values: &[_]| {
+            Setting::on(named(kind).unwrap(), target.clone(), values)
+        };
+        let joint = Target::Joints(vec!["A".to_owned()]);
+        let wear = on("joint-wear", &joint, &[("clearance_m", 3e-4)]);
+        let round = on("out-of-round", &joint, &[("amplitude_m", 1e-5)]);
+        let sensor = Target::Sensors(vec!["q_A".to_owned()]);
+        let zero = on("encoder-zero", &sensor, &[("offset", 1e-4)]);
+        let values = [("mass_kg", 0.1), ("com_x_m", 0.0), ("com_y_m", 0.0)];
+        let payload = on("payload", &Target::Body("rod".to_owned()), &values);
         assert_eq!(preferred(&[]), None);
-        assert_eq!(preferred(std::slice::from_ref(&wear)), Some(0));
-        let round = Setting::on(
-            named("out-of-round").unwrap(),
-            wear.target.clone(),
-            &[("amplitude_m", 1e-5)],
-        );
-        assert_eq!(preferred(&[round.clone(), wear.clone()]), Some(1));
-        assert_eq!(preferred(std::slice::from_ref(&round)), Some(0));
-        assert_eq!(preferred(&[wear, zero.clone(), zero]), Some(1));
+        assert_eq!(preferred(&[&wear]), Some(0));
+        assert_eq!(preferred(&[&round, &wear]), Some(1));
+        assert_eq!(preferred(&[&round]), Some(0));
+        assert_eq!(preferred(&[&payload, &wear, &wear]), Some(1));
+        assert_eq!(preferred(&[&wear, &zero, &zero]), Some(1));
     }
 }

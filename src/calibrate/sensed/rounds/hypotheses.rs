@@ -3,10 +3,11 @@
 use super::round::{Round, Tried};
 use super::search::Search;
 use super::words::names;
-use crate::calibrate::sensed::residuals::problem::Stopped;
-use crate::calibrate::sensed::thresholds::{GAIN, MOSTLY, PROMISING, SIMULATED};
+use crate::calibrate::sensed::judged::left::Left;
+use crate::calibrate::sensed::residuals::problem::{Run, Stopped};
+use crate::calibrate::sensed::thresholds::{AFAR, GAIN, MOSTLY, NOISE, PROMISING, SIMULATED};
 use crate::calibrate::sensed::values::model::{Model, price};
-use crate::effects::Setting;
+use crate::effects::{Parameter, ScanRange, Setting};
 
 impl Search<'_> {
     /// The best models with one effect more than this one has, simulated, the best first.
@@ -39,12 +40,17 @@ impl Search<'_> {
             }
         }
         self.again(model, &mut found, &mut tried)?;
-        found.retain(|rival| !rival.fit.effects.last().is_some_and(at_a_limit));
+        found.retain(|rival| !rival.fit.effects.last().is_some_and(|own| self.imitates(own)));
         // What residuals see is tried before what they hardly see.
         let seen =
             |tried: &Tried| tried.simulated && tried.gain > price(model) && tried.share > MOSTLY;
-        let noise = |model: &Model| self.is_noise(model);
-        if !tried.iter().any(seen) && !found.iter().any(noise) {
+        // Nor beside what leaves little more than noise of what was much more.
+        let little = |found: &Model| {
+            let noisy = |left: &Left| left.mean_square <= left.limit.max(NOISE[1]);
+            let most = model.cost() - found.cost() > MOSTLY * model.cost();
+            self.is_noise(found) || most && self.left(found).iter().all(noisy)
+        };
+        if !tried.iter().any(seen) && !found.iter().any(little) {
             found.extend(self.unseen(model, &mut tried)?);
         }
         found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
@@ -86,6 +92,24 @@ impl Search<'_> {
         let effects = [model.fit.effects.as_slice(), std::slice::from_ref(effect)].concat();
         (self.tell)(&format!("simulating with {}", names(&effects)));
         Ok(self.settle(&effects, 2)?.into_iter().collect())
+    }
+
+    /// Whether an effect's values say that it imitates another one: one lies at the end of what makes sense, a place is far
+    /// off the machine, or what repeats does so less than once in a run.
+    pub(in crate::calibrate::sensed) fn imitates(&self, effect: &Setting) -> bool {
+        let afar = AFAR * self.problem.declared.size();
+        let far = |(name, value): (&str, f64)| {
+            let place = |p: &Parameter| p.unit == "m" && p.bounds[0] < 0.0;
+            effect.kind.parameter(name).is_some_and(place) && value.abs() > afar
+        };
+        let seconds = |run: &Run| run.recording.samples as f64 * run.recording.interval;
+        let longest = self.problem.runs.iter().map(seconds).fold(0.0, f64::max);
+        let once = effect.kind.scan.is_some_and(|scan| {
+            let frequency =
+                effect.value(scan.over).filter(|_| scan.range == ScanRange::Frequencies);
+            frequency.is_some_and(|frequency| frequency * longest < 1.0)
+        });
+        once || at_a_limit(effect) || effect.values().any(far)
     }
 }
 

@@ -82,11 +82,10 @@ fn without_neutral(mechanism: &Mechanism) -> Vec<Vec<Setting>> {
             if Setting::neutral(kind, target.clone(), variant, mechanism).is_some() {
                 continue;
             }
-            let named = |start: &Vec<f64>| {
-                let values: Vec<_> = variant.iter().copied().zip(start.iter().copied()).collect();
-                Setting::on(kind, target.clone(), &values)
-            };
-            let form: Vec<Setting> = (kind.starts)(variant).iter().map(named).collect();
+            let values: Vec<_> = variant.iter().map(|name| (*name, 0.0)).collect();
+            let setting = Setting::on(kind, target.clone(), &values);
+            let starts = setting.starts(mechanism);
+            let form: Vec<Setting> = starts.iter().map(|start| setting.with(start)).collect();
             all.extend((!form.is_empty()).then_some(form));
         }
     }

@@ -55,7 +55,8 @@ impl<'a> Search<'a> {
 
     /// Whether it has taken as many simulations as it may.
     pub(super) fn is_spent(&self) -> bool {
-        self.problem.simulations() - self.before >= BUDGET
+        let budget = BUDGET[usize::from(self.problem.replicas > 1)];
+        self.problem.simulations() - self.before >= budget
     }
 
     pub(in crate::calibrate::sensed) fn target<'b>(
@@ -84,30 +85,23 @@ impl<'a> Search<'a> {
         // What is no larger than noise as a whole may still be an effect that stands out of it.
         let mut lacks = !self.is_noise(&best) || self.rest(&best).is_some();
         while best.fit.effects.len() < EFFECTS && !self.is_spent() && lacks {
-            let (mut round, mut next) = self.beside_all(&hypotheses)?;
+            let (mut round, next) = self.beside_all(&hypotheses)?;
             let won = next.first().is_some_and(|first| first.cost() < best.cost() - price(&best));
             if !won {
                 rounds.push(round);
                 break;
             }
-            let cost = next[0].cost();
-            round.added = next[0].fit.effects.last().cloned();
-            let near = next
-                .iter()
-                .skip(1)
-                .filter(|model| model.cost() < cost + TWINS[usize::from(best.baseline.rattles)]);
-            round.as_good = near.filter_map(|model| model.fit.effects.last().cloned()).collect();
-            rounds.push(round);
-            let before = best.cost();
-            best = next[0].clone();
-            if !self.is_noise(&best) {
-                best = self.refined(best)?;
-                next[0] = best.clone();
-            }
             // Of what explains nearly as much something else may come out in the end.
-            next.retain(|model| before - model.cost() > NEAR * (before - cost));
-            next.truncate(HYPOTHESES);
-            hypotheses = next;
+            let (before, cost) = (best.cost(), next[0].cost());
+            let near =
+                next.into_iter().filter(|model| before - model.cost() > NEAR * (before - cost));
+            hypotheses = self.all_refined(near.take(HYPOTHESES).collect())?;
+            best = hypotheses[0].clone();
+            round.added = best.fit.effects.last().cloned();
+            let enough = best.cost() + TWINS[usize::from(best.baseline.rattles)];
+            let as_good = hypotheses[1..].iter().filter(|model| model.cost() < enough);
+            round.as_good = as_good.filter_map(|model| model.fit.effects.last().cloned()).collect();
+            rounds.push(round);
             lacks = !self.is_noise(&best);
         }
         // What is noise already is not explained any better; that recorded joints rattle less than a model's does
@@ -120,6 +114,23 @@ impl<'a> Search<'a> {
         }
         let (best, rest) = self.borne_out(best, &mut rounds)?;
         Ok(Found { best, declared, rounds, rest })
+    }
+
+    /// Hypotheses with values from whole simulations, one after another until one leaves no more than noise; the best first.
+    fn all_refined(&self, mut hypotheses: Vec<Model>) -> Result<Vec<Model>, Stopped> {
+        for (i, model) in hypotheses.iter_mut().enumerate() {
+            if i > 0 && self.is_spent() {
+                break;
+            }
+            if !self.is_noise(model) {
+                *model = self.refined(model.clone())?;
+            }
+            if self.is_noise(model) {
+                break;
+            }
+        }
+        hypotheses.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        Ok(hypotheses)
     }
 
     /// What is found beside several hypotheses, the best first, and the round of the first one. Once one effect leaves no more

@@ -13,6 +13,7 @@ use crate::calibrate::sensed::values::whole::Whole;
 use crate::calibrate::values::fit::free;
 use crate::calibrate::values::least_squares::{Free, ResidualAt, derivative};
 use crate::effects::Setting;
+use crate::mechanism::Mechanism;
 use nalgebra::DVector;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -104,7 +105,7 @@ impl Search<'_> {
         let stepped = |candidate: &&Setting| {
             let with =
                 |values: &[f64]| whole.look(&[own.as_slice(), &[candidate.with(values)]].concat());
-            linear_step(&with, candidate, &starts, &left)
+            linear_step(&with, (&self.problem.declared, candidate), &starts, &left)
         };
         let mut steps: Vec<(f64, Setting)> = candidates
             .par_iter()
@@ -137,7 +138,7 @@ impl Search<'_> {
 /// after it. None where such a machine cannot be.
 fn linear_step(
     look: ResidualAt,
-    candidate: &Setting,
+    (mechanism, candidate): (&Mechanism, &Setting),
     starts: &[DVector<f64>],
     left: &DVector<f64>,
 ) -> Option<(f64, Setting)> {
@@ -153,7 +154,7 @@ fn linear_step(
         gain.is_finite().then_some((gain, change))
     };
     // Of one with a list of starts the first value is an amplitude, which begins at nothing; the others are a start's.
-    let listed = (candidate.kind.starts)(&names);
+    let listed = candidate.starts(mechanism);
     let begun = |start: &Vec<f64>| [&neutral[..1], &start[1..]].concat();
     let slope = |values: &[f64], i: usize| derivative(look, &free, values, left, i);
     if let (true, [begin, next, ..]) = (turns_round(&names, &listed), listed.as_slice()) {

@@ -2,7 +2,7 @@
 
 use super::dice::Dice;
 use crate::effects::{Parameter, ScanRange, Setting};
-use crate::mechanism::Sensor;
+use crate::mechanism::{Mechanism, Sensor};
 use std::f64::consts::TAU;
 
 /// What is hidden in a trial.
@@ -41,13 +41,12 @@ pub(super) struct HiddenShape {
 impl HiddenShape {
     /// Draws where an effect sits and which way its values go, by what the catalogue says of them: what a search
     /// scans, where it starts, and what is neutral.
-    pub fn draw(effect: &Setting, dice: &mut Dice) -> Self {
+    pub fn draw(effect: &Setting, mechanism: &Mechanism, dice: &mut Dice) -> Self {
         let parameters: Vec<Parameter> =
             effect.values().filter_map(|(name, _)| effect.kind.parameter(name).copied()).collect();
-        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name).collect();
         let mut values: Vec<f64> = effect.values().map(|(_, value)| value).collect();
         let mut growing = vec![0.0; values.len()];
-        let starts = (effect.kind.starts)(&names);
+        let starts = effect.starts(mechanism);
         if let Some(scan) = effect.kind.scan {
             for (i, parameter) in parameters.iter().enumerate() {
                 if parameter.name == scan.over {
@@ -131,7 +130,7 @@ mod tests {
             let trial = Trial::draw(seed);
             let Ok(bench) = TrialBench::new(&trial) else { continue };
             for effect in candidates(&bench.declared, &[]) {
-                let shape = HiddenShape::draw(&effect, &mut dice);
+                let shape = HiddenShape::draw(&effect, &bench.declared, &mut dice);
                 let small = shape.at(1e-3).unwrap_or_else(|| panic!("{effect}: out of bounds"));
                 assert!(small != shape.neutral, "{effect} has no size");
                 let mut machine = bench.declared.clone();

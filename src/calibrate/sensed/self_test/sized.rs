@@ -88,7 +88,7 @@ fn sized(
     all.retain(|effect| effect.kind.name == kind);
     for _ in 0..DRAWS {
         let Some(effect) = drawn(&all, dice) else { return Ok(None) };
-        let shape = HiddenShape::draw(&effect, dice);
+        let shape = HiddenShape::draw(&effect, &look.bench.declared, dice);
         if let Some(found) = grown(look, &shape, wanted)? {
             return Ok(Some(found));
         }

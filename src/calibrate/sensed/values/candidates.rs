@@ -39,8 +39,7 @@ pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting) -> Vec<Setti
     if let Some(scan) = candidate.kind.scan {
         return scanned(target, model, candidate, scan, &change);
     }
-    let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
-    let listed = (candidate.kind.starts)(&names);
+    let listed = candidate.starts(&target.problem.declared);
     if listed.is_empty() {
         return vec![candidate.clone()];
     }

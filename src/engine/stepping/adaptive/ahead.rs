@@ -28,7 +28,8 @@ impl Adaptive {
     #[inline]
     pub(super) fn next_step(&mut self, mechanism: &Mechanism, t: f64, until: f64) -> (f64, f64) {
         let span = until - t;
-        let at = Situation { t: mechanism.epoch + t, mechanism, states: &self.states, angles: None };
+        let at =
+            Situation { t: mechanism.epoch + t, mechanism, states: &self.states, angles: None };
         let loads = mechanism.loads.iter().filter_map(|load| load.longest_step_at(at));
         let contacts = self.dynamics.longest_contact_step(mechanism, &self.now.contacts);
         let longest = loads.fold(self.longest.min(contacts), f64::min);
