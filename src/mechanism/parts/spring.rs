@@ -201,6 +201,7 @@ joint_load!(Stop);
 mod tests {
     use super::*;
     use crate::mechanism::{Attachment, Bearing, Body, BodyState, Revolute};
+    use std::f64::consts::TAU;
 
     /// A body that turns about the origin, at 0.3 rad with 2 rad/s.
     fn turning() -> Mechanism {
@@ -220,6 +221,24 @@ mod tests {
             }],
             ..Mechanism::free(vec![Body::new("body", 2.0, 0.5, start)])
         }
+    }
+
+    /// Who knows how often a body went round says so to a load that remembers it otherwise.
+    #[test]
+    fn springs_are_wound_up_by_whole_turns_that_are_known() {
+        let mechanism = turning();
+        let spring = JointSpring {
+            joint: JointIndex::Revolute(0),
+            stiffness: 10.0,
+            damping: 0.0,
+            free: 0.1,
+        };
+        let (states, turned) = ([mechanism.bodies[0].start], [0.3 + 2.0 * TAU]);
+        let mut wrenches = vec![Vector3::zeros()];
+        let at =
+            Situation { t: 0.0, mechanism: &mechanism, states: &states, angles: Some(&turned) };
+        spring.add(at, &mut wrenches);
+        assert!((wrenches[0].z + 10.0 * (0.2 + 2.0 * TAU)).abs() < 1e-12);
     }
 
     fn wrench(mechanism: &Mechanism, load: &dyn Load) -> Vector3<f64> {

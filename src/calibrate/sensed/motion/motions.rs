@@ -103,6 +103,25 @@ mod tests {
         (recording, machines)
     }
 
+    /// A crank that has gone round before the rows that are looked at is as far as it is when all are.
+    #[test]
+    fn turns_are_counted_from_whatever_row_on() {
+        let (recording, [plain, _]) = loaded();
+        let view = View::new(&recording, plain.sensors.len());
+        let basis = Basis::of(&plain, &recording).unwrap();
+        let all = followed(basis.moved(&view, &plain), &view, view.rows()).unwrap();
+        let middle = all.len() / 2;
+        let rows = view.rows().start + middle * view.stride..view.rows().end;
+        let late = followed(basis.moved(&view, &plain), &view, rows).unwrap();
+        assert_eq!(late.len(), all.len() - middle);
+        assert!(late[0].angles()[0].abs() > 4.0, "{:?}", late[0].angles());
+        for (late, whole) in late.iter().zip(&all[middle..]) {
+            for (a, b) in late.angles().iter().zip(whole.angles()) {
+                assert!((a - b).abs() < 1e-9, "{a} {b} at {}", whole.time());
+            }
+        }
+    }
+
     #[test]
     fn a_load_leaves_the_motion_and_looks_at_it_through_a_kept_one_are_the_same() {
         let (recording, [plain, loaded]) = loaded();

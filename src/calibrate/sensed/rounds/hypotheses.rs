@@ -128,3 +128,33 @@ fn at_a_limit(effect: &Setting) -> bool {
 fn beside(effects: &[Setting]) -> String {
     if effects.is_empty() { String::new() } else { format!(" beside {}", names(effects)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::sensed::residuals::problem::RigProblem;
+    use crate::effects::{Target, named};
+
+    #[test]
+    fn what_is_afar_or_hardly_repeats_imitates_something_else() {
+        let problem = RigProblem::planar("planar-1");
+        let split = problem.split();
+        let search = Search::new(&problem, &split, &[], &|_| {});
+        let body = Target::Body("rod".to_owned());
+        let payload = |mass: f64, x: f64| {
+            let values = [("mass_kg", mass), ("com_x_m", x), ("com_y_m", 0.0)];
+            search.imitates(&Setting::on(named("payload").unwrap(), body.clone(), &values))
+        };
+        let size = problem.declared.size();
+        assert!(!payload(0.1, 0.0) && !payload(0.1, 1.9 * size));
+        assert!(payload(0.1, 2.1 * size), "far off the machine");
+        assert!(payload(20.0, 0.0), "as much as makes sense");
+        // Runs of three seconds.
+        let vibration = |frequency: f64| {
+            let values = [("ax_m_s2", 0.1), ("frequency_Hz", frequency)];
+            let kind = named("base-vibration").unwrap();
+            search.imitates(&Setting::on(kind, Target::Machine, &values))
+        };
+        assert!(vibration(0.3) && !vibration(0.4));
+    }
+}
