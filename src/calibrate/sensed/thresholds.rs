@@ -108,6 +108,13 @@ pub const PROMISING: f64 = 0.6;
 /// [several](REPLICAS) times as many: of a trial with two effects the second was not looked for within 100.
 pub const BUDGET: [usize; 2] = [100, 300];
 
+/// Steps of bodies in all simulations of a calibration after which nothing further is begun: some two minutes of two cores at
+/// 4e5 of them a second each. The largest of twelve rigs takes 5.5e7; a chaotic pendulum of 5 cm, 3.9e5 in one run of 5.7 s, knew no end.
+pub const WORK: u64 = 100_000_000;
+
+/// Steps of bodies in simulations of each effect beside a model that residuals hardly see: less than half of that.
+pub const MOMENT: u64 = 40_000_000;
+
 /// Sizes of a machine beyond which a place is afar: what sits there acts as if it had no place.
 pub const AFAR: f64 = 2.0;
 

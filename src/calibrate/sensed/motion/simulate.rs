@@ -35,6 +35,19 @@ pub fn record(
     like: &Recording,
     replica: u64,
 ) -> Result<Recording, Halt> {
+    Ok(record_counting(machine, control, like, replica)?.0)
+}
+
+/// The same, and the steps that it took.
+///
+/// # Errors
+/// As [`record`].
+pub fn record_counting(
+    machine: &Mechanism,
+    control: StepControl,
+    like: &Recording,
+    replica: u64,
+) -> Result<(Recording, u64), Halt> {
     let control = control.with_tolerance_times(FINER.powi(replica as i32));
     let mut machine = machine.clone();
     let mut random = ChaCha8Rng::seed_from_u64(replica);
@@ -53,7 +66,7 @@ pub fn record(
     let read: Vec<usize> =
         (0..machine.sensors.len()).filter(|&i| like.get(i).is_some() && !commands(i)).collect();
     let mut columns: Vec<Vec<f64>> = read.iter().map(|_| Vec::with_capacity(rows + 1)).collect();
-    run(machine, control, schedule, &mut |instant| {
+    let work = run(machine, control, schedule, &mut |instant| {
         for (&i, column) in read.iter().zip(&mut columns) {
             let sensor = &machine.sensors[i];
             let (states, angles) = (instant.states, instant.angles);
@@ -77,7 +90,7 @@ pub fn record(
             _ => shown(sensor, column, interval, lead, fine),
         });
     }
-    Ok(like.with(recorded))
+    Ok((like.with(recorded), work.steps))
 }
 
 /// What the sampled controller of a drive asks of it (N or N·m) at the rows of a recording where it reads these

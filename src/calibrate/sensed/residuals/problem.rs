@@ -20,7 +20,7 @@ use lru::LruCache;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Machines that are kept as they were let go: those of two models on eight runs each.
@@ -92,6 +92,7 @@ pub struct RigProblem {
     /// Simulations that a mean is taken of: one, or several where joints rattle.
     pub replicas: usize,
     pub(super) simulations: AtomicUsize,
+    pub(super) work: AtomicU64,
     motions: Motions,
     /// Machines as they were let go: the start of a free one costs more than a simulation.
     released: Mutex<LruCache<String, Released>>,
@@ -140,7 +141,7 @@ impl RigProblem {
             Run { recording, view }
         };
         let runs = recordings.into_iter().map(run).collect();
-        let simulations = AtomicUsize::new(0);
+        let (simulations, work) = (AtomicUsize::new(0), AtomicU64::new(0));
         let motions = Motions::default();
         let released = Mutex::new(LruCache::new(LET_GO));
         let problem = Self {
@@ -151,6 +152,7 @@ impl RigProblem {
             control,
             replicas: 1,
             simulations,
+            work,
             motions,
             released,
         };
@@ -179,6 +181,16 @@ impl RigProblem {
     /// Simulations so far.
     pub fn simulations(&self) -> usize {
         self.simulations.load(Ordering::Relaxed)
+    }
+
+    /// Steps of bodies in them: what a calibration takes its time for, on any machine and whatever the number of threads.
+    pub fn work(&self) -> u64 {
+        self.work.load(Ordering::Relaxed)
+    }
+
+    /// Whether they are so many that nothing further is begun.
+    pub fn is_worn_out(&self) -> bool {
+        self.work() >= thresholds::WORK
     }
 
     /// Where the runs of a model with these effects begin, as it was let go.

@@ -47,13 +47,11 @@ impl RigProblem {
         let jobs: Vec<(usize, u64)> = (0..starts.len())
             .flat_map(|run| numbers().map(move |replica| (run, replica)))
             .collect();
-        self.simulations.fetch_add(jobs.len(), Ordering::Relaxed);
         let recorded = jobs
             .into_par_iter()
             .map(|(run, replica)| {
                 let like = &self.runs[run].recording;
-                let record =
-                    |machine: &Mechanism| simulate::record(machine, self.control, like, replica);
+                let record = |machine: &Mechanism| self.record(machine, like, replica);
                 let start = &starts[run];
                 // Where joints rattle a hair at the start is another run soon, and what nobody knows of it no hair.
                 let open = self.replicas > 1 && replica > 0 && start.released.is_fitted();
@@ -110,8 +108,20 @@ impl RigProblem {
         let recording = &self.runs[index].recording;
         // Filters see a little beyond the last row.
         let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
+        self.record(machine, &recording.first(seconds), replica)
+    }
+
+    /// What sensors show of a run like this recording, counted among the simulations.
+    fn record(
+        &self,
+        machine: &Mechanism,
+        like: &Recording,
+        replica: u64,
+    ) -> Result<Recording, Halt> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        simulate::record(machine, self.control, &recording.first(seconds), replica)
+        let (recorded, steps) = simulate::record_counting(machine, self.control, like, replica)?;
+        self.work.fetch_add(steps * machine.bodies.len() as u64, Ordering::Relaxed);
+        Ok(recorded)
     }
 
     /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held
@@ -122,8 +132,7 @@ impl RigProblem {
     pub fn still(&self, starts: &[Start]) -> Result<Vec<Option<Recording>>, Stopped> {
         let still = |(run, start): (&Run, &Start)| {
             let Some(machine) = &start.still else { return Ok(None) };
-            self.simulations.fetch_add(1, Ordering::Relaxed);
-            Ok(Some(simulate::record(machine, self.control, &run.recording, 0)?))
+            Ok(Some(self.record(machine, &run.recording, 0)?))
         };
         self.runs.par_iter().zip(starts).map(still).collect()
     }

@@ -216,7 +216,7 @@ fn searched_beside(
     before: &Found,
     rattle: &mut f64,
 ) -> Result<Option<Found>, Stopped> {
-    if events.is_empty() {
+    if events.is_empty() || problem.is_worn_out() {
         return Ok(None);
     }
     let all = |problem: &RigProblem, found: &Found| {
@@ -277,7 +277,8 @@ fn predicting(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stoppe
         false => None,
     };
     // How a machine falls shows effects that its accelerations hardly do, and imitate one another in.
-    if better.is_none() && !best.fit.effects.is_empty() && search.problem.falls(&[])? {
+    let worn_out = search.problem.is_worn_out();
+    if better.is_none() && !worn_out && !best.fit.effects.is_empty() && search.problem.falls(&[])? {
         let fails =
             rest.is_some() || !search.is_noise(best) || search.misses(best, &search.split.on)?;
         better = if fails { search.predicting(&found.declared)? } else { None };

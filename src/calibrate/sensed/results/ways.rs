@@ -5,6 +5,7 @@ use super::page;
 use super::report::{Report, effects, limit, noises, ranking, residuals, summary};
 use super::written::{Made, SensedCalibration, names_of_files};
 use crate::calibrate::measured::recording::stem_of;
+use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::results::report::{RattleReport, Seeds};
 use crate::calibrate::results::result::{CalibrateError, control};
 use crate::calibrate::results::unnamed_picture;
@@ -67,8 +68,9 @@ pub(in crate::calibrate) fn by_residuals(
         provenance: Provenance::of(&problem.rig),
         verdict: outcome.verdict,
         summary: format!(
-            "{}{}{}",
+            "{}{}{}{}",
             summary(&outcome),
+            cut_short(&problem, outcome.verdict),
             sentence(&outcome.events),
             noises(&outcome.noises)
         ),
@@ -98,6 +100,17 @@ pub(in crate::calibrate) fn by_residuals(
     let mut calibrated = problem.rig.clone();
     calibrated.effects = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
     Ok(Made { report, calibrated, files, pictures })
+}
+
+/// What is to be said where something may be left that was not looked for.
+fn cut_short(problem: &RigProblem, verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Unexplained if problem.is_worn_out() => {
+            " The search ended before it had tried everything: this machine takes too many steps. A coarser \
+             simulation.tolerance or shorter recordings allow more of it."
+        }
+        _ => "",
+    }
 }
 
 impl From<Stopped> for CalibrateError {

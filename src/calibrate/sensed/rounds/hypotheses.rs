@@ -102,7 +102,7 @@ impl Search<'_> {
             let place = |p: &Parameter| p.unit == "m" && p.bounds[0] < 0.0;
             effect.kind.parameter(name).is_some_and(place) && value.abs() > afar
         };
-        let seconds = |run: &Run| run.recording.samples as f64 * run.recording.interval;
+        let seconds = |run: &Run| run.recording.duration();
         let longest = self.problem.runs.iter().map(seconds).fold(0.0, f64::max);
         let once = effect.kind.scan.is_some_and(|scan| {
             let frequency =

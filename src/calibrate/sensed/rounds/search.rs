@@ -56,7 +56,7 @@ impl<'a> Search<'a> {
     /// Whether it has taken as many simulations as it may.
     pub(super) fn is_spent(&self) -> bool {
         let budget = BUDGET[usize::from(self.problem.replicas > 1)];
-        self.problem.simulations() - self.before >= budget
+        self.problem.simulations() - self.before >= budget || self.problem.is_worn_out()
     }
 
     pub(in crate::calibrate::sensed) fn target<'b>(

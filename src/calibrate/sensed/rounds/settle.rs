@@ -145,8 +145,12 @@ impl Search<'_> {
         Ok(None)
     }
 
-    /// A model whose joints rattle with values from predictions; none where these leave more than noise.
+    /// A model whose joints rattle with values from predictions; none where these leave more than noise, or where simulations
+    /// are too many already.
     pub(super) fn foretold(&self, model: &Model) -> Result<Option<Model>, Stopped> {
+        if self.problem.is_worn_out() {
+            return Ok(None);
+        }
         (self.tell)(&format!("fitting predictions with {}", names(&model.fit.effects)));
         let effects = predicted(self.problem, &model.fit.effects, &self.split.on)?;
         let foretold = self.at(&effects, &model.fit.deviations()).ok().flatten();

@@ -5,7 +5,7 @@ use super::round::Tried;
 use super::search::Search;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
-use crate::calibrate::sensed::thresholds::NEAR;
+use crate::calibrate::sensed::thresholds::{MOMENT, NEAR};
 use crate::calibrate::sensed::values::linear::stepped_along;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::{Far, followed, shorter};
@@ -38,6 +38,9 @@ impl Search<'_> {
         model: &Model,
         tried: &mut Vec<Tried>,
     ) -> Result<Vec<Model>, Stopped> {
+        if self.problem.is_worn_out() {
+            return Ok(Vec::new());
+        }
         let own = &model.fit.effects;
         let paid = self.paid(model)?;
         // What cannot be simulated is no model.
@@ -82,12 +85,25 @@ impl Search<'_> {
     }
 
     /// Candidates beside a model that explain most by one linear step, each simulated a hair from neutral for [`SECONDS`]; a
-    /// machine that nothing holds and that does as it was let go adds up what acts on it over the whole run.
+    /// machine that nothing holds and that does as it was let go adds up what acts on it over the whole run, or as much of it as
+    /// takes a [moment](MOMENT).
     fn promising(&self, model: &Model) -> Result<Vec<Setting>, Stopped> {
         let own = &model.fit.effects;
         let falls = self.problem.falls(own)?;
+        let before = self.problem.work();
         let far = followed(self.problem, own, &self.split.on)?.pop().flatten();
-        let seconds = if falls { far } else { Some(SECONDS) };
+        // That took two replicas of two runs, about as much as values of one candidate do on one.
+        let all = (self.problem.work() - before) * self.candidates.len() as u64;
+        let runs = self.problem.runs.iter();
+        let longest = runs.map(|run| run.recording.duration()).fold(0.0, f64::max);
+        let seconds = match all > MOMENT {
+            _ if !falls => Some(SECONDS),
+            true => {
+                let affordable = longest * MOMENT as f64 / all as f64;
+                Some(far.unwrap_or(longest).min(affordable.max(SECONDS)))
+            }
+            false => far,
+        };
         // What hits lose shows where the motion after them can be followed.
         let follows = falls || far.is_none();
         let on = self.split.on.iter();
