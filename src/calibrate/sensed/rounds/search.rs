@@ -119,7 +119,7 @@ impl<'a> Search<'a> {
     /// Hypotheses with values from whole simulations, one after another until one leaves no more than noise; the best first.
     fn all_refined(&self, mut hypotheses: Vec<Model>) -> Result<Vec<Model>, Stopped> {
         for (i, model) in hypotheses.iter_mut().enumerate() {
-            if i > 0 && self.is_spent() {
+            if i > 0 && self.problem.is_worn_out() {
                 break;
             }
             if !self.is_noise(model) {
