@@ -27,8 +27,7 @@ pub(super) fn expand(scenario: &Scenario, m: &ThreeRrr) -> Result<Scenario, Prob
         bodies.push(link("crank", m.crank, ["O", "A"], anchor, a));
         bodies.push(link("rod", m.rod, ["A", "C"], a, c));
     }
-    let inertia = m.platform_mass * m.platform_side.powi(2) / 12.0;
-    bodies.push(platform.body((m.platform_mass, inertia)));
+    bodies.push(platform.body((m.platform_mass, m.platform_inertia())));
     let (mut joints, mut drives) = (Vec::new(), Vec::new());
     for (kind, letter) in ["O", "A", "C"].into_iter().enumerate() {
         for leg in 1..=3 {

@@ -184,9 +184,18 @@ const VALUES: &[MistakenFile] = &[
     (
         "[mechanism]\nkind = \"3rpr\"\nplatform_side = 1e305\n",
         &[],
-        &["my.toml:3: mechanism.platform_side: is 1e305 m; the platform's inertia is inf kg m²"],
+        &["my.toml:3: mechanism.platform_side: makes an inertia of inf kg m²"],
     ),
-    (MINIMAL, &["mechanism.platform_side=1e-200"], &["the platform's inertia is 0 kg m²"]),
+    (
+        MINIMAL,
+        &["mechanism.platform_side=1e-200"],
+        &["mechanism.platform_side: makes an inertia of 0 kg m²"],
+    ),
+    (
+        "[mechanism]\nkind = \"3rrr\"\nplatform_side = 1e305\n",
+        &[],
+        &["my.toml:3: mechanism.platform_side: makes an inertia of inf kg m²"],
+    ),
     (MINIMAL, &["legs.stroke=[0.4,0.2]"], &["two increasing lengths"]),
     (
         MINIMAL,

@@ -50,14 +50,14 @@ impl Checks<'_> {
         for (key, value, unit) in template.inertia().into_iter().chain(lengths).chain(masses) {
             self.positive(&format!("mechanism.{key}"), value, unit);
         }
-        let Mechanism::ThreeRpr(machine) = mechanism else { return };
         // What is made of good numbers may be none itself.
-        let inertia = machine.platform_inertia();
-        if self.problems.is_empty() && !(0.0 < inertia && inertia < f64::INFINITY) {
-            let side = machine.platform_side;
-            let message = format!("is {side:e} m; the platform's inertia is {inertia} kg m²");
-            let help = "expected a side whose square is neither 0 nor infinite";
-            self.complain("mechanism.platform_side", message, help);
+        if let Some((key, value, unit)) = template.derived_inertia()
+            && self.problems.is_empty()
+            && !(0.0 < value && value < f64::INFINITY)
+        {
+            let message = format!("makes an inertia of {value} {unit}");
+            let help = "expected a length whose square times a mass is neither 0 nor infinite";
+            self.complain(&format!("mechanism.{key}"), message, help);
         }
     }
 

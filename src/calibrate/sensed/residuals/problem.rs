@@ -331,6 +331,12 @@ impl RigProblem {
 
 #[cfg(test)]
 impl RigProblem {
+    /// The problem after as many simulations as it may take.
+    pub fn worn_out(self) -> Self {
+        self.work.store(thresholds::WORK, Ordering::Relaxed);
+        self
+    }
+
     /// One of the `planar-…` rigs with its first recording.
     pub fn planar(name: &str) -> Self {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));

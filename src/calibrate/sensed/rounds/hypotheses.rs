@@ -98,9 +98,14 @@ impl Search<'_> {
     /// off the machine, or what repeats does so less than once in a run.
     pub(in crate::calibrate::sensed) fn imitates(&self, effect: &Setting) -> bool {
         let afar = AFAR * self.problem.declared.size();
-        let far = |(name, value): (&str, f64)| {
+        // A machine need not stand at the origin: places are around where they are looked for.
+        let starts = effect.starts(&self.problem.declared);
+        let middle = |i: usize| {
+            starts.iter().map(|start| start[i]).sum::<f64>() / starts.len().max(1) as f64
+        };
+        let far = |(i, (name, value)): (usize, (&str, f64))| {
             let place = |p: &Parameter| p.unit == "m" && p.bounds[0] < 0.0;
-            effect.kind.parameter(name).is_some_and(place) && value.abs() > afar
+            effect.kind.parameter(name).is_some_and(place) && (value - middle(i)).abs() > afar
         };
         let seconds = |run: &Run| run.recording.duration();
         let longest = self.problem.runs.iter().map(seconds).fold(0.0, f64::max);
@@ -109,7 +114,7 @@ impl Search<'_> {
                 effect.value(scan.over).filter(|_| scan.range == ScanRange::Frequencies);
             frequency.is_some_and(|frequency| frequency * longest < 1.0)
         });
-        once || at_a_limit(effect) || effect.values().any(far)
+        once || at_a_limit(effect) || effect.values().enumerate().any(far)
     }
 }
 
@@ -146,9 +151,26 @@ mod tests {
             search.imitates(&Setting::on(named("payload").unwrap(), body.clone(), &values))
         };
         let size = problem.declared.size();
-        assert!(!payload(0.1, 0.0) && !payload(0.1, 1.9 * size));
-        assert!(payload(0.1, 2.1 * size), "far off the machine");
+        assert!(!payload(0.1, 0.0) && !payload(0.1, 1.5 * size));
+        assert!(payload(0.1, 3.0 * size), "far off the machine");
         assert!(payload(20.0, 0.0), "as much as makes sense");
+        // Somewhere else in the room.
+        let mut aside = RigProblem::planar("planar-1");
+        for body in &mut aside.declared.bodies {
+            body.start.position.x += 10.0;
+        }
+        let there = Search::new(&aside, &split, &[], &|_| {});
+        let cable = |x: f64| {
+            let values = [
+                ("stiffness_N_m", 5.0),
+                ("anchor_x_m", x),
+                ("anchor_y_m", 0.0),
+                ("rest_length_m", 0.1),
+            ];
+            Setting::on(named("tether").unwrap(), body.clone(), &values)
+        };
+        assert!(!search.imitates(&cable(0.1)) && search.imitates(&cable(10.1)));
+        assert!(!there.imitates(&cable(10.1)) && there.imitates(&cable(0.1)));
         // Runs of three seconds.
         let vibration = |frequency: f64| {
             let values = [("ax_m_s2", 0.1), ("frequency_Hz", frequency)];

@@ -226,3 +226,24 @@ fn credited(rounds: &mut [Round], kept: &[Setting]) {
 fn same(a: &[Setting], b: &[Setting]) -> bool {
     a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| a.is(b)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::sensed::values::candidates::candidates;
+
+    /// A payload is missing here, and nobody has the time to look for it.
+    #[test]
+    fn nothing_is_begun_after_too_many_steps() {
+        let problem = RigProblem::planar("planar-1").worn_out();
+        let (split, all) = (problem.split(), candidates(&problem.declared, &[]));
+        let search = Search::new(&problem, &split, &all, &|_| {});
+        let found = search.run().unwrap();
+        assert!(!search.is_noise(&found.best), "something is missing");
+        assert!(found.rounds.is_empty() && found.best.fit.effects.is_empty());
+        let before = problem.simulations();
+        assert!(search.unseen(&found.declared, &mut Vec::new()).unwrap().is_empty());
+        assert!(search.foretold(&found.declared).unwrap().is_none());
+        assert_eq!(problem.simulations(), before);
+    }
+}

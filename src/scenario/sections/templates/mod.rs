@@ -28,6 +28,11 @@ pub type Numbers = Vec<(&'static str, f64)>;
 /// A key under `[mechanism]` that inertias are made of, its value and its unit.
 pub type Inertia = (&'static str, f64, &'static str);
 
+/// Inertia in kg m² of a thin uniform triangular plate of this mass (kg) and side (m) about its centre: m s²/12.
+fn triangle_inertia(mass: f64, side: f64) -> f64 {
+    mass * side.powi(2) / 12.0
+}
+
 /// What is known of a kind of machine without putting it together.
 pub trait Template {
     /// Names of the revolute joints, in the order of lists that hold a value for each.
@@ -50,6 +55,12 @@ pub trait Template {
 
     /// An inertia, or what inertias are made of, if a file gives one; it has to be above 0.
     fn inertia(&self) -> Option<Inertia> {
+        None
+    }
+
+    /// An inertia that follows from others where a file gives none, by the key that it follows from most: it has to be a number
+    /// above 0 as well.
+    fn derived_inertia(&self) -> Option<Inertia> {
         None
     }
 

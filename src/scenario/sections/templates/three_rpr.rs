@@ -1,6 +1,6 @@
 //! `kind = "3rpr"`: the planar parallel manipulator with three legs, each R-P-R.
 
-use super::{Inertia, Numbers, Template};
+use super::{Inertia, Numbers, Template, triangle_inertia};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -32,10 +32,11 @@ impl Default for ThreeRpr {
 }
 
 impl ThreeRpr {
-    /// Inertia about the platform's centre, kg m²: as given, or m·side²/12, that of a thin uniform
-    /// triangular plate (the paper gives none).
+    /// Inertia about the platform's centre, kg m²: as given, or that of a [triangular plate](triangle_inertia) (the paper gives
+    /// none).
     pub fn platform_inertia(&self) -> f64 {
-        self.platform_inertia.unwrap_or(self.platform_mass * self.platform_side.powi(2) / 12.0)
+        let plate = || triangle_inertia(self.platform_mass, self.platform_side);
+        self.platform_inertia.unwrap_or_else(plate)
     }
 }
 
@@ -54,6 +55,11 @@ impl Template for ThreeRpr {
 
     fn inertia(&self) -> Option<Inertia> {
         self.platform_inertia.map(|value| ("platform_inertia", value, "kg m²"))
+    }
+
+    fn derived_inertia(&self) -> Option<Inertia> {
+        let given = self.platform_inertia.is_some();
+        (!given).then(|| ("platform_side", self.platform_inertia(), "kg m²"))
     }
 
     fn sections(&self) -> &'static [&'static str] {

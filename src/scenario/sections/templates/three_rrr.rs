@@ -1,6 +1,6 @@
 //! `kind = "3rrr"`: the planar parallel manipulator with three driven cranks.
 
-use super::{Inertia, Numbers, Template};
+use super::{Inertia, Numbers, Template, triangle_inertia};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +36,13 @@ impl Default for ThreeRrr {
     }
 }
 
+impl ThreeRrr {
+    /// Inertia about the platform's centre, kg m²: that of a [triangular plate](triangle_inertia).
+    pub fn platform_inertia(&self) -> f64 {
+        triangle_inertia(self.platform_mass, self.platform_side)
+    }
+}
+
 impl Template for ThreeRrr {
     fn revolutes(&self) -> &'static [&'static str] {
         &["O1", "O2", "O3", "A1", "A2", "A3", "C1", "C2", "C3"]
@@ -56,5 +63,9 @@ impl Template for ThreeRrr {
 
     fn inertia(&self) -> Option<Inertia> {
         Some(("linear_density", self.linear_density, "kg/m"))
+    }
+
+    fn derived_inertia(&self) -> Option<Inertia> {
+        Some(("platform_side", self.platform_inertia(), "kg m²"))
     }
 }
