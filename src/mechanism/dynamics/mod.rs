@@ -118,6 +118,7 @@ impl Dynamics {
         let inverse = |mass: f64, inertia: f64| Vector3::new(1.0 / mass, 1.0 / mass, 1.0 / inertia);
         let g = mechanism.gravity;
         let starts: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
+        let at = Situation { t: mechanism.epoch, mechanism, states: &starts, angles: None };
         let bodies = &mechanism.bodies;
         let (telescopes, others) = pairs_and_groups(mechanism);
         let beside = |joint: &Prismatic| {
@@ -160,18 +161,7 @@ impl Dynamics {
             prescribed,
             angles: angles.collect(),
             held: vec![Held::default(); mechanism.actuators.len()],
-            memories: mechanism
-                .loads
-                .iter()
-                .map(|load| {
-                    load.begin(Situation {
-                        t: mechanism.epoch,
-                        mechanism,
-                        states: &starts,
-                        angles: None,
-                    })
-                })
-                .collect(),
+            memories: mechanism.loads.iter().map(|load| load.begin(at)).collect(),
             touches: touches(mechanism, &starts),
             touched: 0.0,
             constraints: Constraints::default(),

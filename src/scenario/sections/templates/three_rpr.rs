@@ -32,7 +32,7 @@ impl Default for ThreeRpr {
 }
 
 impl ThreeRpr {
-    /// Inertia about the platform's centre, kg m²: as given, or that of a [triangular plate](triangle_inertia) (the paper gives
+    /// Inertia about the platform's centre, kg m²: as given, or that of a thin uniform triangular plate, m s²/12 (the paper gives
     /// none).
     pub fn platform_inertia(&self) -> f64 {
         let plate = || triangle_inertia(self.platform_mass, self.platform_side);

@@ -37,7 +37,7 @@ impl Default for ThreeRrr {
 }
 
 impl ThreeRrr {
-    /// Inertia about the platform's centre, kg m²: that of a [triangular plate](triangle_inertia).
+    /// Inertia about the platform's centre, kg m²: that of a thin uniform triangular plate, m s²/12.
     pub fn platform_inertia(&self) -> f64 {
         triangle_inertia(self.platform_mass, self.platform_side)
     }
