@@ -4,6 +4,7 @@
 mod andrews_squeezer;
 mod clearance_four_bar;
 mod double_pendulum;
+mod leaning;
 mod n_four_bar;
 mod parallelogram;
 mod slider_crank;

@@ -201,7 +201,10 @@ impl Posed {
         if size == 0.0 {
             return Vector2::zeros();
         }
-        let (along, depth) = (force / -size, clearance.law.resting_penetration(size));
+        // A journal that turns climbs its ring by the angle of friction: what is tangential is not borne by depth.
+        let (normal, tangential) = borne(joint, &self.states, size);
+        let climbed = UnitComplex::new(-tangential.atan2(normal));
+        let (along, depth) = (climbed * force / -size, clearance.law.resting_penetration(normal));
         match &joint.out_of_round {
             None => along * (clearance.radial() + depth),
             Some(shape) => {
@@ -313,14 +316,23 @@ fn rub(
     needed: &mut DVector<f64>,
 ) {
     for (joint, reaction) in mechanism.revolutes.iter().zip(reactions) {
-        let Some((law, radius)) = friction(joint) else { continue };
-        let torque = -radius * law.force(reaction.norm(), joint.spin(states) * radius);
+        let Some((_, radius)) = friction(joint) else { continue };
+        let torque = -radius * borne(joint, states, reaction.norm()).1;
         for (body, torque) in joint.bodies().into_iter().zip([-torque, torque]) {
             if let Some(body) = body {
                 needed[3 * body + 2] -= torque;
             }
         }
     }
+}
+
+/// Normal and tangential part in N of a joint's force of this size, the latter along the sliding: the law's friction is in
+/// proportion to the former, `F² = N² + (µ N)²`.
+fn borne(joint: &Revolute, states: &[BodyState], size: f64) -> (f64, f64) {
+    let slides = |(law, radius): (Friction, f64)| law.force(1.0, joint.spin(states) * radius);
+    let coefficient = friction(joint).map_or(0.0, slides);
+    let normal = size / coefficient.hypot(1.0);
+    (normal, coefficient * normal)
 }
 
 /// Friction of a joint and its journal's radius in m, if it rubs.
