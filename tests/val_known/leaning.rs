@@ -11,70 +11,70 @@ const PLAY: f64 = 2e-4;
 const FRICTION: f64 = 0.4;
 
 /// Crank, rod and slider at 4 rad/s under 40 m/s² along the slide, so that the rod is pressed for the whole of the run.
+const MACHINE: &str = "
+    [environment]
+    gravity = [-40.0, 0.0]
+    [ground.points]
+    O = [0.0, 0.0]
+    [[body]]
+    name = \"crank\"
+    mass = 0.1
+    inertia = 1e-5
+    points = { O = [0.0, 0.0], A = [0.05, 0.0] }
+    start = [0.0, 0.0, 0.3]
+    [[body]]
+    name = \"rod\"
+    mass = 0.1
+    inertia = 1e-4
+    center_of_mass = [0.08, 0.0]
+    points = { A = [0.0, 0.0], B = [0.16, 0.0] }
+    start = [0.048, 0.015, -0.1]
+    [[body]]
+    name = \"slider\"
+    mass = 5.0
+    inertia = 1e-3
+    points = { B = [0.0, 0.0] }
+    start = [0.207, 0.0, 0.0]
+    [[joint]]
+    name = \"O\"
+    kind = \"revolute\"
+    ring = \"ground.O\"
+    journal = \"crank.O\"
+    [[joint]]
+    name = \"slide\"
+    kind = \"prismatic\"
+    base = \"ground.O\"
+    slider = \"slider.B\"
+    [[drive]]
+    joint = \"O\"
+    kind = \"prescribed\"
+    [[motion]]
+    joint = \"O\"
+    kind = \"line\"
+    start = 0.3
+    velocity = 4.0
+    [contact]
+    stiffness = 1e9
+    c_max = 1e4
+    d_max = 1e-6
+    ";
+
+/// That with its pins.
 fn text(friction: f64) -> String {
-    format!(
-        "
-        [environment]
-        gravity = [-40.0, 0.0]
-        [ground.points]
-        O = [0.0, 0.0]
-        [[body]]
-        name = \"crank\"
-        mass = 0.1
-        inertia = 1e-5
-        points = {{ O = [0.0, 0.0], A = [0.05, 0.0] }}
-        start = [0.0, 0.0, 0.3]
-        [[body]]
-        name = \"rod\"
-        mass = 0.1
-        inertia = 1e-4
-        center_of_mass = [0.08, 0.0]
-        points = {{ A = [0.0, 0.0], B = [0.16, 0.0] }}
-        start = [0.048, 0.015, -0.1]
-        [[body]]
-        name = \"slider\"
-        mass = 5.0
-        inertia = 1e-3
-        points = {{ B = [0.0, 0.0] }}
-        start = [0.207, 0.0, 0.0]
-        [[joint]]
-        name = \"O\"
-        kind = \"revolute\"
-        ring = \"ground.O\"
-        journal = \"crank.O\"
-        [[joint]]
-        name = \"A\"
-        kind = \"revolute\"
-        ring = \"crank.A\"
-        journal = \"rod.A\"
-        clearance = {PLAY:?}
-        friction = {friction:?}
-        [[joint]]
-        name = \"B\"
-        kind = \"revolute\"
-        ring = \"rod.B\"
-        journal = \"slider.B\"
-        clearance = {PLAY:?}
-        friction = {friction:?}
-        [[joint]]
-        name = \"slide\"
-        kind = \"prismatic\"
-        base = \"ground.O\"
-        slider = \"slider.B\"
-        [[drive]]
-        joint = \"O\"
-        kind = \"prescribed\"
-        [[motion]]
-        joint = \"O\"
-        kind = \"line\"
-        start = 0.3
-        velocity = 4.0
-        [contact]
-        stiffness = 1e9
-        c_max = 1e4
-        d_max = 1e-6
-        "
-    )
+    let pin = |name: &str, ring: &str, journal: &str| {
+        format!(
+            "
+            [[joint]]
+            name = \"{name}\"
+            kind = \"revolute\"
+            ring = \"{ring}.{name}\"
+            journal = \"{journal}.{name}\"
+            clearance = {PLAY:?}
+            friction = {friction:?}
+            "
+        )
+    };
+    [MACHINE, &pin("A", "crank", "rod"), &pin("B", "rod", "slider")].concat()
 }
 
 /// Mean differences between the simulation of a machine with this friction and journals that lean where this `assumed`

@@ -82,7 +82,9 @@ impl Sight {
         let sensors = machine(rig, &[], like)?.sensors;
         let noisy = with_noise(&clean, &sensors, seed);
         let mut problem = RigProblem::new(rig.clone(), vec![noisy], control)?;
-        problem.look_for_rattle(&[])?;
+        let logs = problem.simulated(&problem.let_go(&[])?, 2)?;
+        problem.rattle(&logs);
+        problem.lean_as_noise_allows(&logs);
         let segment = Segment { run: 0, rows: problem.runs[0].view.rows() };
         let segments = std::slice::from_ref(&segment);
         let baseline = Baseline::of(&problem, &[], &[], segments)?;

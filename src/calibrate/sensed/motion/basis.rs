@@ -22,6 +22,8 @@ pub struct Basis {
     pub joints: Vec<JointIndex>,
     /// What shows the motion.
     shown: Shown,
+    /// How far journals are taken to lean on their rings under the forces that are measured, as a share of that.
+    pub lean: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -71,7 +73,7 @@ impl Basis {
         });
         let found = independent(mechanism, drives.chain(joints).collect())?;
         let (joints, sources) = found.into_iter().unzip();
-        Some(Self { joints, shown: Shown::Coordinates(sources) })
+        Some(Self { joints, shown: Shown::Coordinates(sources), lean: 1.0 })
     }
 
     /// A tracked body that determines a machine whose joints have play.
@@ -100,7 +102,7 @@ impl Basis {
             let angle = read(&|reads| matches!(reads, Reads::Angle(Some(of), _) if *of == body))?;
             Some([x, y, angle])
         })?;
-        let basis = Self { joints, shown: Shown::Pose(pose) };
+        let basis = Self { joints, shown: Shown::Pose(pose), lean: 1.0 };
         // Three numbers determine three freedoms, if they can be imposed.
         (basis.joints.len() == 3 && basis.holds(mechanism)).then_some(basis)
     }

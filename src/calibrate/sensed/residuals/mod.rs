@@ -1,7 +1,9 @@
 //! A rig and its runs ([`problem`]), what these say against a model ([`residual`]), and what a right model leaves of that
-//! ([`baseline`]), by noiseless recordings of models ([`simulated`]).
+//! ([`baseline`]), by noiseless recordings of models ([`simulated`]). How far
+//! journals are taken to lean follows from noise ([`lean`]).
 
 pub mod baseline;
+pub mod lean;
 pub mod problem;
 pub mod residual;
 pub(super) mod simulated;

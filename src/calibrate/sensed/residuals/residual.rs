@@ -3,7 +3,8 @@
 //! * **law** of a drive: its measured effort less what its command and the measured coordinate make it;
 //! * **dynamics** of each joint of the [`Basis`]: the effort that acts on it less what the measured
 //!   motion takes by inverse dynamics; where no drive acts that is an effort of zero;
-//! * **closure**: each other measured position less where the bodies are, journals leaning on their rings;
+//! * **closure**: each other measured position less where the bodies are, journals leaning on their rings as far as
+//!   noise allows;
 //! * **acceleration**: each measured one less that of the measured motion.
 
 use crate::calibrate::measured::spectrum::Signal;
@@ -15,7 +16,8 @@ use crate::calibrate::sensed::recorded::view::{
 use crate::calibrate::sensed::thresholds::{DYNAMICS_BAND, PLAIN_BAND};
 use crate::measure::filter::derivative;
 use crate::mechanism::{
-    Command, Drive, Evaluation, JointIndex, Mechanism, Posed, Reads, Sensor, Taken, angle_near,
+    BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, Posed, Reads, Sensor, Taken,
+    angle_near,
 };
 use std::ops::Range;
 
@@ -275,8 +277,12 @@ impl<'a> Look<'a> {
             })
             .collect();
         let slow: Vec<Option<f64>> = efforts.iter().map(|e| e.map(|[_, slow]| slow)).collect();
-        let Taken { efforts: taken, leaning, .. } =
+        let Taken { efforts: taken, mut leaning, .. } =
             pose.taken(self.mechanism, t, &slow, &self.applied(&commands, row))?;
+        let states = pose.states(self.mechanism);
+        for (leaning, centred) in leaning.iter_mut().zip(&states) {
+            *leaning = between(centred, leaning, self.basis.lean);
+        }
         for (effort, taken) in efforts.iter().zip(taken) {
             if let Some([effort, _]) = effort {
                 push(effort - taken);
@@ -286,7 +292,6 @@ impl<'a> Look<'a> {
         let angles: Vec<f64> =
             turned.map(|(state, near)| angle_near(state.rotation, *near)).collect();
         self.fill(pose, &leaning, &angles, now);
-        let states = pose.states(self.mechanism);
         for sensor in self.others() {
             let of = &self.mechanism.sensors[sensor];
             let states = match of.reads {
@@ -325,13 +330,7 @@ impl<'a> Look<'a> {
     }
 
     /// What sensors look at beside states.
-    fn fill(
-        &self,
-        pose: &Posed,
-        leaning: &[crate::mechanism::BodyState],
-        angles: &[f64],
-        now: &mut Evaluation,
-    ) {
+    fn fill(&self, pose: &Posed, leaning: &[BodyState], angles: &[f64], now: &mut Evaluation) {
         for (i, acceleration) in now.accelerations.iter_mut().enumerate() {
             *acceleration = pose.acceleration(self.mechanism, i);
         }
@@ -349,4 +348,15 @@ impl<'a> Look<'a> {
             };
         }
     }
+}
+
+/// A share of the way from one state to another one near it; at the whole of it that one.
+fn between(from: &BodyState, to: &BodyState, share: f64) -> BodyState {
+    if share == 1.0 {
+        return *to;
+    }
+    let mut state = *from;
+    state.position += (to.position - from.position) * share;
+    state.rotation *= (from.rotation.inverse() * to.rotation).powf(share);
+    state
 }

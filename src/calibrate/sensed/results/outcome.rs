@@ -70,6 +70,7 @@ pub fn calibrate(
     let logs = problem.simulated(&problem.let_go(&[])?, 2)?;
     let noises = noise::correct(problem, &logs);
     let mut rattle = problem.rattle(&logs);
+    problem.lean_as_noise_allows(&logs);
     let split = problem.split();
     let asked =
         SearchAsked { split: &split, candidates: candidates(&problem.declared, without), tell };
