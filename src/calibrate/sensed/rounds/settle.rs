@@ -46,9 +46,11 @@ impl Search<'_> {
             let noise = own + baseline.lost(&self.split.hold);
             let (rattles, known) = (baseline.rattles, !deviations.is_empty());
             let model = Model { fit, held: held.chi2, misfit: held.chi2 + noise, baseline };
+            // Two replicas of joints that lift off now and then may happen to be alike, and know nothing of it.
+            let rattled = |before: &Model| before.baseline.rattles || rattles;
             let worse = settled
                 .as_ref()
-                .is_some_and(|before| model.baseline.rattles && before.misfit < model.misfit);
+                .is_some_and(|before| rattled(before) && before.misfit < model.misfit);
             if !worse {
                 settled = Some(model);
             }
