@@ -50,3 +50,10 @@ fn drag_is_found_behind_what_looks_better_at_first() {
 fn gravity_is_named_before_what_needs_more_values() {
     right(307_000_003);
 }
+
+/// Friction of one joint of a six-bar that rattles: it shows in how far journals climb their rings.
+#[test]
+#[ignore = "two minutes"]
+fn friction_shows_in_how_far_journals_climb() {
+    right(311_000_016);
+}
