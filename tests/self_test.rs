@@ -39,7 +39,7 @@ fn friction_that_falls_with_speed_is_told_from_plain_friction() {
 /// Drag of one body, which all that was tried first took for a base that vibrates: only values from whole simulations of what
 /// comes second told it.
 #[test]
-#[ignore = "four minutes"]
+#[ignore = "four minutes; fails: a base that vibrates is taken for it since looks let journals climb their rings"]
 fn drag_is_found_behind_what_looks_better_at_first() {
     right(227_000_003);
 }
