@@ -1,7 +1,6 @@
-//! A slider-crank that is pressed together: its pins lean on their rings, and where friction holds them they have climbed
-//! those by the angle of friction (a journal that turns in a loaded bearing: F. P. Bowden, D. Tabor, The Friction and
-//! Lubrication of Solids; any textbook's circle of friction). Inverse dynamics says where; the simulation of the contacts
-//! knows nothing of that.
+//! A slider-crank that is pressed together: its pins lean on their rings, and where they turn friction has them climb
+//! these by the angle of friction (J. L. Meriam, L. G. Kraige, Engineering Mechanics: Statics, journal bearings: the circle
+//! of friction). Inverse dynamics says where; the simulation of the contacts knows nothing of that.
 
 use super::{body, machine, short, simulate};
 use freeplay::engine::Schedule;

@@ -327,7 +327,8 @@ fn rub(
 }
 
 /// Normal and tangential part in N of a joint's force of this size, the latter along the sliding: the law's friction is in
-/// proportion to the former, `F² = N² + (µ N)²`.
+/// proportion to the former, `F² = N² + (µ N)²` (the circle of friction of a journal bearing: J. L. Meriam, L. G. Kraige,
+/// Engineering Mechanics: Statics).
 fn borne(joint: &Revolute, states: &[BodyState], size: f64) -> (f64, f64) {
     let slides = |(law, radius): (Friction, f64)| law.force(1.0, joint.spin(states) * radius);
     let coefficient = friction(joint).map_or(0.0, slides);
