@@ -64,16 +64,17 @@ impl Tracker {
         let is_revolute = |place: &usize| revolute(joints[*place]).is_some();
         let places: Vec<usize> = (0..joints.len()).filter(is_revolute).collect();
         let own: Vec<usize> = places.iter().map(|&k| joints[k]).collect();
-        let all_forces = forces(&rows.select_rows(&joints), self.mechanism().size())?;
         // What is imposed stays where it is. By a target the rows of joints stand first, without those of drives among them.
-        let factors = Factors::of(rows.clone());
-        let shifts = match self.by_drives() {
-            true => factors.responses(rows.nrows(), &own)?,
-            false => {
-                let determining = matrix(&self.determining(), bodies);
-                let height = determining.nrows();
-                Factors::of(determining).responses(height, &places)?
-            }
+        let determining = self.determining();
+        let target = (!self.by_drives()).then(|| Factors::of(rows.clone()));
+        let factors = target.as_ref().unwrap_or(determining);
+        // `Jᵀ x = w` asks for rows of (Jᵀ)⁻¹, which are columns of J⁻¹.
+        let [efforts, shifts] = [&driven, &own].map(|of| factors.responses(of));
+        let (efforts, shifts) = (efforts?, shifts?);
+        let forces = forces(&shifts, &efforts, self.mechanism().size())?;
+        let shifts = match target {
+            None => shifts,
+            Some(_) => determining.responses(&places)?,
         };
         Some(Posed {
             t: self.time(),
@@ -82,12 +83,11 @@ impl Tracker {
             accelerations: (0..bodies).map(|i| self.acceleration(i)).collect(),
             references: self.mechanism().bodies.iter().map(|body| body.reference).collect(),
             drives: self.mechanism().actuators.len(),
-            // `Jᵀ x = w` asks for rows of (Jᵀ)⁻¹, which are columns of J⁻¹.
-            efforts: factors.responses(rows.nrows(), &driven)?,
+            efforts,
             driving: driven.iter().filter_map(|&row| closure.driven[row]).collect(),
             driven: rows.select_rows(&driven).transpose(),
             revolutes: own.iter().step_by(2).filter_map(|&row| revolute(row)).collect(),
-            forces: all_forces.select_rows(&places),
+            forces,
             shifts,
         })
     }
@@ -147,7 +147,9 @@ impl Posed {
     ) -> Option<Taken> {
         let states = self.states(mechanism);
         let mut needed = self.needed(mechanism, &states, t, applied);
-        let rubbing = mechanism.revolutes.iter().any(|joint| friction(joint).is_some());
+        let sliding: Vec<f64> =
+            mechanism.revolutes.iter().map(|joint| sliding(joint, &states)).collect();
+        let rubbing = sliding.iter().any(|&coefficient| coefficient != 0.0);
         let mut taken = Taken {
             efforts: vec![0.0; self.drives],
             reactions: vec![Vector2::zeros(); mechanism.revolutes.len()],
@@ -156,7 +158,7 @@ impl Posed {
         let mut left = needed.clone();
         for pass in 0..=usize::from(rubbing) {
             if pass > 0 {
-                rub(mechanism, &states, &taken.reactions, &mut needed);
+                rub(mechanism, &sliding, &taken.reactions, &mut needed);
             }
             let exact = self.efforts.tr_mul(&needed);
             left.copy_from(&needed);
@@ -173,15 +175,20 @@ impl Posed {
                 taken.reactions[joint] = forces.fixed_rows::<2>(2 * k).into_owned();
             }
         }
-        taken.leaning = self.leaning(mechanism, &taken.reactions);
+        taken.leaning = self.leaning(mechanism, &sliding, &taken.reactions);
         Some(taken)
     }
 
     /// States with journals that lean on their rings under these joint forces (N).
-    fn leaning(&self, mechanism: &Mechanism, reactions: &[Vector2<f64>]) -> Vec<BodyState> {
+    fn leaning(
+        &self,
+        mechanism: &Mechanism,
+        sliding: &[f64],
+        reactions: &[Vector2<f64>],
+    ) -> Vec<BodyState> {
         let mut gaps = DVector::zeros(self.shifts.ncols());
         for (k, &joint) in self.revolutes.iter().enumerate() {
-            let lean = self.lean(&mechanism.revolutes[joint], reactions[joint]);
+            let lean = self.lean(&mechanism.revolutes[joint], sliding[joint], reactions[joint]);
             gaps.fixed_rows_mut::<2>(2 * k).copy_from(&lean);
         }
         let shift = &self.shifts * gaps;
@@ -194,15 +201,16 @@ impl Posed {
         self.states.iter().enumerate().map(moved).collect()
     }
 
-    /// From the ring's centre to the journal's in m, where the ring pushes the journal with this force (N).
-    fn lean(&self, joint: &Revolute, force: Vector2<f64>) -> Vector2<f64> {
+    /// From the ring's centre to the journal's in m, where the ring pushes the journal, which slides by this
+    /// [coefficient](sliding), with this force (N).
+    fn lean(&self, joint: &Revolute, sliding: f64, force: Vector2<f64>) -> Vector2<f64> {
         let size = force.norm();
         let Bearing::Clearance(clearance) = &joint.bearing else { return Vector2::zeros() };
         if size == 0.0 {
             return Vector2::zeros();
         }
         // A journal that turns climbs its ring by the angle of friction: what is tangential is not borne by depth.
-        let (normal, tangential) = borne(joint, &self.states, size);
+        let (normal, tangential) = borne(sliding, size);
         let climbed = UnitComplex::new(-tangential.atan2(normal));
         let (along, depth) = (climbed * force / -size, clearance.law.resting_penetration(normal));
         match &joint.out_of_round {
@@ -283,41 +291,30 @@ impl Mechanism {
     }
 }
 
-/// Share of the largest row's square that keeps joints which say the same twice from being singular: their
-/// forces are then the smallest.
-const RIDGE: f64 = 1e-12;
-
-/// What turns that which bodies need into the λ that leaves least of `needed − Jᵀ λ`, moments as forces at the `size` of the
-/// mechanism in m: `(J S S Jᵀ)⁻¹ J S S`.
-fn forces(rows: &DMatrix<f64>, size: f64) -> Option<DMatrix<f64>> {
-    let scaled = |rows: &DMatrix<f64>| {
-        let mut rows = rows.clone();
-        for (k, mut column) in rows.column_iter_mut().enumerate() {
-            if k % 3 == 2 {
-                column /= size;
-            }
-        }
-        rows
-    };
-    let once = scaled(rows);
-    let mut gram = &once * once.transpose();
-    let ridge = RIDGE * gram.diagonal().amax();
-    for i in 0..gram.nrows() {
-        gram[(i, i)] += ridge;
+/// What turns that which bodies need into the λ that leaves least of `needed − Jᵀ λ`, moments as forces at the `size` L of
+/// the mechanism in m, from what joints and drives by themselves move, `J P = 1`, `J Q = 0`.
+///
+/// With S = diag(1, 1, 1/L) what is left, r, has `J S² r = 0`, hence is `S⁻² Q c`; `Qᵀ needed = Qᵀ S⁻² Q c` says what c
+/// is, and `λ = Pᵀ (needed − S⁻² Q c)` is the smallest where joints say the same twice, as P is.
+fn forces(joints: &DMatrix<f64>, drives: &DMatrix<f64>, size: f64) -> Option<DMatrix<f64>> {
+    let mut weighted = drives.clone();
+    for mut moments in weighted.row_iter_mut().skip(2).step_by(3) {
+        moments *= size * size;
     }
-    Some(gram.cholesky()?.solve(&scaled(&once)))
+    let left = drives.tr_mul(&weighted).cholesky()?.solve(&drives.transpose());
+    Some(joints.transpose() - joints.tr_mul(&weighted) * left)
 }
 
 /// Takes the friction of joints with clearance, under these joint forces (N), from what bodies need.
 fn rub(
     mechanism: &Mechanism,
-    states: &[BodyState],
+    sliding: &[f64],
     reactions: &[Vector2<f64>],
     needed: &mut DVector<f64>,
 ) {
-    for (joint, reaction) in mechanism.revolutes.iter().zip(reactions) {
+    for ((joint, &sliding), reaction) in mechanism.revolutes.iter().zip(sliding).zip(reactions) {
         let Some((_, radius)) = friction(joint) else { continue };
-        let torque = -radius * borne(joint, states, reaction.norm()).1;
+        let torque = -radius * borne(sliding, reaction.norm()).1;
         for (body, torque) in joint.bodies().into_iter().zip([-torque, torque]) {
             if let Some(body) = body {
                 needed[3 * body + 2] -= torque;
@@ -326,14 +323,17 @@ fn rub(
     }
 }
 
-/// Normal and tangential part in N of a joint's force of this size, the latter along the sliding: the law's friction is in
-/// proportion to the former, `F² = N² + (µ N)²` (the circle of friction of a journal bearing: J. L. Meriam, L. G. Kraige,
-/// Engineering Mechanics: Statics).
-fn borne(joint: &Revolute, states: &[BodyState], size: f64) -> (f64, f64) {
-    let slides = |(law, radius): (Friction, f64)| law.force(1.0, joint.spin(states) * radius);
-    let coefficient = friction(joint).map_or(0.0, slides);
-    let normal = size / coefficient.hypot(1.0);
-    (normal, coefficient * normal)
+/// Tangential over normal force of a joint as it turns, the former along the sliding; 0 where nothing rubs.
+fn sliding(joint: &Revolute, states: &[BodyState]) -> f64 {
+    friction(joint).map_or(0.0, |(law, radius)| law.force(1.0, joint.spin(states) * radius))
+}
+
+/// Normal and tangential part in N of a joint's force of this size, the latter `sliding` times the former,
+/// `F² = N² + (µ N)²` (the circle of friction of a journal bearing: J. L. Meriam, L. G. Kraige, Engineering Mechanics:
+/// Statics).
+fn borne(sliding: f64, size: f64) -> (f64, f64) {
+    let normal = size / sliding.hypot(1.0);
+    (normal, sliding * normal)
 }
 
 /// Friction of a joint and its journal's radius in m, if it rubs.

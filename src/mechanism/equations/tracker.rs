@@ -6,7 +6,7 @@ use super::factors::Factors;
 use super::rows::Row;
 use crate::mechanism::motion::Motion;
 use crate::mechanism::{Attachment, Body, BodyState, Command, Mechanism, angle_near};
-use nalgebra::{DVector, Dim, Matrix, RawStorage, UnitComplex, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Dim, Matrix, RawStorage, UnitComplex, Vector2, Vector3};
 use std::sync::Arc;
 
 /// Gaps in m and rad at which a state is closed: what Newton's method leaves on a machine of a metre.
@@ -68,6 +68,8 @@ pub struct Tracker {
     /// Angle of each body in rad, whole turns included.
     angles: Vec<f64>,
     accelerations: DVector<f64>,
+    /// The rows that determine the present state.
+    factors: Factors,
 }
 
 /// Where a mechanism cannot follow its motion any further.
@@ -103,7 +105,9 @@ impl Tracker {
         let accelerations = DVector::zeros(3 * states.len());
         let turned = |(body, state): (&Body, &BodyState)| angle_near(state.rotation, body.angle);
         let angles = mechanism.bodies.iter().zip(&states).map(turned).collect();
-        let mut tracker = Self { mechanism, imposed, size, t, states, angles, accelerations };
+        let factors = Factors::of(DMatrix::zeros(0, 0));
+        let mut tracker =
+            Self { mechanism, imposed, size, t, states, angles, accelerations, factors };
         let closed = tracker.close(tracker.states.clone(), t, f64::INFINITY).ok_or(Stuck { t })?;
         tracker.accept(closed, t).ok_or(Stuck { t })?;
         Ok(tracker)
@@ -208,13 +212,13 @@ impl Tracker {
         for ((angle, before), now) in self.angles.iter_mut().zip(&self.states).zip(&states) {
             *angle = angle_near(now.rotation, *angle + before.rotation.angle_to(&now.rotation));
         }
-        (self.states, self.t) = (states, t);
+        (self.states, self.t, self.factors) = (states, t, factors);
         Some(())
     }
 
     /// The rows that determine the present state: those of joints in their order, then what is imposed.
-    pub(super) fn determining(&self) -> Vec<Row> {
-        self.system(&self.states, self.t).rows
+    pub(super) fn determining(&self) -> &Factors {
+        &self.factors
     }
 
     /// Whether drives impose the motion.
@@ -227,19 +231,16 @@ impl Tracker {
         self.mechanism.true_commands(t, &mut commands);
         let closure = self.mechanism.closure(states, &commands);
         let by_drives = matches!(self.imposed, Imposed::Drives);
-        let mut system = System {
-            rows: Vec::new(),
-            gaps: DVector::zeros(0),
-            rates: DVector::zeros(0),
-            accelerations: DVector::zeros(0),
-        };
-        let [mut gaps, mut rates, mut accelerations] = [const { Vec::new() }; 3];
+        // A target has three rows at most.
+        let count = closure.rows.len() + 3;
+        let mut rows = Vec::with_capacity(count);
+        let [mut gaps, mut rates, mut accelerations] = [(); 3].map(|()| Vec::with_capacity(count));
         for ((row, gap), drive) in closure.rows.iter().zip(&closure.gaps).zip(&closure.driven) {
             if drive.is_some() && !by_drives {
                 continue;
             }
             let command = drive.map(|drive| commands[drive]).unwrap_or_default();
-            system.rows.push(*row);
+            rows.push(*row);
             gaps.push(*gap);
             rates.push(command.rate);
             accelerations.push(command.acceleration - row.bias);
@@ -252,23 +253,21 @@ impl Tracker {
             for (k, e) in [Vector2::x(), Vector2::y()].into_iter().enumerate() {
                 let jacobian = Vector3::new(e.x, e.y, frame.arm.perp(&e));
                 let bias = centripetal.dot(&e);
-                system.rows.push(on(point.body, jacobian, bias));
+                rows.push(on(point.body, jacobian, bias));
                 gaps.push(off[k]);
                 rates.push(asked.rate[k]);
                 accelerations.push(asked.acceleration[k] - bias);
             }
             if let Some(angle) = angle {
                 let rotation = point.rotation(states) * UnitComplex::new(*angle);
-                system.rows.push(on(point.body, Vector3::z(), 0.0));
+                rows.push(on(point.body, Vector3::z(), 0.0));
                 gaps.push(UnitComplex::new(asked.pose.z).rotation_to(&rotation).angle());
                 rates.push(asked.rate.z);
                 accelerations.push(asked.acceleration.z);
             }
         }
-        system.gaps = DVector::from_vec(gaps);
-        system.rates = DVector::from_vec(rates);
-        system.accelerations = DVector::from_vec(accelerations);
-        system
+        let [gaps, rates, accelerations] = [gaps, rates, accelerations].map(DVector::from_vec);
+        System { rows, gaps, rates, accelerations }
     }
 }
 

@@ -55,19 +55,21 @@ pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting) -> Vec<Setti
         if multiple <= 0.0 || !multiple.is_finite() {
             return Some((0.0, candidate.with(&start)));
         }
-        let gain = multiple.powi(2) * column.norm_squared();
+        start[0] *= multiple;
+        Some((multiple.powi(2) * column.norm_squared(), candidate.with(&start)))
+    });
+    let possible = |start: Setting| {
         // What the machine cannot have so much of it may have a part of.
-        let mut size = start[0] * multiple;
+        let mut values: Vec<f64> = start.values().map(|(_, value)| value).collect();
         for _ in 0..HALVED {
-            start[0] = size;
-            if change(&start).is_some() {
+            if change(&values).is_some() {
                 break;
             }
-            size *= 0.5;
+            values[0] *= 0.5;
         }
-        Some((gain, candidate.with(&start)))
-    });
-    best(scored.collect())
+        candidate.with(&values)
+    };
+    best(scored.collect()).into_iter().map(possible).collect()
 }
 
 /// What values change of a residual, one of them brought nearer to its `neutral` value until that is not
