@@ -57,3 +57,13 @@ fn gravity_is_named_before_what_needs_more_values() {
 fn friction_shows_in_how_far_journals_climb() {
     right(311_000_016);
 }
+
+/// A base that vibrates lifts the journals of a six-bar off, which rests in them as declared; so does a hair of unbalance,
+/// which explains as much by that alone.
+#[test]
+#[ignore = "three minutes"]
+fn what_only_makes_joints_rattle_is_not_named() {
+    let tried = run(&Trial::draw(607_000_021), "this", &|_| {});
+    let answer = tried.answer.as_ref().unwrap_or_else(|| panic!("{tried:?}"));
+    assert!(!answer.wrong_name, "{tried:#?}");
+}

@@ -10,7 +10,7 @@ use crate::calibrate::sensed::rounds::rest::Rest;
 use crate::calibrate::sensed::rounds::round::{Round, Tried};
 use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::rounds::words::names;
-use crate::calibrate::sensed::thresholds::{BY_LOOKS, GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
+use crate::calibrate::sensed::thresholds::{BY_LOOKS, GAIN, GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
 use crate::calibrate::sensed::values::linear::Derivatives;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::effects::{SELDOM, Setting};
@@ -192,6 +192,28 @@ impl Search<'_> {
             tried.fitted && tried.gain > enough
         });
         certain.next().map(|tried| Rest::Effect(tried.effect, tried.gain))
+    }
+
+    /// An effect of a model whose joints rattle more than the declared one's by more than few replicas tell, and that is not
+    /// seen in anything else: without it, looks leave no more beside that rattle than chance does. That a rattle makes
+    /// recordings likely says nothing of what causes it.
+    pub(in crate::calibrate::sensed) fn rattles_alone(
+        &self,
+        declared: &Model,
+        model: &Model,
+    ) -> Option<Setting> {
+        let noisiness = |model: &Model| self.noisiness(&model.baseline, &self.split.hold);
+        if noisiness(model) < noisiness(declared) + GAIN[1] {
+            return None;
+        }
+        let hold = self.target(&model.baseline, true);
+        let effects = &model.fit.effects;
+        let unseen = |place: &usize| {
+            let mut others = effects.clone();
+            others.remove(*place);
+            hold.look(&others).is_some_and(|without| without.chi2 < model.held + GAIN[0])
+        };
+        (0..effects.len()).find(unseen).map(|place| effects[place].clone())
     }
 
     /// What a model costs on all data: those that it was fitted to tell rivals apart as well, at Akaike's price.

@@ -263,7 +263,7 @@ fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped
     {
         found.best = wider;
         found.rounds.push(round);
-        return Ok(against(search, &found.best, None));
+        return Ok(against(search, found, None));
     }
     Ok(rest)
 }
@@ -271,8 +271,9 @@ fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped
 /// The same for the recordings that values are fitted to.
 fn predicting(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped> {
     found.best = search.certain(found.best.clone())?;
+    let rest = found.rest.take();
+    let rest = against(search, found, rest);
     let best = &found.best;
-    let rest = against(search, best, found.rest.take());
     let mut better = match search.is_noise(best) && rest.is_none() {
         true => search.predicting(best)?,
         false => None,
@@ -287,15 +288,20 @@ fn predicting(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stoppe
     let Some((model, round)) = better else { return Ok(rest) };
     found.best = search.certain(model)?;
     found.rounds.extend(round);
-    Ok(against(search, &found.best, None))
+    Ok(against(search, found, None))
 }
 
-/// What speaks against a model that leaves no more than noise: what no simulation bears out is nothing that the declared model
-/// lacks.
-fn against(search: &Search, model: &Model, rest: Option<Rest>) -> Option<Rest> {
-    let uncertain = || uncertain(search.problem, model, &search.split.on).map(Rest::Uncertain);
-    let named = search.is_noise(model) && !model.fit.effects.is_empty();
-    named.then(|| rest.or_else(uncertain)).flatten()
+/// What speaks against a model that was found and leaves no more than noise: what no simulation bears out is nothing that the
+/// declared model lacks.
+fn against(
+    search: &Search,
+    Found { best, declared, .. }: &Found,
+    rest: Option<Rest>,
+) -> Option<Rest> {
+    let uncertain = || uncertain(search.problem, best, &search.split.on).map(Rest::Uncertain);
+    let rattles = || search.rattles_alone(declared, best).map(Rest::Rattles);
+    let named = search.is_noise(best) && !best.fit.effects.is_empty();
+    named.then(|| rest.or_else(uncertain).or_else(rattles)).flatten()
 }
 
 /// Whether the errors of all runs are met: a model that misses the run that it was fitted to lacks something.

@@ -15,6 +15,9 @@ pub enum Rest {
     Values(f64),
     /// Values of an effect that are no larger than what nobody knows of them.
     Uncertain(Setting),
+    /// An effect that makes joints rattle as they do in the recordings and not in the declared machine, and shows in
+    /// nothing else.
+    Rattles(Setting),
 }
 
 impl Rest {
@@ -28,6 +31,9 @@ impl Rest {
             }
             Rest::Values(gain) => format!(
                 "other values of it would take {gain:.0} off the sum of squares of the other recordings: {IMITATES}"
+            ),
+            Rest::Rattles(effect) => format!(
+                "{effect} makes joints rattle as they do there, and shows in nothing else: whatever lifts them off does as well"
             ),
             Rest::Uncertain(effect) => {
                 format!(
