@@ -195,7 +195,7 @@ impl Search<'_> {
     }
 
     /// An effect of a model whose joints rattle more than the declared one's by more than few replicas tell, and that is not
-    /// seen in anything else: without it, looks leave no more beside that rattle than chance does. That a rattle makes
+    /// seen in anything else: without it, looks leave no more beside that rattle than few replicas may. That a rattle makes
     /// recordings likely says nothing of what causes it.
     pub(in crate::calibrate::sensed) fn rattles_alone(
         &self,
@@ -211,7 +211,7 @@ impl Search<'_> {
         let unseen = |place: &usize| {
             let mut others = effects.clone();
             others.remove(*place);
-            hold.look(&others).is_some_and(|without| without.chi2 < model.held + GAIN[0])
+            hold.look(&others).is_some_and(|without| without.chi2 < model.held + GAIN[1])
         };
         (0..effects.len()).find(unseen).map(|place| effects[place].clone())
     }
