@@ -343,3 +343,34 @@ fn friction(joint: &Revolute) -> Option<(Friction, f64)> {
         Bearing::Ideal | Bearing::Native { .. } => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two bodies, five rows of joints of which one says twice what another does, and two drives: forces are the smallest
+    /// of those that leave least, as normal equations in weighted rows give them (with the smallest solution by singular
+    /// values), and what joints bear alone they bear wholly.
+    #[test]
+    fn forces_leave_least_and_are_the_smallest_that_do() {
+        let size = 0.4;
+        let number = |i: usize, k: usize| ((7 * i * i + 5 * k + 3 * i * k + 1) as f64).sin();
+        let mut joints = DMatrix::from_fn(5, 6, number);
+        joints.set_row(4, &(2.0 * joints.row(1)));
+        let drives = DMatrix::from_fn(2, 6, |i, k| number(i + 9, k));
+        let all = DMatrix::from_fn(7, 6, |i, k| match i {
+            0..5 => joints[(i, k)],
+            _ => drives[(i - 5, k)],
+        });
+        let factors = Factors::of(all);
+        let [own, driven] = [vec![0, 1, 2, 3, 4], vec![5, 6]].map(|rows| factors.responses(&rows));
+        let found = forces(&own.unwrap(), &driven.unwrap(), size).unwrap();
+        let weight = |k: usize| if k % 3 == 2 { 1.0 / size } else { 1.0 };
+        let scaled = DMatrix::from_fn(5, 6, |i, k| joints[(i, k)] * weight(k));
+        let least = scaled.transpose().pseudo_inverse(1e-10).unwrap();
+        let expected = DMatrix::from_fn(5, 6, |i, k| least[(i, k)] * weight(k));
+        assert!((&found - &expected).amax() < 1e-9, "{found} {expected}");
+        let borne = joints.transpose() * DVector::from_vec(vec![1.0, 0.0, -2.0, 0.5, 0.0]);
+        assert!((joints.transpose() * (&found * &borne) - &borne).amax() < 1e-9);
+    }
+}

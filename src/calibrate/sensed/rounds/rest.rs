@@ -33,7 +33,7 @@ impl Rest {
                 "other values of it would take {gain:.0} off the sum of squares of the other recordings: {IMITATES}"
             ),
             Rest::Rattles(effect) => format!(
-                "{effect} makes joints rattle as they do there, and shows in nothing else: whatever lifts them off does as well"
+                "{effect} makes joints rattle as they do in the recordings, and shows in nothing else: whatever lifts them off does as well"
             ),
             Rest::Uncertain(effect) => {
                 format!(
