@@ -76,55 +76,82 @@ fn factor(covariance: DMatrix<f64>) -> Cholesky<f64, Dyn> {
 const NEIGHBOURS: usize = 8;
 const SHARE: f64 = 0.12;
 
+/// Covariances of noise and of a swing at each frequency, of as large a swing as it was given.
+#[derive(Clone, Debug)]
+pub struct Covariances(Vec<CovariancesAt>);
+
+#[derive(Clone, Debug)]
+struct CovariancesAt {
+    /// Channels that reach this frequency.
+    active: Vec<usize>,
+    noise: DMatrix<f64>,
+    swing: DMatrix<f64>,
+}
+
+impl Covariances {
+    /// From coefficients of pure noise, several draws of it; and of a swing that comes on top, of which no
+    /// more is known than its size.
+    pub fn from_draws(draws: &[Vec<Vec<f64>>], swing: &[Vec<f64>]) -> Self {
+        let bins = draws[0].iter().map(Vec::len).max().unwrap_or(0);
+        Self((0..bins).map(|k| CovariancesAt::from_draws(draws, swing, k)).collect())
+    }
+
+    /// The noise in which the swing is so many times as large.
+    pub fn noise(&self, share: f64) -> Noise {
+        let logarithm =
+            |factor: &Cholesky<f64, Dyn>| 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
+        let (mut log_determinant, mut with_swing) = (0.0, 0.0);
+        let mut factors = Vec::with_capacity(self.0.len());
+        for CovariancesAt { noise, swing, .. } in &self.0 {
+            log_determinant += logarithm(&factor(noise.clone()));
+            let whole = factor(noise + swing * share.powi(2));
+            with_swing += logarithm(&whole);
+            factors.push(whole);
+        }
+        let active = self.0.iter().map(|at| at.active.clone()).collect();
+        Noise { factors, active, log_determinant, swinging: with_swing - log_determinant }
+    }
+}
+
+impl CovariancesAt {
+    fn from_draws(draws: &[Vec<Vec<f64>>], swing: &[Vec<f64>], k: usize) -> Self {
+        let channels = draws[0].len();
+        let active: Vec<usize> = (0..channels).filter(|&c| draws[0][c].len() > k).collect();
+        let reach = NEIGHBOURS.max((SHARE * k as f64) as usize);
+        let size = active.len();
+        let [mut covariance, mut swinging] = [(); 2].map(|()| DMatrix::<f64>::zeros(size, size));
+        let (mut count, mut places) = (0.0, 0.0);
+        for j in k.saturating_sub(reach)..=k + reach {
+            if active.iter().any(|&c| draws[0][c].len() <= j) {
+                continue;
+            }
+            let at = |draw: &[Vec<f64>]| DVector::from_fn(size, |i, _| draw[active[i]][j]);
+            for draw in draws {
+                let vector = at(draw);
+                covariance.ger(1.0, &vector, &vector, 1.0);
+                count += 1.0;
+            }
+            // A swing is sharper than noise.
+            if j.abs_diff(k) <= NEIGHBOURS {
+                let vector = at(swing);
+                swinging.ger(1.0, &vector, &vector, 1.0);
+                places += 1.0;
+            }
+        }
+        covariance /= count;
+        // A hair of the diagonal keeps channels without noise from being singular.
+        for i in 0..size {
+            covariance[(i, i)] = covariance[(i, i)] * (1.0 + 1e-6) + 1e-30;
+        }
+        Self { active, noise: covariance, swing: swinging / f64::max(places, 1.0) }
+    }
+}
+
 impl Noise {
     /// From coefficients of pure noise, several draws of it; and of a swing that comes on top, of which no
     /// more is known than its size.
     pub fn from_draws(draws: &[Vec<Vec<f64>>], swing: &[Vec<f64>]) -> Self {
-        let channels = draws[0].len();
-        let bins = draws[0].iter().map(Vec::len).max().unwrap_or(0);
-        let mut factors = Vec::with_capacity(bins);
-        let mut all_active = Vec::with_capacity(bins);
-        let (mut log_determinant, mut with_swing) = (0.0, 0.0);
-        let logarithm =
-            |factor: &Cholesky<f64, Dyn>| 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
-        for k in 0..bins {
-            let active: Vec<usize> = (0..channels).filter(|&c| draws[0][c].len() > k).collect();
-            let reach = NEIGHBOURS.max((SHARE * k as f64) as usize);
-            let size = active.len();
-            let [mut covariance, mut swinging] =
-                [(); 2].map(|()| DMatrix::<f64>::zeros(size, size));
-            let (mut count, mut places) = (0.0, 0.0);
-            for j in k.saturating_sub(reach)..=k + reach {
-                if active.iter().any(|&c| draws[0][c].len() <= j) {
-                    continue;
-                }
-                let at = |draw: &[Vec<f64>]| DVector::from_fn(size, |i, _| draw[active[i]][j]);
-                for draw in draws {
-                    let vector = at(draw);
-                    covariance.ger(1.0, &vector, &vector, 1.0);
-                    count += 1.0;
-                }
-                // A swing is sharper than noise.
-                if j.abs_diff(k) <= NEIGHBOURS {
-                    let vector = at(swing);
-                    swinging.ger(1.0, &vector, &vector, 1.0);
-                    places += 1.0;
-                }
-            }
-            covariance /= count;
-            // A hair of the diagonal keeps channels without noise from being singular.
-            for i in 0..size {
-                covariance[(i, i)] = covariance[(i, i)] * (1.0 + 1e-6) + 1e-30;
-            }
-            let alone = factor(covariance.clone());
-            log_determinant += logarithm(&alone);
-            let whole = factor(covariance + swinging / f64::max(places, 1.0));
-            with_swing += logarithm(&whole);
-            factors.push(whole);
-            all_active.push(active);
-        }
-        let swinging = with_swing - log_determinant;
-        Self { factors, active: all_active, log_determinant, swinging }
+        Covariances::from_draws(draws, swing).noise(1.0)
     }
 
     /// Coefficients in units of the noise: independent, of variance one, if they are noise.

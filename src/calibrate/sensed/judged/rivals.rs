@@ -13,6 +13,7 @@ use crate::calibrate::sensed::rounds::words::names;
 use crate::calibrate::sensed::thresholds::{BY_LOOKS, GAIN, GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
 use crate::calibrate::sensed::values::linear::Derivatives;
 use crate::calibrate::sensed::values::model::{Model, price};
+use crate::calibrate::sensed::values::trajectory::Far;
 use crate::effects::{SELDOM, Setting};
 use rayon::prelude::*;
 
@@ -55,17 +56,20 @@ impl Search<'_> {
             let enough = self.whole(&all[0].1) + TWINS[usize::from(best.baseline.rattles)];
             let as_good = all.iter().take_while(|(_, model)| self.whole(model) < enough);
             let mut near: Vec<Setting> = as_good.map(|(effect, _)| effect.clone()).collect();
+            let round = rounds
+                .iter_mut()
+                .find(|round| round.added.as_ref().is_some_and(|added| added.is(&own)));
             if near.iter().any(|effect| effect.is(&own)) {
-                near.extend(beyond);
+                let ruled_out = |effect: &Setting| {
+                    round.as_ref().is_some_and(|round| round.rules_out(effect, &own, CLOSE))
+                };
+                near.extend(beyond.into_iter().filter(|effect| !ruled_out(effect)));
             }
             // What is as good by chance alone is no reason to blame the machine.
             let least = self.whole(&all[0].1) + TWINS[0];
             let twins = all.iter().take_while(|(_, model)| self.whole(model) < least);
             let twins: Vec<&Setting> = twins.map(|(effect, _)| effect).collect();
             let (won, model) = all.swap_remove(preferred(&twins).unwrap_or(0));
-            let round = rounds
-                .iter_mut()
-                .find(|round| round.added.as_ref().is_some_and(|added| added.is(&own)));
             if let Some(round) = round {
                 round.as_good.retain(|known| !known.is(&won));
                 near.retain(|effect| !effect.is(&won));
@@ -112,7 +116,7 @@ impl Search<'_> {
         let close = all.iter().take_while(|(_, model)| self.whole(model) < enough).count();
         if close > 1 && !model.baseline.rattles {
             for (_, model) in &mut all[..close] {
-                *model = self.refined(model.clone())?;
+                *model = self.refined(model.clone(), Far::All)?;
             }
             all.sort_by(by_cost);
         }

@@ -1,4 +1,5 @@
-//! How a recorded machine moved: where it begins, driven ([`start`]) or let go ([`released`]); what says how it stands ([`basis`]) and
+//! How a recorded machine moved: where it begins, driven ([`start`]) or let go ([`released`]), and how it swings
+//! there ([`swinging`]); what says how it stands ([`basis`]) and
 //! along which motions ([`shown`], [`motions`]); what its sensors would have recorded ([`simulate`]).
 
 pub mod basis;
@@ -7,3 +8,4 @@ pub mod released;
 pub(super) mod shown;
 pub mod simulate;
 pub mod start;
+pub(super) mod swinging;

@@ -2,7 +2,8 @@
 //! fall is fitted to what its sensors show.
 
 use super::simulate::{deviation, record};
-use super::start::{Closed, LEAD, closed, placed, release};
+use super::start::{Closed, LEAD, closed, placed, release, still};
+use super::swinging::{Kicks, kicked, kicks_as_seen};
 use crate::calibrate::results::outcome::inverse_normal;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::position_sensor;
@@ -43,11 +44,52 @@ pub struct Released {
     pub machine: Mechanism,
     /// Coordinates in m or rad, at the first row, of the joints that its drives leave free and that held it there.
     pub coordinates: Vec<f64>,
+    /// The same at rest shortly before the first row, where it is kicked from there on to swing as was recorded.
+    pub at_rest: Option<Mechanism>,
     /// Their covariance, as far as the recording leaves them open; none where nothing was fitted.
     covariance: Option<DMatrix<f64>>,
 }
 
 impl Released {
+    /// One from these coordinates, which nothing is known of.
+    fn from(machine: Mechanism, coordinates: Vec<f64>) -> Self {
+        Self { machine, coordinates, at_rest: None, covariance: None }
+    }
+
+    /// The machine at rest under its first commands, shortly before the first row, without a swing; none of one that begins
+    /// at the first row.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn still(&self, control: StepControl) -> Result<Option<Mechanism>, Halt> {
+        match &self.at_rest {
+            Some(machine) => Ok(Some(machine.clone())),
+            None => still(&self.machine, control),
+        }
+    }
+
+    /// The same with the swing that a recording shows, where it is another than that with which it is let go.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn swinging_as(self, recording: &Recording, control: StepControl) -> Result<Self, Halt> {
+        let Some(still) = self.still(control)? else { return Ok(self) };
+        let recorded = |machine: &Mechanism, like: &Recording| record(machine, control, like, 0);
+        match kicks_as_seen(&self.machine, &still, recording, &recorded)? {
+            Some(kicks) => self.with_kicks(&kicks, control),
+            None => Ok(self),
+        }
+    }
+
+    /// The same with a swing by these kicks, where it rests before the first row.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn with_kicks(self, kicks: &Kicks, control: StepControl) -> Result<Self, Halt> {
+        let Some(still) = self.still(control)? else { return Ok(self) };
+        Ok(Self { machine: kicked(&still, kicks), at_rest: Some(still), ..self })
+    }
+
     /// Whether where it was let go was fitted to a recording.
     pub fn is_fitted(&self) -> bool {
         self.covariance.is_some()
@@ -94,7 +136,7 @@ pub fn released(
         } else {
             mechanism.epoch = -LEAD;
         }
-        return Ok(Released { machine: mechanism, coordinates: Vec::new(), covariance: None });
+        return Ok(Released::from(mechanism, Vec::new()));
     }
     let joints = held.iter().map(|(joint, _)| *joint).collect();
     let falling = Falling { rig, effects, recording, joints, control };
@@ -116,7 +158,7 @@ pub fn released(
         }
         seconds *= 2.0;
     }
-    Ok(Released { machine: falling.let_go(&values)?, coordinates: values, covariance })
+    Ok(Released { covariance, ..Released::from(falling.let_go(&values)?, values) })
 }
 
 /// The same machine from near `coordinates`, which something else than its start told, where from there it does more of what
@@ -142,7 +184,7 @@ pub fn released_near(
         return Ok(known);
     }
     let machine = falling.let_go(&best.values)?;
-    Ok(Released { machine, covariance: uncertainty(&best), coordinates: best.values })
+    Ok(Released { covariance: uncertainty(&best), ..Released::from(machine, best.values) })
 }
 
 /// A machine with these effects that nothing holds where a recording begins.
@@ -273,7 +315,7 @@ mod tests {
         let rig = include_str!("../../../../assets/rigs-planar/planar-4/rig.toml");
         let machine = parts_of(&Scenario::from_text(rig, "rig", &[]).unwrap()).unwrap();
         let mut released =
-            Released { machine, coordinates: vec![5.0, -7.0], covariance: Some(covariance) };
+            Released { covariance: Some(covariance), ..Released::from(machine, vec![5.0, -7.0]) };
         let drawn: Vec<Vec<f64>> = (0..4000).map(|number| released.drawn(number)).collect();
         let product = |i: usize, j: usize| {
             let of =

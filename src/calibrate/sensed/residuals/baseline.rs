@@ -3,7 +3,7 @@
 
 use super::problem::{RigProblem, Segment, Start, Stopped};
 use crate::calibrate::measured::draws::{Coefficients, difference, mean, without};
-use crate::calibrate::measured::spectrum::Noise;
+use crate::calibrate::measured::spectrum::{Covariances, Noise};
 use crate::calibrate::sensed::motion::simulate::{apart, with_noise};
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::recording::Recording;
@@ -70,13 +70,17 @@ impl Baseline {
         deviations: &[f64],
         segments: &[Segment],
     ) -> Result<Self, Stopped> {
-        let starts = problem.starts(effects)?;
+        let mut runs: Vec<usize> = segments.iter().map(|segment| segment.run).collect();
+        runs.sort_unstable();
+        runs.dedup();
+        let starts = problem.starts(effects, &runs)?;
         let (simulated, rattles) = replicas(problem, effects, deviations, &starts)?;
         let still = problem.still(&starts)?;
         let parts = segments.iter().map(|segment| {
             let machine = machine(&problem.rig, effects, &problem.runs[segment.run].recording)?;
             let own = Own { problem, segment, machine };
-            own.part(&simulated[segment.run], still[segment.run].as_ref())
+            let place = runs.iter().position(|run| *run == segment.run).unwrap_or_default();
+            own.part(&simulated[place], still[place].as_ref())
         });
         let parts = parts.collect::<Result<Vec<BiasAndNoise>, Stopped>>()?;
         let replicas = simulated.first().map_or(1, Vec::len);
@@ -172,6 +176,11 @@ impl Baseline {
         parts.map(|part| part.lost).sum()
     }
 
+    /// Whether a recording swings otherwise than the model.
+    pub fn has_lost_the_swing(&self) -> bool {
+        self.parts.iter().any(|part| part.lost > 0.0)
+    }
+
     /// Logarithm of the determinant of the noise on segments, less that of the sensors' noise seen through the same model:
     /// what a model pays for rattling. (What changes the look at noise changes both.)
     pub fn log_determinant(&self, segments: &[Segment]) -> f64 {
@@ -236,13 +245,14 @@ impl Own<'_> {
         // A replica stands for the data, the mean of the others for the bias.
         let draws = beside(&|own| without(&bias, &seen[own], seen.len()));
         let still = still.map(look).unwrap_or(None);
-        let swing = |share: f64| swing(&bias, still.as_ref(), share);
+        let swing = swing(&bias, still.as_ref());
         let run = &self.problem.runs[self.segment.run];
         let left = difference(&self.seen(&run.view).ok_or_else(singular)?, &bias);
-        let Likelier { share, noise, lost } = Likelier::of(&draws, &left, &swing);
-        let of_sensors = Noise::from_draws(&beside(&|own| seen[own].clone()), &swing(0.0));
+        let Likeliest { share, noise, lost } = Likeliest::of(&draws, &left, &swing);
+        let of_sensors =
+            Covariances::from_draws(&beside(&|own| seen[own].clone()), &swing).noise(0.0);
         let rattle = noise.log_determinant() - of_sensors.log_determinant();
-        let draws = by_the_others(&draws, clean.len(), &swing(share));
+        let draws = by_the_others(&draws, clean.len(), &swing, share);
         // Those of the first replica.
         let kept = || (0..SHRUNK).map(|k| k * clean.len());
         let power = kept().map(|draw| difference(&looked[draw], &seen[0]));
@@ -266,37 +276,51 @@ impl Own<'_> {
     }
 }
 
-/// What of the residual is a swing, a share of it. Where loads keep joints in contact, bodies swing in their play, and
-/// nobody knows how they were let go: what the same machine does without a swing tells where that shows.
-fn swing(bias: &[Vec<f64>], still: Option<&Coefficients>, share: f64) -> Coefficients {
+/// What of the residual is a swing. Where loads keep joints in contact, bodies swing in their play, and nobody knows how they
+/// were let go: what the same machine does without a swing tells where that shows.
+fn swing(bias: &[Vec<f64>], still: Option<&Coefficients>) -> Coefficients {
     let nothing = || bias.iter().map(|c| vec![0.0; c.len()]).collect();
-    let size = |still: &Coefficients| {
-        let mut swing = difference(bias, still);
-        swing.iter_mut().flatten().for_each(|value| *value *= share);
-        swing
-    };
-    still.map_or_else(nothing, size)
+    still.map_or_else(nothing, |still| difference(bias, still))
 }
 
-/// The likelier noise of two: with a swing that is nearly the model's, or with one that is not.
-struct Likelier {
-    /// Share of the swing that is noise.
+/// Shares of the model's swing by which the recorded one may differ from it: from those of models that swing as recorded
+/// to one of the same size and any phase.
+fn shares() -> [f64; SHARES] {
+    let step = |k: usize| k as f64 / (SHARES - 1) as f64;
+    std::array::from_fn(|k| MISSED * (SQRT_2 / MISSED).powf(step(k)))
+}
+
+/// Number of these: each half again as large as the one before.
+const SHARES: usize = 5;
+
+/// The likeliest noise, by the share of the swing in it.
+struct Likeliest {
     share: f64,
     noise: Noise,
     /// As of [`BiasAndNoise`].
     lost: f64,
 }
 
-impl Likelier {
+impl Likeliest {
     /// That of what is `left` of the data.
-    fn of(draws: &[Coefficients], left: &[Vec<f64>], swing: &dyn Fn(f64) -> Coefficients) -> Self {
-        let [near, lost] = [MISSED, SQRT_2].map(|share| Noise::from_draws(draws, &swing(share)));
-        let likelihood = |noise: &Noise| noise.whiten(left).norm_squared() + noise.swinging();
-        let price = lost.swinging() - near.swinging();
-        match likelihood(&lost) < likelihood(&near) {
-            true => Self { share: SQRT_2, noise: lost, lost: price },
-            false => Self { share: MISSED, noise: near, lost: 0.0 },
+    fn of(draws: &[Coefficients], left: &[Vec<f64>], swing: &[Vec<f64>]) -> Self {
+        let covariances = Covariances::from_draws(draws, swing);
+        let near = covariances.noise(MISSED);
+        if swing.iter().flatten().all(|value| *value == 0.0) {
+            return Self { share: MISSED, noise: near, lost: 0.0 };
         }
+        let least = near.swinging();
+        let likelihood = |noise: &Noise| noise.whiten(left).norm_squared() + noise.swinging();
+        let mut best = (likelihood(&near), MISSED, near);
+        for share in shares().into_iter().skip(1) {
+            let noise = covariances.noise(share);
+            let own = likelihood(&noise);
+            if own < best.0 {
+                best = (own, share, noise);
+            }
+        }
+        let (_, share, noise) = best;
+        Self { share, lost: noise.swinging() - least, noise }
     }
 }
 
@@ -324,7 +348,12 @@ fn replicas(
 
 /// Draws of noise of so many replicas in units of what the others have of it, as a recording is seen: replicas that a
 /// covariance was taken from look more like noise than one that it never saw.
-fn by_the_others(draws: &[Coefficients], replicas: usize, swing: &[Vec<f64>]) -> Vec<DVector<f64>> {
+fn by_the_others(
+    draws: &[Coefficients],
+    replicas: usize,
+    swing: &[Vec<f64>],
+    share: f64,
+) -> Vec<DVector<f64>> {
     // Those of one replica have its rattle in common.
     let parts = if replicas > 1 { replicas } else { PARTS };
     let noises: Vec<Noise> = (0..parts)
@@ -332,7 +361,7 @@ fn by_the_others(draws: &[Coefficients], replicas: usize, swing: &[Vec<f64>]) ->
         .map(|part| {
             let others = draws.iter().enumerate().filter(|(draw, _)| draw % parts != part);
             let others: Vec<Coefficients> = others.map(|(_, draw)| draw.clone()).collect();
-            Noise::from_draws(&others, swing)
+            Covariances::from_draws(&others, swing).noise(share)
         })
         .collect();
     draws.iter().enumerate().map(|(draw, own)| noises[draw % parts].whiten(own)).collect()
@@ -367,6 +396,30 @@ mod tests {
         assert!(shrunk(0.3) < -1.0, "{}", shrunk(0.3));
     }
 
+    /// A recorded swing of the model's size and another phase is noise of its size; one that is nearly the model's is not taken
+    /// for more.
+    #[test]
+    fn a_swing_is_as_likely_as_it_is_large() {
+        let mut random = ChaCha8Rng::seed_from_u64(2);
+        let mut normal = || Distribution::<f64>::sample(&StandardNormal, &mut random);
+        let draws: Vec<Coefficients> =
+            (0..DRAWS).map(|_| vec![(0..400).map(|_| normal()).collect()]).collect();
+        let sharp = |k: usize| 30.0 * (-((k as f64 - 200.0) / 20.0).powi(2)).exp();
+        let swing = vec![(0..400).map(|k| sharp(k) * (0.3 * k as f64).sin()).collect::<Vec<_>>()];
+        let mut likeliest = |size: f64| {
+            let other = |k: usize| size * sharp(k) * (0.3 * k as f64 + 1.5).sin();
+            let left = vec![(0..400).map(|k| other(k) + normal()).collect()];
+            let found = Likeliest::of(&draws, &left, &swing);
+            (found.share, found.noise.whiten(&left).norm_squared() / 400.0, found.lost)
+        };
+        let (share, mean_square, lost) = likeliest(0.1);
+        assert!(share == MISSED && mean_square < 1.2 && lost == 0.0, "{share} {mean_square}");
+        let (share, mean_square, lost) = likeliest(0.7);
+        assert!((0.4..1.1).contains(&share) && (0.7..1.3).contains(&mean_square) && lost > 0.0);
+        let (share, mean_square, _) = likeliest(1.4);
+        assert!(share > 0.9 && (0.7..1.3).contains(&mean_square), "{share} {mean_square}");
+    }
+
     /// One replica of four that rattles three times as much as the others stands out as far as a recording that does so
     /// would, although its own draws are among those that noise is taken from.
     #[test]
@@ -384,7 +437,7 @@ mod tests {
         let still = vec![vec![0.0; 200]];
         let mean_square = |white: &DVector<f64>| white.norm_squared() / white.len() as f64;
         let by_all = mean_square(&Noise::from_draws(&draws, &still).whiten(&draws[0]));
-        let by_others = mean_square(&by_the_others(&draws, 4, &still)[0]);
+        let by_others = mean_square(&by_the_others(&draws, 4, &still, 1.0)[0]);
         assert!((2.5..3.5).contains(&by_all), "{by_all}");
         assert!((7.0..11.0).contains(&by_others), "{by_others}");
     }

@@ -8,7 +8,8 @@ use crate::calibrate::sensed::motion::released::{
     Released, StartError, let_go_at, released, released_near,
 };
 use crate::calibrate::sensed::motion::simulate;
-use crate::calibrate::sensed::motion::start::{machine, still};
+use crate::calibrate::sensed::motion::start::machine;
+use crate::calibrate::sensed::motion::swinging::{Kicks, kicks_as_seen};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
 use crate::calibrate::sensed::thresholds;
@@ -21,7 +22,7 @@ use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Machines that are kept as they were let go: those of two models on eight runs each.
 const LET_GO: NonZeroUsize = NonZeroUsize::new(16).unwrap();
@@ -38,6 +39,8 @@ pub struct Run {
 /// Where a run of a model begins.
 #[derive(Clone, Debug)]
 pub struct Start {
+    /// Which run.
+    pub(super) run: usize,
     /// The machine as it was let go.
     pub(super) released: Released,
     /// Effects that it has.
@@ -47,6 +50,11 @@ pub struct Start {
 }
 
 impl Start {
+    /// The machine there.
+    pub fn machine(&self) -> &Mechanism {
+        &self.released.machine
+    }
+
     /// Coordinates in m or rad from which a machine that nothing holds is let go.
     pub fn coordinates(&self) -> &[f64] {
         &self.released.coordinates
@@ -94,6 +102,8 @@ pub struct RigProblem {
     pub(super) simulations: AtomicUsize,
     pub(super) work: AtomicU64,
     motions: Motions,
+    /// Run by run, what makes a machine that rests swing as was recorded, where it does not as it is let go.
+    kicks: Mutex<Vec<Option<Kicks>>>,
     /// Machines as they were let go: the start of a free one costs more than a simulation.
     released: Mutex<LruCache<String, Released>>,
 }
@@ -140,7 +150,8 @@ impl RigProblem {
             let view = View::new(&recording, sensors);
             Run { recording, view }
         };
-        let runs = recordings.into_iter().map(run).collect();
+        let runs: Vec<Run> = recordings.into_iter().map(run).collect();
+        let kicks = Mutex::new(vec![None; runs.len()]);
         let (simulations, work) = (AtomicUsize::new(0), AtomicU64::new(0));
         let motions = Motions::default();
         let released = Mutex::new(LruCache::new(LET_GO));
@@ -154,6 +165,7 @@ impl RigProblem {
             simulations,
             work,
             motions,
+            kicks,
             released,
         };
         if problem.names().is_some_and(|names| names.is_empty()) {
@@ -193,17 +205,46 @@ impl RigProblem {
         self.work() >= thresholds::WORK
     }
 
-    /// Where the runs of a model with these effects begin, as it was let go.
+    /// Where these runs of a model with these effects begin, with a swing and without one.
     ///
     /// # Errors
     /// An effect that the machine cannot take, a run that broke down.
-    pub fn starts(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
+    pub fn starts(&self, effects: &[Setting], runs: &[usize]) -> Result<Vec<Start>, Stopped> {
         let start = |run: usize| -> Result<Start, Stopped> {
             let released = self.released(effects, run)?;
-            let still = still(&released.machine, self.control)?;
-            Ok(Start { released, effects: effects.to_vec(), still })
+            let still = released.still(self.control)?;
+            Ok(Start { run, released, effects: effects.to_vec(), still })
         };
-        (0..self.runs.len()).into_par_iter().map(start).collect()
+        runs.par_iter().copied().map(start).collect()
+    }
+
+    /// Knows from now on how the machine swings where each run begins, as seen by a model with these effects; whether
+    /// somewhere it does so otherwise than it is let go.
+    ///
+    /// # Errors
+    /// An effect that the machine cannot take, a run that broke down.
+    pub fn see_swing(&self, effects: &[Setting]) -> Result<bool, Stopped> {
+        self.forget_swing();
+        let seen = |run: usize| -> Result<Option<Kicks>, Stopped> {
+            let released = self.released(effects, run)?;
+            let Some(still) = released.still(self.control)? else { return Ok(None) };
+            let recording = &self.runs[run].recording;
+            let record = |machine: &Mechanism, like: &Recording| self.record(machine, like, 0);
+            Ok(kicks_as_seen(&released.machine, &still, recording, &record)?)
+        };
+        let seen = (0..self.runs.len()).into_par_iter().map(seen).collect::<Result<Vec<_>, _>>()?;
+        let some = seen.iter().any(Option::is_some);
+        *self.kicks() = seen;
+        Ok(some)
+    }
+
+    /// Knows nothing of that any more.
+    pub fn forget_swing(&self) {
+        self.kicks().fill(None);
+    }
+
+    fn kicks(&self) -> MutexGuard<'_, Vec<Option<Kicks>>> {
+        self.kicks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The machine with these effects as it was let go in run `index`.
@@ -213,7 +254,11 @@ impl RigProblem {
         if let Some(machine) = kept().get(&key) {
             return Ok(machine.clone());
         }
-        let machine = released(&self.rig, effects, &self.runs[index].recording, self.control)?;
+        let mut machine = released(&self.rig, effects, &self.runs[index].recording, self.control)?;
+        let kicks = self.kicks()[index];
+        if let Some(kicks) = kicks {
+            machine = machine.with_kicks(&kicks, self.control)?;
+        }
         kept().put(key, machine.clone());
         Ok(machine)
     }
@@ -238,7 +283,7 @@ impl RigProblem {
     }
 
     fn key(&self, effects: &[Setting], index: usize) -> String {
-        format!("{index} {:?} {effects:?}", self.rig.effects)
+        format!("{index} {:?} {:?} {effects:?}", self.kicks()[index], self.rig.effects)
     }
 
     /// The machine with the `drawn` effects about where the model that begins at `start` was let go in run `index`, as
@@ -275,7 +320,7 @@ impl RigProblem {
     pub fn let_go(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
         let start = |run| {
             let released = self.released(effects, run)?;
-            Ok(Start { released, effects: effects.to_vec(), still: None })
+            Ok(Start { run, released, effects: effects.to_vec(), still: None })
         };
         (0..self.runs.len()).into_par_iter().map(start).collect()
     }

@@ -1,6 +1,6 @@
 //! Noiseless recordings of models of a problem.
 
-use super::problem::{RigProblem, Run, Start, Stopped};
+use super::problem::{RigProblem, Start, Stopped};
 use crate::calibrate::sensed::motion::released::let_go_at;
 use crate::calibrate::sensed::motion::simulate;
 use crate::calibrate::sensed::recorded::recording::Recording;
@@ -17,7 +17,7 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 impl RigProblem {
-    /// Noiseless recordings of a model that begins there, so many replicas of each run.
+    /// Noiseless recordings of a model whose runs begin there, so many replicas of each.
     ///
     /// # Errors
     /// A run that broke down.
@@ -44,15 +44,16 @@ impl RigProblem {
         let numbers = || replicas.clone().map(|replica| replica as u64);
         let about: Vec<Option<Vec<Setting>>> =
             numbers().map(|replica| drawn(effects, deviations, replica)).collect();
-        let jobs: Vec<(usize, u64)> = (0..starts.len())
-            .flat_map(|run| numbers().map(move |replica| (run, replica)))
+        let jobs: Vec<(&Start, u64)> = starts
+            .iter()
+            .flat_map(|start| numbers().map(move |replica| (start, replica)))
             .collect();
         let recorded = jobs
             .into_par_iter()
-            .map(|(run, replica)| {
+            .map(|(start, replica)| {
+                let run = start.run;
                 let like = &self.runs[run].recording;
                 let record = |machine: &Mechanism| self.record(machine, like, replica);
-                let start = &starts[run];
                 // Where joints rattle a hair at the start is another run soon, and what nobody knows of it no hair.
                 let open = self.replicas > 1 && replica > 0 && start.released.is_fitted();
                 Ok(match &about[replica as usize - replicas.start] {
@@ -112,7 +113,7 @@ impl RigProblem {
     }
 
     /// What sensors show of a run like this recording, counted among the simulations.
-    fn record(
+    pub(super) fn record(
         &self,
         machine: &Mechanism,
         like: &Recording,
@@ -130,11 +131,11 @@ impl RigProblem {
     /// # Errors
     /// A run that broke down.
     pub fn still(&self, starts: &[Start]) -> Result<Vec<Option<Recording>>, Stopped> {
-        let still = |(run, start): (&Run, &Start)| {
+        let still = |start: &Start| {
             let Some(machine) = &start.still else { return Ok(None) };
-            Ok(Some(self.record(machine, &run.recording, 0)?))
+            Ok(Some(self.record(machine, &self.runs[start.run].recording, 0)?))
         };
-        self.runs.par_iter().zip(starts).map(still).collect()
+        starts.par_iter().map(still).collect()
     }
 }
 

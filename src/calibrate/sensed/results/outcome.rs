@@ -250,7 +250,7 @@ fn what_does_not_last(
     if !events.is_empty() || effects.is_empty() {
         return Ok(events);
     }
-    let simulated = problem.simulated(&problem.starts(effects)?, problem.replicas)?;
+    let simulated = problem.simulated(&problem.let_go(effects)?, problem.replicas)?;
     beside(problem, effects, &simulated)
 }
 
@@ -337,7 +337,7 @@ impl Predicting {
         effects: &[Setting],
         deviations: &[f64],
     ) -> Result<Self, Stopped> {
-        let starts = problem.starts(effects)?;
+        let starts = problem.let_go(effects)?;
         // What nobody knows of values and of how a free machine was let go grows as it swings.
         let open = !deviations.is_empty() && starts.iter().any(Start::is_fitted);
         let replicas = if problem.replicas > 1 || open { PREDICTING } else { 1 };
@@ -345,7 +345,7 @@ impl Predicting {
         let acting = std::mem::take(&mut problem.rig.effects);
         let declared = match effects.is_empty() && acting.is_empty() {
             true => calibrated.clone(),
-            false => problem.simulated(&problem.starts(&[])?, problem.replicas)?,
+            false => problem.simulated(&problem.let_go(&[])?, problem.replicas)?,
         };
         Ok(Self { declared, calibrated })
     }

@@ -175,21 +175,25 @@ impl Along<'_> {
     pub fn predicted(&self, machine: &Mechanism) -> Result<(Vec<Recording>, f64), CalibrateError> {
         let Self { model, recording, like } = *self;
         let control: StepControl = control(model);
-        let released = released(model, &[], recording, control)?.machine;
+        let let_go = released(model, &[], recording, control)?;
+        let released = &let_go.machine;
         let replicas = |from: &Mechanism, replicas: std::ops::Range<usize>| {
             let each = replicas.into_par_iter();
             each.map(|replica| record(from, control, like, replica as u64))
                 .collect::<Result<Vec<Recording>, _>>()
         };
-        if !may_rattle(&released) {
-            return Ok((replicas(&released, 0..1)?, 0.0));
+        if !may_rattle(released) {
+            return Ok((replicas(released, 0..1)?, 0.0));
         }
-        let mut logs = replicas(&released, 0..2)?;
+        let mut logs = replicas(released, 0..2)?;
         let difference = apart(&machine.sensors, &logs[0], &logs[1]);
         if difference > SEEN {
-            logs.extend(replicas(&released, 2..PREDICTING)?);
+            logs.extend(replicas(released, 2..PREDICTING)?);
             return Ok((logs, difference));
         }
+        // How journals that do not lift off lean hangs on how they swing at first.
+        let swinging = let_go.swinging_as(recording, control)?;
+        logs = if swinging.at_rest.is_some() { replicas(&swinging.machine, 0..1)? } else { logs };
         logs.truncate(1);
         Ok((logs, difference))
     }

@@ -38,3 +38,19 @@ pub struct Round {
     /// What was as good.
     pub as_good: Vec<Setting>,
 }
+
+impl Round {
+    /// Whether simulations of this round left more with an effect than with its own one, by more than `enough`.
+    pub(in crate::calibrate::sensed) fn rules_out(
+        &self,
+        effect: &Setting,
+        own: &Setting,
+        enough: f64,
+    ) -> bool {
+        let gain = |of: &Setting| {
+            let simulated = |tried: &&Tried| tried.simulated && tried.effect.is(of);
+            self.tried.iter().find(simulated).map(|tried| tried.gain)
+        };
+        gain(effect).zip(gain(own)).is_some_and(|(gain, own)| gain < own - enough)
+    }
+}

@@ -10,6 +10,7 @@ use crate::calibrate::sensed::residuals::residual::Name;
 use crate::calibrate::sensed::thresholds::{BUDGET, EFFECTS, HYPOTHESES, NEAR, TWINS};
 use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::model::{Model, price};
+use crate::calibrate::sensed::values::trajectory::Far;
 use crate::effects::Setting;
 
 /// What a search found.
@@ -55,8 +56,7 @@ impl<'a> Search<'a> {
 
     /// Whether it has taken as many simulations as it may.
     pub(super) fn is_spent(&self) -> bool {
-        let budget = BUDGET[usize::from(self.problem.replicas > 1)];
-        self.problem.simulations() - self.before >= budget || self.problem.is_worn_out()
+        self.problem.simulations() - self.before >= BUDGET || self.problem.is_worn_out()
     }
 
     pub(in crate::calibrate::sensed) fn target<'b>(
@@ -123,7 +123,7 @@ impl<'a> Search<'a> {
                 break;
             }
             if !self.is_noise(model) {
-                *model = self.refined(model.clone())?;
+                *model = self.refined(model.clone(), Far::Promising)?;
             }
             if self.is_noise(model) {
                 break;
@@ -182,7 +182,7 @@ impl<'a> Search<'a> {
             best = self.simplified(best)?;
             best = self.needed(best)?;
             if !self.is_noise(&best) {
-                best = self.refined(best)?;
+                best = self.refined(best, Far::All)?;
             }
             if !self.is_noise(&best) && best.baseline.rattles {
                 best = self.foretold(&best)?.unwrap_or(best);
@@ -192,10 +192,15 @@ impl<'a> Search<'a> {
         if !self.is_noise(&best) {
             return Ok((best, None));
         }
+        best = self.swinging_as_seen(best)?;
+        let effects = best.fit.effects.clone();
         best = self.beside_rivals(best, rounds)?;
+        if !same(&effects, &best.fit.effects) {
+            best = self.swinging_as_seen(best)?;
+        }
         let mut rest = self.rest(&best);
         if rest.is_some() && !best.baseline.rattles {
-            best = self.refined(best)?;
+            best = self.refined(best, Far::All)?;
             rest = self.rest(&best);
         }
         Ok((best, rest))

@@ -72,8 +72,32 @@ impl Search<'_> {
         if self.problem.replicas > 1 { baseline.log_determinant(segments) } else { 0.0 }
     }
 
+    /// A model that begins with the recorded swing in place of one that leaves no more than noise beside a swing that it has
+    /// lost: its values are known better, and so is how its journals lean.
+    pub(super) fn swinging_as_seen(&self, model: Model) -> Result<Model, Stopped> {
+        let effects = &model.fit.effects;
+        if model.baseline.rattles || !model.baseline.has_lost_the_swing() {
+            return Ok(model);
+        }
+        (self.tell)(&format!("looking at how it swings at first with {}", names(effects)));
+        if self.problem.see_swing(effects)?
+            && let Some(swinging) = self.at(effects, &[])?
+        {
+            let swinging = self.refined(swinging, Far::All)?;
+            if self.is_noise(&swinging) {
+                return Ok(swinging);
+            }
+        }
+        self.problem.forget_swing();
+        Ok(model)
+    }
+
     /// The model with values from whole simulations, where these can be followed to their end and that is better.
-    pub(in crate::calibrate::sensed) fn refined(&self, model: Model) -> Result<Model, Stopped> {
+    pub(in crate::calibrate::sensed) fn refined(
+        &self,
+        model: Model,
+        far: Far,
+    ) -> Result<Model, Stopped> {
         let effects = &model.fit.effects;
         let lost = || -> Result<bool, Stopped> {
             let lengths = followed(self.problem, effects, &self.split.on)?;
@@ -83,7 +107,7 @@ impl Search<'_> {
             return Ok(model);
         }
         (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
-        let refined = self.fitted(&model.fit.effects, Far::All)?;
+        let refined = self.fitted(&model.fit.effects, far)?;
         Ok(refined.filter(|refined| refined.misfit < model.misfit).unwrap_or(model))
     }
 
@@ -166,7 +190,7 @@ impl Search<'_> {
         segments: &[Segment],
     ) -> Result<bool, Stopped> {
         let (problem, effects) = (self.problem, &model.fit.effects);
-        let starts = problem.starts(effects)?;
+        let starts = problem.let_go(effects)?;
         let replicas = 0..problem.replicas;
         let clean = problem.simulated_about(effects, &model.fit.deviations(), &starts, replicas)?;
         Ok(segments.iter().any(|segment| {

@@ -7,7 +7,7 @@ use super::whole::Whole;
 use crate::calibrate::sensed::motion::simulate::apart;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Stopped};
-use crate::calibrate::sensed::thresholds::ALIKE;
+use crate::calibrate::sensed::thresholds::{ALIKE, NOISE};
 use crate::calibrate::values::fit::{free, values, with_values};
 use crate::calibrate::values::least_squares::{FitEffort, least_squares};
 use crate::effects::Setting;
@@ -58,6 +58,9 @@ pub fn followed(
 pub enum Far {
     /// Over the first of the lengths that can be [followed].
     First,
+    /// Over all of them, unless more than [noise](NOISE) is left over one: a model that lacks something else besides gets no
+    /// better by longer ones.
+    Promising,
     /// Over all of them.
     All,
 }
@@ -86,8 +89,11 @@ pub fn fitted(
                 on.iter().map(|segment| shorter(problem, segment, length)).collect();
             let baseline = || Baseline::of(problem, &effects, &[], &part);
             let whole = Whole::of(problem, &effects, &part, baseline)?;
-            effects = whole.fitted(&effects, EFFORT).unwrap_or(effects);
-            if far == Far::First {
+            let mut left = f64::INFINITY;
+            if let Some(fitted) = whole.fitted(&effects, EFFORT) {
+                (effects, left) = fitted;
+            }
+            if far == Far::First || (far == Far::Promising && left > NOISE[1]) {
                 return Ok(effects);
             }
         }

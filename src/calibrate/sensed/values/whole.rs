@@ -75,9 +75,9 @@ impl<'a> Whole<'a> {
         (0..own.len()).map(|i| derivative(&look, &free, &own, left, i)).collect()
     }
 
-    /// The effects at the values that leave the least, from these on; none where there is no such machine. Where it was let
-    /// go with them is known from then on.
-    pub fn fitted(&self, effects: &[Setting], effort: FitEffort) -> Option<Vec<Setting>> {
+    /// The effects at the values that leave the least, from these on, and the mean square of that in units of noise; none where
+    /// there is no such machine. Where it was let go with them is known from then on.
+    pub fn fitted(&self, effects: &[Setting], effort: FitEffort) -> Option<(Vec<Setting>, f64)> {
         let count = values(effects).len();
         let look = |all: &[f64]| {
             let (values, coordinates) = all.split_at(count);
@@ -93,7 +93,7 @@ impl<'a> Whole<'a> {
             coordinates = others;
             self.problem.let_go_near(&fitted, segment.run, own).ok()?;
         }
-        Some(fitted)
+        Some((fitted, best.residual.norm_squared() / best.residual.len().max(1) as f64))
     }
 
     /// The covariance of the values of a model's effects, whatever the starts: `(JᵀJ)⁻¹`, J in units of noise and without what
@@ -180,7 +180,7 @@ mod tests {
         let whole = Whole::of(&problem, &[], &on, || Ok(baseline.clone())).unwrap();
         assert!(whole.falls());
         let effort = FitEffort { steps: 4, enough: 1.0, secant: false };
-        let fitted = whole.fitted(&drag(0.01), effort).unwrap();
+        let (fitted, _) = whole.fitted(&drag(0.01), effort).unwrap();
         let found = values(&fitted)[0];
         let deviation = |covariance: DMatrix<f64>| covariance[(0, 0)].sqrt();
         let own = deviation(whole.covariance(&fitted).unwrap());
