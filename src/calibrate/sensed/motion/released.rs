@@ -3,7 +3,7 @@
 
 use super::simulate::{deviation, record};
 use super::start::{Closed, LEAD, closed, placed, release, still};
-use super::swinging::{Kicks, kicked, kicks_as_seen};
+use super::swinging::{OutputKicks, kicked, kicks_as_seen};
 use crate::calibrate::results::outcome::inverse_normal;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::position_sensor;
@@ -51,7 +51,7 @@ pub struct Released {
 }
 
 impl Released {
-    /// One from these coordinates, which nothing is known of.
+    /// One from these coordinates, without a covariance.
     fn from(machine: Mechanism, coordinates: Vec<f64>) -> Self {
         Self { machine, coordinates, at_rest: None, covariance: None }
     }
@@ -85,7 +85,7 @@ impl Released {
     ///
     /// # Errors
     /// A run that broke down.
-    pub fn with_kicks(self, kicks: &Kicks, control: StepControl) -> Result<Self, Halt> {
+    pub fn with_kicks(self, kicks: &OutputKicks, control: StepControl) -> Result<Self, Halt> {
         let Some(still) = self.still(control)? else { return Ok(self) };
         Ok(Self { machine: kicked(&still, kicks), at_rest: Some(still), ..self })
     }

@@ -48,15 +48,15 @@ const TRACKED: f64 = 0.25;
 const KICKS: usize = 3 * PULSES;
 
 /// Kicks along x, y and the angle, pulse by pulse, as multiples of their sizes.
-pub type Kicks = [f64; KICKS];
+pub type OutputKicks = [f64; KICKS];
 
 #[derive(Debug)]
-struct Kicked {
+struct KickedOutput {
     /// Greatest forces in N, N, N·m, pulse by pulse.
     forces: [Vector3<f64>; PULSES],
 }
 
-impl Load for Kicked {
+impl Load for KickedOutput {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
         for (pulse, force) in self.forces.iter().enumerate() {
             let phase = (at.t + PULSE + pulse as f64 * APART) / PULSE;
@@ -69,7 +69,7 @@ impl Load for Kicked {
 }
 
 /// The machine at rest with these kicks.
-pub fn kicked(still: &Mechanism, kicks: &Kicks) -> Mechanism {
+pub fn kicked(still: &Mechanism, kicks: &OutputKicks) -> Mechanism {
     let mut machine = still.clone();
     let body = &machine.bodies[machine.output];
     // An angular momentum as large as a speed at the radius of gyration makes it. A half sine of height 1 has the mean 2/π.
@@ -79,7 +79,7 @@ pub fn kicked(still: &Mechanism, kicks: &Kicks) -> Mechanism {
         let own = &kicks[3 * pulse..][..3];
         unit.component_mul(&Vector3::from_column_slice(own))
     });
-    machine.loads.push(Arc::new(Kicked { forces }));
+    machine.loads.push(Arc::new(KickedOutput { forces }));
     machine
 }
 
@@ -96,7 +96,7 @@ pub fn kicks_as_seen(
     still: &Mechanism,
     recording: &Recording,
     recorded: Recorded,
-) -> Result<Option<Kicks>, Halt> {
+) -> Result<Option<OutputKicks>, Halt> {
     let look = |machine: &Mechanism, seconds: f64| {
         let part = recording.first(seconds);
         Ok::<_, Halt>(missed(machine, &part, &recorded(machine, &part)?))

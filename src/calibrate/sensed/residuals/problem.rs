@@ -9,7 +9,7 @@ use crate::calibrate::sensed::motion::released::{
 };
 use crate::calibrate::sensed::motion::simulate;
 use crate::calibrate::sensed::motion::start::machine;
-use crate::calibrate::sensed::motion::swinging::{Kicks, kicks_as_seen};
+use crate::calibrate::sensed::motion::swinging::{OutputKicks, kicks_as_seen};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
 use crate::calibrate::sensed::thresholds;
@@ -103,7 +103,7 @@ pub struct RigProblem {
     pub(super) work: AtomicU64,
     motions: Motions,
     /// Run by run, what makes a machine that rests swing as was recorded, where it does not as it is let go.
-    kicks: Mutex<Vec<Option<Kicks>>>,
+    kicks: Mutex<Vec<Option<OutputKicks>>>,
     /// Machines as they were let go: the start of a free one costs more than a simulation.
     released: Mutex<LruCache<String, Released>>,
 }
@@ -225,7 +225,7 @@ impl RigProblem {
     /// An effect that the machine cannot take, a run that broke down.
     pub fn see_swing(&self, effects: &[Setting]) -> Result<bool, Stopped> {
         self.forget_swing();
-        let seen = |run: usize| -> Result<Option<Kicks>, Stopped> {
+        let seen = |run: usize| -> Result<Option<OutputKicks>, Stopped> {
             let released = self.released(effects, run)?;
             let Some(still) = released.still(self.control)? else { return Ok(None) };
             let recording = &self.runs[run].recording;
@@ -243,7 +243,7 @@ impl RigProblem {
         self.kicks().fill(None);
     }
 
-    fn kicks(&self) -> MutexGuard<'_, Vec<Option<Kicks>>> {
+    fn kicks(&self) -> MutexGuard<'_, Vec<Option<OutputKicks>>> {
         self.kicks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -79,7 +79,7 @@ impl Search<'_> {
         if model.baseline.rattles || !model.baseline.has_lost_the_swing() {
             return Ok(model);
         }
-        (self.tell)(&format!("looking at how it swings at first with {}", names(effects)));
+        (self.tell)("looking at how it swings at first");
         if self.problem.see_swing(effects)?
             && let Some(swinging) = self.at(effects, &[])?
         {
