@@ -337,9 +337,7 @@ fn swing(log: &Log, simulated: &Log, sensors: &Sensors) -> DVector<f64> {
         let unit = noise(sensors, channel)?;
         let difference: Vec<f64> =
             log.get(channel)?.iter().zip(simulated.get(channel)?).map(|(a, b)| a - b).collect();
-        let slow = filter.apply(&difference);
-        let fast = difference.into_iter().zip(slow);
-        Some(fast.map(move |(whole, slow)| (whole - slow) / unit).collect::<Vec<_>>())
+        Some(filter.faster(&difference).into_iter().map(move |fast| fast / unit))
     });
     DVector::from_vec(channels.flatten().collect())
 }

@@ -104,7 +104,7 @@ pub const MOSTLY: f64 = 0.5;
 pub const PROMISING: f64 = 0.6;
 
 /// Simulations of a run after which no further effect is looked for: what two cores do in two minutes, at some 0.8 s for one of
-/// three seconds. A round with four hypotheses beside each other takes some 150 of them where none of these is all that is missing.
+/// 3 s. A round with four hypotheses beside each other takes some 150 of them where none of these is all that is missing.
 pub const BUDGET: usize = 300;
 
 /// Steps of bodies in all simulations of a calibration after which nothing further is begun: some two minutes of two cores at

@@ -133,9 +133,7 @@ fn missed(machine: &Mechanism, recording: &Recording, simulated: &Recording) -> 
         let (measured, simulated) = (recording.get(i)?, simulated.get(i)?);
         let unit = deviation(sensor, measured);
         let difference: Vec<f64> = measured.iter().zip(simulated).map(|(a, b)| a - b).collect();
-        let slow = filter.apply(&difference);
-        let fast = difference.into_iter().zip(slow);
-        Some(fast.map(move |(whole, slow)| (whole - slow) / unit).collect::<Vec<_>>())
+        Some(filter.faster(&difference).into_iter().map(move |fast| fast / unit))
     });
     DVector::from_vec(columns.flatten().collect())
 }
