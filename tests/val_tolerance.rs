@@ -23,10 +23,15 @@ fn worst(rows: &[[f64; 2]], truth: &[[f64; 2]]) -> f64 {
 }
 
 /// Largest platform error in m at the rows up to `until` s.
-fn error(mechanism: &Mechanism, tolerance: f64, until: f64, truth: &[[f64; 2]]) -> (f64, Work) {
+fn error(
+    mechanism: &Mechanism,
+    control: StepControl,
+    until: f64,
+    truth: &[[f64; 2]],
+) -> (f64, Work) {
     let mut rows = Vec::new();
     let schedule = Schedule { duration: until, interval: INTERVAL };
-    let work = run(mechanism, StepControl::Tolerance(tolerance), schedule, &mut |instant| {
+    let work = run(mechanism, control, schedule, &mut |instant| {
         let p = instant.states[mechanism.output].position;
         rows.push([p.x, p.y]);
     });
@@ -69,7 +74,7 @@ fn the_minimal_coordinate_solver_follows_the_curves() {
 fn require_steps((case, curve, until, allowed): (Case, &str, f64, f64)) {
     let (mechanism, truth) = (case.mechanism(), reference(curve, until));
     let found = (0..60).map(|k| 1e-4 * 10f64.powf(-k as f64 / 12.0)).find_map(|tolerance| {
-        let (error, work) = error(&mechanism, tolerance, until, &truth);
+        let (error, work) = error(&mechanism, StepControl::Tolerance(tolerance), until, &truth);
         (error <= 1e-8).then_some((tolerance, error, work.steps as f64 / until))
     });
     let (tolerance, error, steps) = found.expect("reaches 1e-8 m");
@@ -100,24 +105,38 @@ fn steps_for_an_error_of_1e_8_servo_with_gravity() {
 }
 
 /// Geometric mean of the error over start phases: a single run's error is luck by a factor of five.
-fn mean_error(case: Case, tolerance: f64, until: f64) -> (f64, f64) {
+fn mean_error(case: Case, control: StepControl, until: f64) -> (f64, f64) {
     const PHASES: usize = 12;
     let (mut log, mut steps) = (0.0, 0);
     for k in 0..PHASES {
         let case = Case { phase: TAU * k as f64 / PHASES as f64, ..case };
         let truth = minimal::positions(&case, 1e-12, &times(until)).0;
-        let (error, work) = error(&case.mechanism(), tolerance, until, &truth);
+        let (error, work) = error(&case.mechanism(), control, until, &truth);
         log += error.ln() / PHASES as f64;
         steps += work.steps;
     }
     (log.exp(), steps as f64 / PHASES as f64)
 }
 
+/// Where joints are tight, direct integration errs by no more than rapier's steps at the same tolerance, with fewer steps.
+#[test]
+fn tight_joints_cost_direct_integration_what_the_tolerance_asks() {
+    let case = Case { clearance: 1e-8, ..Case::default() };
+    for tolerance in [1e-4, 1e-5, 1e-6] {
+        let of = |control| mean_error(case, control, 0.2);
+        let [rapier, direct] =
+            [StepControl::Tolerance(tolerance), StepControl::Direct(tolerance)].map(of);
+        println!("tolerance {tolerance:.0e}: rapier {rapier:?}, direct {direct:?}");
+        assert!(direct.0 < 1.5 * rapier.0, "{tolerance:e}: {direct:?}, rapier {rapier:?}");
+        assert!(direct.1 < 0.75 * rapier.1, "{tolerance:e}: {direct:?}, rapier {rapier:?}");
+    }
+}
+
 #[test]
 fn error_follows_the_tolerance() {
     let case = Case::default();
     let ladder = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
-    let found = ladder.map(|tolerance| mean_error(case, tolerance, 0.03));
+    let found = ladder.map(|tolerance| mean_error(case, StepControl::Tolerance(tolerance), 0.03));
     for (tolerance, (error, steps)) in ladder.iter().zip(&found) {
         println!("tolerance {tolerance:.0e}: {error:.2e} m, {steps:.0} steps");
     }
@@ -135,7 +154,8 @@ fn error_follows_the_tolerance() {
 fn order_of_convergence_under_load() {
     for drive in [Case::default().drive, SERVO] {
         let case = Case { drive, gravity: -9.81, ..Case::default() };
-        let [coarse, fine] = [1e-5, 1e-7].map(|tolerance| mean_error(case, tolerance, 0.03));
+        let [coarse, fine] =
+            [1e-5, 1e-7].map(|tolerance| mean_error(case, StepControl::Tolerance(tolerance), 0.03));
         let order = (coarse.0 / fine.0).ln() / (fine.1 / coarse.1).ln();
         println!(
             "gravity, {drive:?}: {:.1e} m in {:.0} steps, {:.1e} m in {:.0}: order {order:.2}",
@@ -150,7 +170,8 @@ fn order_of_convergence_under_load() {
 fn friction_is_under_control_too() {
     for drive in [Case::default().drive, SERVO] {
         let case = Case { friction: 0.1, drive, ..Case::default() };
-        let errors = [1e-4, 1e-5, 1e-6].map(|tolerance| mean_error(case, tolerance, 0.04).0);
+        let errors = [1e-4, 1e-5, 1e-6]
+            .map(|tolerance| mean_error(case, StepControl::Tolerance(tolerance), 0.04).0);
         println!("friction 0.1, {drive:?}: {errors:?} m");
         assert!(errors[2] < errors[0] / 10.0 && errors[2] < 2e-8, "{errors:?}");
     }
