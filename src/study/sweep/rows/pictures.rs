@@ -62,6 +62,10 @@ const MEANS: usize = 24;
 const RUNS_AT_A_VALUE: usize = 5;
 const RUNS_OF_A_STRETCH: usize = 20;
 
+/// Fewest stretches whose means are joined: a straight line between two means over decades lies above nearly all runs between
+/// them.
+const FEWEST_STRETCHES: usize = 6;
+
 /// Largest over smallest value from which a positive quantity is drawn by its logarithm.
 const LOG_SPREAD: f64 = 50.0;
 
@@ -347,12 +351,13 @@ fn means(mut points: Vec<(f64, f64)>, x_log: bool) -> Option<Vec<(f64, f64)>> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let count = points.len();
     let distinct = points.chunk_by(|a, b| a.0 == b.0).count();
-    let chunks: Vec<&[(f64, f64)]> = if distinct <= MEANS && count >= RUNS_AT_A_VALUE * distinct {
+    let repeats = distinct <= MEANS && count >= RUNS_AT_A_VALUE * distinct;
+    let chunks: Vec<&[(f64, f64)]> = if repeats {
         points.chunk_by(|a, b| a.0 == b.0).collect()
     } else {
         points.chunks(count.div_ceil(MEANS).max(RUNS_OF_A_STRETCH)).collect()
     };
-    if chunks.len() < 2 {
+    if chunks.len() < if repeats { 2 } else { FEWEST_STRETCHES } {
         return None;
     }
     let mean = |chunk: &[(f64, f64)]| {
@@ -362,4 +367,22 @@ fn means(mut points: Vec<(f64, f64)>, x_log: bool) -> Option<Vec<(f64, f64)>> {
         (x, chunk.iter().map(|p| p.1).sum::<f64>() / n)
     };
     Some(chunks.into_iter().map(mean).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::means;
+
+    /// `y = x²` over four decades: two stretches of it have no line of means, ten have, and so have two values that repeat.
+    #[test]
+    fn means_are_joined_where_the_line_between_them_says_something() {
+        let runs = |count: usize| -> Vec<(f64, f64)> {
+            let x = |k: usize| 10f64.powf(4.0 * k as f64 / count as f64);
+            (0..count).map(|k| (x(k), x(k) * x(k))).collect()
+        };
+        assert!(means(runs(40), true).is_none());
+        assert_eq!(means(runs(200), true).map(|means| means.len()), Some(10));
+        let twice: Vec<_> = (0..10).map(|k| (f64::from(k % 2), 1.0)).collect();
+        assert_eq!(means(twice, false), Some(vec![(0.0, 1.0), (1.0, 1.0)]));
+    }
 }
