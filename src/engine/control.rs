@@ -21,7 +21,8 @@ pub enum StepControl {
     /// joints have 0.5 mm of clearance or more; in proportion less where they have less, down to a
     /// fiftieth at 10 µm.
     Tolerance(f64),
-    /// The same tolerance without the physics engine: the equations of motion integrated directly.
+    /// The same tolerance without the physics engine: the equations of motion integrated directly, down to a fifth of it at
+    /// 0.1 mm and below, where longer steps err no more.
     Direct(f64),
 }
 

@@ -94,7 +94,7 @@ struct Inside {
 /// damps the rattle away where hits come at 1 mm/s. Below 10 µm the penetration (some µm) takes the
 /// place of the clearance, and the share stays. Found on the statistics of an independent solver:
 /// with it, one tolerance reproduces them from 1 mm to 10 nm.
-pub(in crate::engine) fn tightness(mechanism: &Mechanism) -> f64 {
+pub(in crate::engine) fn share(mechanism: &Mechanism) -> f64 {
     let clearances = mechanism.revolutes.iter().filter_map(|joint| match &joint.bearing {
         Bearing::Clearance(clearance) => Some(clearance.radial()),
         Bearing::Ideal | Bearing::Native { .. } => None,
@@ -104,14 +104,14 @@ pub(in crate::engine) fn tightness(mechanism: &Mechanism) -> f64 {
 
 impl Adaptive {
     /// Steps with a velocity error of about `tolerance` m/s each, less where joints are tight (see
-    /// [`tightness`]); with `books` it keeps what a balance of energy needs.
+    /// [`share`]); with `books` it keeps what a balance of energy needs.
     pub fn new(mechanism: &Mechanism, tolerance: f64, books: Option<Books>) -> Self {
         let bodies = mechanism.bodies.len();
         let zeros = vec![Vector3::zeros(); bodies];
         let states: Vec<BodyState> = mechanism.bodies.iter().map(|b| b.start).collect();
         let dynamics = Dynamics::new(mechanism);
         Self {
-            tolerance: SAFETY * tolerance * tightness(mechanism),
+            tolerance: SAFETY * tolerance * share(mechanism),
             longest: mechanism.longest_servo_step().map_or(LONGEST_STEP, |s| s.min(LONGEST_STEP)),
             world: World::new(mechanism, false),
             coupled: dynamics.coupled(),

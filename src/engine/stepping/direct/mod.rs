@@ -20,7 +20,7 @@ use self::node::Node;
 use self::onset::next_onset;
 use self::path::Path;
 use self::tsitouras::{C, WEIGHTS};
-use super::adaptive::tightness;
+use super::adaptive::share;
 use super::energy::Exchange;
 use super::looks::Looks;
 use super::stepper::Stepper;
@@ -94,9 +94,9 @@ pub(in crate::engine) struct Direct {
 /// and end in numbers, the error of a run falls with the 0.8th power of a step's, not in proportion. Measured on the
 /// paper's machine, 8 starts of each of six cases: at 1e-7 m/s it is as exact as the engine's at 1e-5 (by factors
 /// of 0.4 to 10), and with this power so it is from 1e-4 to 1e-7. Joints tighter than 0.1 mm ask no more of it: with the engine's
-/// own share ([`tightness`]) runs with 10 nm of play err by a sixth of what the engine's do, with this one by as much.
+/// own share ([`share`]) runs with 10 nm of play err by a sixth of what the engine's do, with this one by as much.
 fn step_tolerance(mechanism: &Mechanism, tolerance: f64) -> f64 {
-    1e-7 * (tolerance / 1e-5).powf(1.25) * tightness(mechanism).max(LEAST_SHARE)
+    1e-7 * (tolerance / 1e-5).powf(1.25) * share(mechanism).max(LEAST_SHARE)
 }
 
 /// Share of the tolerance at 0.1 mm of play.
