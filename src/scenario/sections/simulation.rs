@@ -31,8 +31,8 @@ pub struct Simulation {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<f64>,
     /// Velocity error that one step may make, m/s, for clearances of 0.5 mm and more, in proportion
-    /// less for smaller ones, down to a fiftieth at 10 µm (a fifth at 0.1 mm with
-    /// the engine `direct`). Default 1e-5, unless `step` is given.
+    /// less for smaller ones, down to a fiftieth at 10 µm; with the engine `direct` down to a fifth at
+    /// 0.1 mm. Default 1e-5, unless `step` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
 }

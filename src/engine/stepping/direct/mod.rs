@@ -99,7 +99,7 @@ fn step_tolerance(mechanism: &Mechanism, tolerance: f64) -> f64 {
     1e-7 * (tolerance / 1e-5).powf(1.25) * share(mechanism).max(LEAST_SHARE)
 }
 
-/// Share of the tolerance at 0.1 mm of play.
+/// Share of the tolerance at 0.1 mm of play, and below.
 const LEAST_SHARE: f64 = 0.2;
 
 impl Direct {
