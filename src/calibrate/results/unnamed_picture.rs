@@ -15,6 +15,9 @@ const ARROWS: usize = 9;
 /// Length of the longest arrow as a share of the distance of two.
 const LONGEST: f64 = 0.9;
 
+/// Forces on the output.
+const PARTS: [&str; 3] = ["Force along x", "Force along y", "Torque"];
+
 /// The pictures of those effects of a model that have no name and are tables.
 ///
 /// # Errors
@@ -161,39 +164,38 @@ fn moving(map: &Map, i: usize, share: f64) -> (f64, MapMotion, Vec<Command>) {
     }
 }
 
-/// The effort at each joint over its coordinate or rate, the other joints in the middle of their ways.
+/// The effort at each joint, or the force along each coordinate of the output, over what it depends on, the other coordinates
+/// in the middle of their ways.
 fn of_table(table: &Efforts) -> Vec<Panel> {
-    let effort = |own: usize, positions: &[f64], rates: &[f64]| -> f64 {
-        let features = table.features(own, positions, rates);
-        features.iter().zip(&table.coefficients[own]).map(|(f, c)| f * c).sum()
-    };
-    let still = vec![0.0; table.joints.len()];
-    let panel = |(own, joint): (usize, &String)| {
-        let at = |share: f64| match table.depends_on {
-            Over::JointRate => {
-                let mut rates = still.clone();
+    let still = vec![0.0; table.coordinates()];
+    let of_rate = matches!(table.depends_on, Over::JointRate | Over::OutputVelocity);
+    let panel = |own: usize| {
+        let at = |share: f64| {
+            let (mut positions, mut rates) = (table.middle.clone(), still.clone());
+            if of_rate {
                 rates[own] = share * table.rates[own];
-                (rates[own], effort(own, &table.middle, &rates))
+                return (rates[own], table.effort(own, &positions, &rates));
             }
-            Over::JointPosition | Over::Position => {
-                let mut positions = table.middle.clone();
-                positions[own] += share * table.reach[own];
-                (positions[own], effort(own, &positions, &still))
-            }
+            positions[own] += share * table.reach[own];
+            (positions[own], table.effort(own, &positions, &rates))
         };
-        let over = if table.depends_on == Over::JointRate { "rate" } else { "coordinate" };
+        let over = if of_rate { "rate" } else { "coordinate" };
+        let [title, name] = match table.joints.get(own) {
+            Some(joint) => [format!("Joint {joint}"), joint.clone()],
+            None => [PARTS[own], ["x", "y", "angle"][own]].map(str::to_owned),
+        };
         Panel {
-            title: format!("Joint {joint}"),
-            x_label: format!("{over} of {joint} (SI units)").into(),
+            title,
+            x_label: format!("{over} of {name} (SI units)").into(),
             y_label: "effort (N or N m)".into(),
             curves: vec![Curve {
-                name: joint.clone(),
+                name,
                 points: from_end_to_end(POINTS).map(at).collect(),
                 style: Style::Solid,
             }],
         }
     };
-    table.joints.iter().enumerate().map(panel).collect()
+    (0..table.coordinates()).map(panel).collect()
 }
 
 #[cfg(test)]

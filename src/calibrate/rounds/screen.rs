@@ -3,7 +3,7 @@
 use crate::calibrate::values::baseline::LegsBaseline;
 use crate::calibrate::values::candidates;
 use crate::calibrate::values::fit::{self, LegsFitTarget};
-use crate::calibrate::values::instrument::{changed, unpulled};
+use crate::calibrate::values::instrument::changed;
 use crate::calibrate::values::model::LegsCase;
 use crate::calibrate::values::settle::{FitData, GAIN_PER_VALUE, Settled};
 use crate::effects::Setting;
@@ -73,7 +73,7 @@ pub fn screen(case: &LegsCase, question: &FitData, model: &Settled) -> Vec<(Scor
             // All values together, where it is worth the time.
             if fitted > WORTH && (effects.len() > 1 || baseline.rattles) {
                 let fit = fit::fit(&target, &effects, 3)?;
-                let fit = if baseline.rattles { unpulled(&target, fit) } else { fit };
+                let fit = if baseline.rattles { fit::without_pull(&target, fit) } else { fit };
                 effects = fit.effects;
             }
             let held = LegsFitTarget { on: question.hold, ..target };

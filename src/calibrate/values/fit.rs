@@ -1,6 +1,7 @@
 //! Values of effects fitted to residuals in units of noise.
 
 use super::baseline::LegsBaseline;
+use super::instrument::{Replicated, Unpulled, unpulled};
 use super::least_squares::{self, FitEffort, Free, least_squares};
 use super::model::{LegsCase, LegsSegment};
 use crate::effects::Setting;
@@ -72,6 +73,27 @@ impl LegsFitTarget<'_> {
         let chi2 = white.norm_squared();
         chi2.is_finite().then(|| LegsFit { effects: effects.to_vec(), chi2, white, jacobian: None })
     }
+}
+
+impl Replicated for LegsFitTarget<'_> {
+    fn replicas(&self) -> usize {
+        self.baseline.replicas()
+    }
+
+    fn white(&self, effects: &[Setting]) -> Option<DVector<f64>> {
+        Some(self.look(effects)?.white)
+    }
+
+    fn white_of(&self, effects: &[Setting], replica: usize) -> Option<DVector<f64>> {
+        self.case.white_of(self.baseline, effects, self.on, Some(replica)).ok()
+    }
+}
+
+/// The fit with values that rattle does not pull.
+pub fn without_pull(target: &LegsFitTarget, fit: LegsFit) -> LegsFit {
+    let Unpulled { effects, white, jacobian } =
+        unpulled(target, &fit.effects, fit.white, fit.jacobian);
+    LegsFit { effects, chi2: white.norm_squared(), white, jacobian }
 }
 
 /// Derivative of the residual by each parameter.

@@ -1,13 +1,13 @@
 //! Values without the pull of what rattles.
 //!
-//! Where joints rattle, what a lens multiplies a value by is itself full of rattle: where a journal leans
+//! Where joints rattle, what a look multiplies a value by is itself full of rattle: where a journal leans
 //! is read off forces that fly about. Least squares then make such a value small, as they do with any
 //! regressor that carries errors ("attenuation"; Fuller, *Measurement Error Models*, 1987, §1.1): a worn
 //! clearance of 0.27 mm settles at 0.2 mm. Replicas of the model rattle otherwise than the data, so the mean of
 //! their derivatives, `J̄`, knows nothing of the data's rattle: `J̄ᵀ r(θ) = 0` (instrumental variables, §1.4
 //! there) has the right values as its answer.
 
-use super::fit::{self, LegsFit, LegsFitTarget};
+use super::fit::{free, values, with_values};
 use super::least_squares::{Free, jacobian};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
@@ -25,25 +25,56 @@ const GROWTH: f64 = 1.5;
 /// Ridge, relative to the diagonal: values that the data cannot tell apart stay where they are.
 const RIDGE: f64 = 1e-6;
 
-/// The fit with values that rattle does not pull, and the derivatives from which their intervals follow.
-pub fn unpulled(target: &LegsFitTarget, fit: LegsFit) -> LegsFit {
-    let free = fit::free(&fit.effects);
-    let mut best = fit;
+/// Residuals of a model that rattles, of the data and of replicas of the model, in units of noise.
+pub trait Replicated: Sync {
+    /// How many replicas there are.
+    fn replicas(&self) -> usize;
+
+    /// What is left of the data with these effects; none where there is no such machine.
+    fn white(&self, effects: &[Setting]) -> Option<DVector<f64>>;
+
+    /// The same of a replica of the model in place of the data.
+    fn white_of(&self, effects: &[Setting], replica: usize) -> Option<DVector<f64>>;
+}
+
+/// Values that rattle does not pull.
+#[derive(Clone, Debug)]
+pub struct Unpulled {
+    /// The effects with them.
+    pub effects: Vec<Setting>,
+    /// What is left with these.
+    pub white: DVector<f64>,
+    /// The derivatives from which their intervals follow, if there are any.
+    pub jacobian: Option<DMatrix<f64>>,
+}
+
+/// Values that rattle does not pull, from those of least squares and what they leave on.
+pub fn unpulled(
+    target: &impl Replicated,
+    effects: &[Setting],
+    white: DVector<f64>,
+    jacobian: Option<DMatrix<f64>>,
+) -> Unpulled {
+    let free = free(effects);
+    let mut best = Unpulled { effects: effects.to_vec(), white, jacobian };
     for _ in 0..STEPS {
-        let Some(ExpectedDerivatives { jacobian, shared }) = expected(target, &best, &free) else {
+        let Some(ExpectedDerivatives { jacobian, shared }) = expected(target, &best.effects, &free)
+        else {
             break;
         };
         let step = step(&jacobian, &(jacobian.transpose() * &best.white + shared));
-        let values = fit::values(&best.effects);
+        let values = values(&best.effects);
         let bounded = values.iter().zip(step.iter()).zip(&free);
         let moved: Vec<f64> = bounded
             .map(|((value, step), free)| (value + step).clamp(free.bounds[0], free.bounds[1]))
             .collect();
         let sigmas = (&jacobian * step).norm();
         best.jacobian = Some(jacobian);
-        let there = target.look(&fit::with_values(&best.effects, &moved));
-        let Some(there) = there.filter(|there| there.chi2 < GROWTH * best.chi2) else { break };
-        best = LegsFit { jacobian: best.jacobian, ..there };
+        let effects = with_values(&best.effects, &moved);
+        let most = GROWTH * best.white.norm_squared();
+        let there = target.white(&effects).filter(|white| white.norm_squared() < most);
+        let Some(white) = there else { break };
+        best = Unpulled { effects, white, ..best };
         if sigmas < SETTLED {
             break;
         }
@@ -53,16 +84,11 @@ pub fn unpulled(target: &LegsFitTarget, fit: LegsFit) -> LegsFit {
 
 /// What the residual would be with effects `to` in place of `from`, by what replicas say of the change:
 /// the data's own rattle has no part in it. None where such a machine cannot be.
-pub fn changed(target: &LegsFitTarget, from: &[Setting], to: &[Setting]) -> Option<DVector<f64>> {
-    let replicas = target.baseline.replicas();
-    let of = |replica: usize| {
-        let look = |effects: &[Setting]| {
-            target.case.white_of(target.baseline, effects, target.on, Some(replica)).ok()
-        };
-        Some(look(to)? - look(from)?)
-    };
+pub fn changed(target: &impl Replicated, from: &[Setting], to: &[Setting]) -> Option<DVector<f64>> {
+    let replicas = target.replicas();
+    let of = |replica| Some(target.white_of(to, replica)? - target.white_of(from, replica)?);
     let change = (0..replicas).map(of).sum::<Option<DVector<f64>>>()?;
-    Some(target.look(from)?.white + change / replicas as f64)
+    Some(target.white(from)? + change / replicas as f64)
 }
 
 /// What replicas say of a model's derivatives.
@@ -75,14 +101,15 @@ struct ExpectedDerivatives {
     shared: DVector<f64>,
 }
 
-fn expected(target: &LegsFitTarget, fit: &LegsFit, free: &[Free]) -> Option<ExpectedDerivatives> {
-    let values = fit::values(&fit.effects);
-    let count = target.baseline.replicas();
+fn expected(
+    target: &impl Replicated,
+    effects: &[Setting],
+    free: &[Free],
+) -> Option<ExpectedDerivatives> {
+    let values = values(effects);
+    let count = target.replicas();
     let of = |replica: usize| {
-        let look = |values: &[f64]| {
-            let effects = fit::with_values(&fit.effects, values);
-            target.case.white_of(target.baseline, &effects, target.on, Some(replica)).ok()
-        };
+        let look = |values: &[f64]| target.white_of(&with_values(effects, values), replica);
         let own = look(&values)?;
         Some((jacobian(&look, free, &values, &own)?, own))
     };

@@ -2,7 +2,7 @@
 
 use super::baseline::{LegsBaseline, Like};
 use super::fit::{self, LegsFit, LegsFitTarget};
-use super::instrument::{changed, unpulled};
+use super::instrument::changed;
 use super::model::{LegsCase, LegsSegment, SearchError};
 use super::whole::{close, rough};
 use crate::effects::Setting;
@@ -110,7 +110,7 @@ pub fn settle_while(
         let iterations = if effects.is_empty() { 0 } else { 6 };
         let Some(mut fit) = fit::fit(&target, &effects, iterations) else { break };
         if baseline.rattles {
-            fit = unpulled(&target, fit);
+            fit = fit::without_pull(&target, fit);
         } else {
             fit.jacobian = fit::jacobian(&target, &fit);
         }
@@ -203,7 +203,7 @@ pub fn simplified(case: &LegsCase, question: &FitData, model: Settled) -> Settle
             let held = LegsFitTarget { on: question.hold, ..on };
             let rattles = baseline.rattles;
             let Some(fit) = fit::fit(&on, &effects, 8) else { continue };
-            let fit = if rattles { unpulled(&on, fit) } else { fit };
+            let fit = if rattles { fit::without_pull(&on, fit) } else { fit };
             let white = match rattles {
                 // The data's rattle speaks for the variant that was fitted to it.
                 true => changed(&held, &best.fit.effects, &fit.effects),

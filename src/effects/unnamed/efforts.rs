@@ -1,13 +1,14 @@
-//! What a mechanism lacks and nobody can name: efforts in its joints as a fitted table of what they depend on.
+//! What a mechanism lacks and nobody can name: efforts in its joints, or forces on its output, as a fitted table of what
+//! they depend on.
 
 use crate::effects::{Setting, Wrong};
-use crate::mechanism::{JointIndex, Load, Mechanism, Situation};
-use nalgebra::Vector3;
+use crate::mechanism::{JointIndex, Load, Mechanism, Situation, angle_near};
+use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// What efforts in joints are a function of.
+/// What efforts in joints, or forces on the output, are a function of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Over {
@@ -17,11 +18,27 @@ pub enum Over {
     JointPosition,
     /// The coordinates of all joints together: Gaussians over a grid of two, or those of each in a sum.
     Position,
+    /// The velocity of the output, each part by itself: linear, quadratic with sign, direction alone. Acts on the output.
+    OutputVelocity,
+    /// Where the output is, as it may stand in machines of more than two freedoms: Gaussians over a grid of its x and y, and
+    /// its angle. Acts on the output.
+    OutputPosition,
 }
 
 impl Over {
     /// All of them, the simplest first.
-    pub const ALL: [Over; 3] = [Over::JointRate, Over::JointPosition, Over::Position];
+    pub const ALL: [Over; 5] = [
+        Over::JointRate,
+        Over::JointPosition,
+        Over::OutputVelocity,
+        Over::Position,
+        Over::OutputPosition,
+    ];
+
+    /// Whether forces act on the output, rather than efforts on each joint.
+    pub fn acts_on_output(self) -> bool {
+        matches!(self, Over::OutputVelocity | Over::OutputPosition)
+    }
 
     /// In words.
     pub fn words(self) -> &'static str {
@@ -29,18 +46,22 @@ impl Over {
             Over::JointRate => "the speed of each joint",
             Over::JointPosition => "the coordinate of each joint",
             Over::Position => "the machine's position",
+            Over::OutputVelocity => "the velocity of its output",
+            Over::OutputPosition => "the place of its output",
         }
     }
 }
 
 /// A fitted table: the effort (N or N·m) on the slider or the journal's body of each joint, from features of
-/// the joints' motion.
+/// the joints' motion; or the force (N) and torque (N·m) at the output's reference point, from features of its motion, whose
+/// coordinates are its place (m) and angle (rad).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Efforts {
     /// What it is a function of.
     pub depends_on: Over,
-    /// The joints.
+    /// The joints; none where it acts on the output.
+    #[serde(default)]
     pub joints: Vec<String>,
     /// Middle of each coordinate (m or rad) where it was fitted.
     pub middle: Vec<f64>,
@@ -48,7 +69,7 @@ pub struct Efforts {
     pub reach: Vec<f64>,
     /// Largest rate of each (m/s or rad/s) there.
     pub rates: Vec<f64>,
-    /// N or N·m per feature, one list for each joint.
+    /// N or N·m per feature, one list for each joint or coordinate of the output.
     pub coefficients: Vec<Vec<f64>>,
 }
 
@@ -80,7 +101,12 @@ impl Efforts {
         Self { depends_on, joints, middle, reach, rates, coefficients: Vec::new() }
     }
 
-    /// Features of joint `own` (by its place) at coordinates and rates of all.
+    /// How many coordinates it is a function of, and how many efforts it has.
+    pub fn coordinates(&self) -> usize {
+        if self.depends_on.acts_on_output() { 3 } else { self.joints.len() }
+    }
+
+    /// Features of the effort along coordinate `own` (by its place) at coordinates and rates of all.
     pub fn features(&self, own: usize, positions: &[f64], rates: &[f64]) -> Vec<f64> {
         let relative = |k: usize| (positions[k] - self.middle[k]) / self.reach[k];
         let along = |k: usize| -> Vec<f64> {
@@ -91,22 +117,36 @@ impl Efforts {
             }
             gaussians(relative(k), PLACES).collect()
         };
+        let odd = |k: usize| {
+            let v = rates[k] / self.rates[k];
+            [v, v * v.abs(), (v / REST).tanh()]
+        };
+        let grid = || {
+            let second: Vec<f64> = gaussians(relative(1), GRID).collect();
+            let over = |first: f64| second.iter().map(move |second| first * second);
+            gaussians(relative(0), GRID).flat_map(over).collect::<Vec<f64>>()
+        };
         let mut features = vec![1.0];
         match self.depends_on {
-            Over::JointRate => {
-                let v = rates[own] / self.rates[own];
-                features.extend([v, v * v.abs(), (v / REST).tanh()]);
-            }
+            Over::JointRate => features.extend(odd(own)),
             Over::JointPosition => features.extend(along(own)),
             Over::Position if self.joints.len() == 2 && self.reach.iter().all(|r| *r < PI) => {
-                let second: Vec<f64> = gaussians(relative(1), GRID).collect();
-                for first in gaussians(relative(0), GRID) {
-                    features.extend(second.iter().map(|second| first * second));
-                }
+                features.extend(grid());
             }
             Over::Position => features.extend((0..self.joints.len()).flat_map(along)),
+            Over::OutputVelocity => features.extend((0..3).flat_map(odd)),
+            Over::OutputPosition => {
+                features.push(relative(2));
+                features.extend(grid());
+            }
         }
         features
+    }
+
+    /// The effort (N or N·m) along coordinate `own` at coordinates and rates of all.
+    pub fn effort(&self, own: usize, positions: &[f64], rates: &[f64]) -> f64 {
+        let features = self.features(own, positions, rates);
+        features.iter().zip(&self.coefficients[own]).map(|(f, c)| f * c).sum()
     }
 
     /// Reads the keys of an `[[effect]]` of this kind.
@@ -117,15 +157,20 @@ impl Efforts {
             help: "this effect is written by `freeplay calibrate`: copy it whole".to_owned(),
         };
         let read = Self::deserialize(table.clone()).map_err(|error| wrong(error.message()))?;
-        let joints = read.joints.len();
-        let lists = [read.middle.len(), read.reach.len(), read.rates.len()];
-        if lists.iter().any(|length| *length != joints) || read.coefficients.len() != joints {
-            return Err(wrong("has lists that do not fit the number of its joints"));
+        let coordinates = read.coordinates();
+        let lists = [&read.middle, &read.reach, &read.rates].map(Vec::len);
+        if lists.iter().any(|length| *length != coordinates)
+            || read.coefficients.len() != coordinates
+        {
+            return Err(wrong("has lists that do not fit the number of its coordinates"));
+        }
+        if read.depends_on.acts_on_output() && !read.joints.is_empty() {
+            return Err(wrong("acts on the output, and names joints"));
         }
         if read.reach.iter().chain(&read.rates).any(|scale| *scale <= 0.0) {
             return Err(wrong("has a reach or a rate that is not positive"));
         }
-        let still = vec![0.0; joints];
+        let still = vec![0.0; coordinates];
         let fits = |(own, list): (usize, &Vec<f64>)| {
             list.len() == read.features(own, &read.middle, &still).len()
         };
@@ -145,6 +190,14 @@ struct AppliedEfforts {
 
 impl Load for AppliedEfforts {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
+        if self.table.depends_on.acts_on_output() {
+            let state = at.mechanism.output_state(at.states);
+            let angle = angle_near(state.rotation, self.table.middle[2]);
+            let place = state.position.push(angle);
+            let [x, y, torque] = [0, 1, 2]
+                .map(|own| self.table.effort(own, place.as_slice(), state.twist.as_slice()));
+            return at.push_output(Vector2::new(x, y), torque, wrenches);
+        }
         let motion: Vec<[f64; 2]> = self
             .joints
             .iter()
@@ -153,12 +206,8 @@ impl Load for AppliedEfforts {
             .collect();
         let [positions, rates]: [Vec<f64>; 2] =
             [0, 1].map(|k| motion.iter().map(|coordinate| coordinate[k]).collect());
-        for (own, (joint, coefficients)) in
-            self.joints.iter().zip(&self.table.coefficients).enumerate()
-        {
-            let features = self.table.features(own, &positions, &rates);
-            let effort = features.iter().zip(coefficients).map(|(f, c)| f * c).sum();
-            at.push_joint(*joint, effort, wrenches);
+        for (own, joint) in self.joints.iter().enumerate() {
+            at.push_joint(*joint, self.table.effort(own, &positions, &rates), wrenches);
         }
     }
 }

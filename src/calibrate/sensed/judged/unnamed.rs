@@ -1,4 +1,5 @@
-//! What remains when no effect explains it: efforts in the measured joints as a table of what they depend on.
+//! What remains when no effect explains it: efforts in the measured joints, or forces on the output, as a table of what they
+//! depend on.
 
 use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Split, Stopped};
@@ -30,6 +31,11 @@ impl DescribedEfforts {
         self.effect.efforts().map_or("something unknown", |table| table.depends_on.words())
     }
 
+    /// Whether it acts on the output, rather than on each joint.
+    pub fn acts_on_output(&self) -> bool {
+        self.effect.efforts().is_some_and(|table| table.depends_on.acts_on_output())
+    }
+
     /// What speaks for it.
     pub fn evidence(&self) -> String {
         let others = self.others.iter().skip(1).map(|(over, share)| {
@@ -37,8 +43,9 @@ impl DescribedEfforts {
         });
         let others: Vec<String> = others.collect();
         format!(
-            "efforts that vary with {} remove {:.0} % of what stands above noise on data that they were not \
+            "{} that vary with {} remove {:.0} % of what stands above noise on data that they were not \
              fitted to ({})",
+            if self.acts_on_output() { "forces" } else { "efforts" },
             self.words(),
             100.0 * self.share,
             others.join(", ")
@@ -93,21 +100,25 @@ fn best_tables(
     let (Some(fitted), Some(held)) = (on.look(effects), hold.look(effects)) else {
         return Vec::new();
     };
-    let Some((joints, ranges, sizes)) = motion(problem, split, &search.names) else {
-        return Vec::new();
-    };
+    let Some(joints) = joints_moved(problem, split, &search.names) else { return Vec::new() };
+    let output = output_moved(problem, split, &joints);
     let mut found: Vec<(f64, Efforts)> = Vec::new();
     for depends_on in classes {
-        let empty = Efforts::empty(*depends_on, joints.clone(), &ranges);
+        let on_output = depends_on.acts_on_output();
+        let Some(moved) = (if on_output { output.as_ref() } else { Some(&joints) }) else {
+            continue;
+        };
+        let Moved { joints, ranges, sizes } = moved;
+        let empty = Efforts::empty(*depends_on, joints.clone(), ranges);
         let pair = [(&on, &fitted.white), (&hold, &held.white)]
-            .map(|(target, white)| columns(target, effects, white, &empty, &sizes));
+            .map(|(target, white)| columns(target, effects, white, &empty, sizes));
         let [Some(columns), Some(held_columns)] = pair else { continue };
-        let features = columns.ncols() / joints.len();
+        let features = columns.ncols() / sizes.len();
         let fits = Regressed { columns: &columns, white: &fitted.white };
         let holds = Regressed { columns: &held_columns, white: &held.white };
-        if let Some((share, weights)) = ridged(fits, holds, joints.len()) {
+        if let Some((share, weights)) = ridged(fits, holds, sizes.len()) {
             let part = |(weights, size): (&[f64], &f64)| weights.iter().map(|w| w * size).collect();
-            let coefficients = weights.as_slice().chunks(features).zip(&sizes).map(part).collect();
+            let coefficients = weights.as_slice().chunks(features).zip(sizes).map(part).collect();
             found.push((share, Efforts { coefficients, ..empty }));
         }
     }
@@ -115,11 +126,18 @@ fn best_tables(
     found
 }
 
-/// Joints whose efforts are looked at, with the middle, the half range and the largest rate of each coordinate
-/// in the data that is fitted to, and the size of what is left of each.
-type MovedJoints = (Vec<String>, Vec<[f64; 3]>, Vec<f64>);
+/// What moved in the data that is fitted to.
+struct Moved {
+    /// Joints whose coordinates these are; none of the output's.
+    joints: Vec<String>,
+    /// Middle, half range and largest rate of each coordinate.
+    ranges: Vec<[f64; 3]>,
+    /// Size of what is left along each, as an effort.
+    sizes: Vec<f64>,
+}
 
-fn motion(problem: &RigProblem, split: &Split, names: &[Name]) -> Option<MovedJoints> {
+/// Joints whose efforts are looked at.
+fn joints_moved(problem: &RigProblem, split: &Split, names: &[Name]) -> Option<Moved> {
     let dynamics: Vec<usize> =
         (0..names.len()).filter(|&i| names[i].kind == ResidualKind::Dynamics).collect();
     let joints: Vec<String> = dynamics.iter().map(|&i| names[i].of.clone()).collect();
@@ -136,7 +154,40 @@ fn motion(problem: &RigProblem, split: &Split, names: &[Name]) -> Option<MovedJo
         let squares: f64 = values.iter().map(|value| value * value).sum();
         sizes.push((squares / values.len().max(1) as f64).sqrt().max(f64::MIN_POSITIVE));
     }
-    (!joints.is_empty()).then_some((joints, ranges, sizes))
+    (!joints.is_empty()).then_some(Moved { joints, ranges, sizes })
+}
+
+/// The output of a machine of more than two freedoms: with one or two its place follows from their coordinates, over all of
+/// which there is a table.
+fn output_moved(problem: &RigProblem, split: &Split, joints: &Moved) -> Option<Moved> {
+    if joints.joints.len() < 3 {
+        return None;
+    }
+    let machine = &problem.declared;
+    let mut ends = [[f64::INFINITY, f64::NEG_INFINITY, 0.0]; 3];
+    for segment in &split.on {
+        let run = &problem.runs[segment.run].view;
+        for pose in problem.poses(run, machine, segment)?.iter() {
+            let output = machine.output_state(&pose.states(machine));
+            let place = output.position.push(pose.angles()[machine.output]);
+            for (k, [low, high, fastest]) in ends.iter_mut().enumerate() {
+                (*low, *high) = (low.min(place[k]), high.max(place[k]));
+                *fastest = fastest.max(output.twist[k].abs());
+            }
+        }
+    }
+    let ranges = ends.map(|[low, high, rate]| [0.5 * (low + high), 0.5 * (high - low), rate]);
+    // A joint that turns takes a torque, for which a force acts at the distance of the machine's size.
+    let length = machine.size();
+    let as_force = |(name, size): (&String, &f64)| {
+        let turns = |(known, joint): (&str, JointIndex)| {
+            known == name && matches!(joint, JointIndex::Revolute(_))
+        };
+        if machine.joints().any(turns) { size / length } else { *size }
+    };
+    let force = joints.joints.iter().zip(&joints.sizes).map(as_force).fold(0.0, f64::max);
+    let sizes = vec![force, force, force * length];
+    Some(Moved { joints: Vec::new(), ranges: ranges.to_vec(), sizes })
 }
 
 /// Middle, half range and largest rate of a joint's coordinate as its own sensor shows it.
@@ -163,11 +214,11 @@ fn columns(
     table: &Efforts,
     sizes: &[f64],
 ) -> Option<DMatrix<f64>> {
-    let joints = table.joints.len();
-    let still = vec![0.0; joints];
+    let coordinates = table.coordinates();
+    let still = vec![0.0; coordinates];
     let features = table.features(0, &table.middle, &still).len();
-    let columns = (0..joints * features).into_par_iter().map(|i| {
-        let mut coefficients = vec![vec![0.0; features]; joints];
+    let columns = (0..coordinates * features).into_par_iter().map(|i| {
+        let mut coefficients = vec![vec![0.0; features]; coordinates];
         coefficients[i / features][i % features] = sizes[i / features];
         let unit = Setting::unnamed_efforts(Efforts { coefficients, ..table.clone() });
         Some(target.look(&[effects, &[unit]].concat())?.white - white)

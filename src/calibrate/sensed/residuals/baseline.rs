@@ -27,8 +27,8 @@ struct BiasAndNoise {
     /// Residuals of the data less that.
     left: Coefficients,
     noise: Noise,
-    /// A simulation of the model without noise, and draws of the same one with noise.
-    clean: View,
+    /// Simulations of the model without noise, replica by replica, and draws of the first one with noise.
+    clean: Vec<View>,
     noisy: Vec<View>,
     /// Σ of squares of the noise of these draws, in units of what is expected.
     power: f64,
@@ -109,6 +109,24 @@ impl Baseline {
         Ok(Some(DVector::from_vec(all)))
     }
 
+    /// The same of a replica of the baseline's own model in place of the data; none where there is no such machine.
+    pub fn white_of(
+        &self,
+        problem: &RigProblem,
+        effects: &[Setting],
+        segments: &[Segment],
+        replica: usize,
+    ) -> Option<DVector<f64>> {
+        let mut all = Vec::new();
+        for part in self.parts.iter().filter(|part| segments.contains(&part.segment)) {
+            let recording = &problem.runs[part.segment.run].recording;
+            let machine = machine(&problem.rig, effects, recording).ok()?;
+            let seen = problem.coefficients(part.clean.get(replica)?, &machine, &part.segment)?;
+            all.extend(part.noise.whiten(&difference(&seen, &part.bias)).iter());
+        }
+        Some(DVector::from_vec(all))
+    }
+
     /// How much of the sum of squares of noise alone other effects than its own take away on segments: a softer servo
     /// makes less of its encoder's steps, and is not right for that; none where there is no such machine.
     pub fn shrunk(
@@ -122,7 +140,7 @@ impl Baseline {
             let recording = &problem.runs[part.segment.run].recording;
             let other = machine(&problem.rig, effects, recording).ok()?;
             let look = |view: &View| problem.coefficients(view, &other, &part.segment);
-            let clean = look(&part.clean)?;
+            let clean = look(&part.clean[0])?;
             let own = |noisy: &View| {
                 let noise = difference(&look(noisy)?, &clean);
                 Some(part.noise.whiten(&noise).norm_squared())
@@ -227,8 +245,9 @@ impl Own<'_> {
     fn part(self, clean: &[Recording], still: Option<&Recording>) -> Result<BiasAndNoise, Stopped> {
         let look = |recording: &Recording| self.seen(&self.view(recording));
         let singular = || self.singular();
-        let seen: Vec<Coefficients> =
-            clean.par_iter().map(look).collect::<Option<_>>().ok_or_else(singular)?;
+        let views: Vec<View> = clean.par_iter().map(|recording| self.view(recording)).collect();
+        let seen = views.par_iter().map(|view| self.seen(view));
+        let seen: Vec<Coefficients> = seen.collect::<Option<_>>().ok_or_else(singular)?;
         let bias = mean(&seen);
         let sensors = &self.problem.declared.sensors;
         let noisy =
@@ -258,7 +277,7 @@ impl Own<'_> {
         let power = kept().map(|draw| difference(&looked[draw], &seen[0]));
         let power = power.map(|own| noise.whiten(&own).norm_squared()).sum();
         let noisy = kept().map(|draw| self.view(&noisy(draw))).collect();
-        let (segment, clean) = (self.segment.clone(), self.view(&clean[0]));
+        let segment = self.segment.clone();
         let machine = self.machine;
         Ok(BiasAndNoise {
             segment,
@@ -266,7 +285,7 @@ impl Own<'_> {
             bias,
             left,
             noise,
-            clean,
+            clean: views,
             noisy,
             power,
             rattle,

@@ -3,7 +3,7 @@
 use super::residual::{Residuals, residuals};
 use crate::calibrate::measured::spectrum::transform;
 use crate::calibrate::sensed::motion::basis::Basis;
-use crate::calibrate::sensed::motion::motions::Motions;
+use crate::calibrate::sensed::motion::motions::{Motions, Poses};
 use crate::calibrate::sensed::motion::released::{
     Released, StartError, let_go_at, released, released_near,
 };
@@ -352,6 +352,11 @@ impl RigProblem {
         segment: &Segment,
     ) -> Option<Residuals> {
         residuals(view, mechanism, &self.basis, segment.rows.clone(), &self.motions)
+    }
+
+    /// The motion of a mechanism that a view of run `segment.run` shows; none where it leads the machine where it cannot be.
+    pub fn poses(&self, view: &View, mechanism: &Mechanism, segment: &Segment) -> Option<Poses> {
+        self.motions.of(view, mechanism, &self.basis, segment.rows.clone())
     }
 
     /// Names of the residuals.

@@ -9,9 +9,28 @@ use crate::calibrate::sensed::thresholds::{AFAR, GAIN, MOSTLY, NOISE, PROMISING,
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::effects::{Parameter, ScanRange, Setting};
 
+/// What is beside a model.
+pub(super) struct Beside {
+    pub round: Round,
+    /// Models with one effect more, simulated, the best first.
+    pub found: Vec<Model>,
+    pub sight: Sight,
+}
+
+/// How much of what a model lacks residuals see beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sight {
+    /// All but little more than noise.
+    All,
+    /// Most of it.
+    Most,
+    /// Less: only simulations may show what it lacks.
+    Less,
+}
+
 impl Search<'_> {
-    /// The best models with one effect more than this one has, simulated, the best first.
-    pub(super) fn beside(&self, model: &Model) -> Result<(Round, Vec<Model>), Stopped> {
+    /// The best models with one effect more than this one has that residuals see.
+    pub(super) fn beside(&self, model: &Model) -> Result<Beside, Stopped> {
         (self.tell)(&format!("trying every effect{}", beside(&model.fit.effects)));
         let mut tried = self.screened(model);
         let mut found: Vec<Model> = Vec::new();
@@ -41,20 +60,21 @@ impl Search<'_> {
         }
         self.again(model, &mut found, &mut tried)?;
         found.retain(|rival| !rival.fit.effects.last().is_some_and(|own| self.imitates(own)));
-        // What residuals see is tried before what they hardly see.
         let seen =
             |tried: &Tried| tried.simulated && tried.gain > price(model) && tried.share > MOSTLY;
-        // Nor beside what leaves little more than noise of what was much more.
+        // What leaves little more than noise of what was much more.
         let little = |found: &Model| {
             let noisy = |left: &Left| left.mean_square <= left.limit.max(NOISE[1]);
             let most = model.cost() - found.cost() > MOSTLY * model.cost();
             self.is_noise(found) || most && self.left(found).iter().all(noisy)
         };
-        if !tried.iter().any(seen) && !found.iter().any(little) {
-            found.extend(self.unseen(model, &mut tried)?);
-        }
+        let sight = match (found.iter().any(little), tried.iter().any(seen)) {
+            (true, _) => Sight::All,
+            (false, true) => Sight::Most,
+            (false, false) => Sight::Less,
+        };
         found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
-        Ok((Round { tried, ..Round::default() }, found))
+        Ok(Beside { round: Round { tried, ..Round::default() }, found, sight })
     }
 
     /// Simulates rivals again at the values that their first simulations led to, those that promise nearly as much

@@ -1,6 +1,7 @@
 //! One effect after another, until what is left is noise; several hypotheses at once, for the first of two
 //! effects is often mistaken for a rival that also takes up a part of the second.
 
+use super::hypotheses::Sight;
 use super::rest::Rest;
 use super::round::Round;
 use super::words::names;
@@ -134,25 +135,40 @@ impl<'a> Search<'a> {
     }
 
     /// What is found beside several hypotheses, the best first, and the round of the first one. Once one effect leaves no more
-    /// than noise beside one of them, it alone is tried beside the others.
+    /// than noise beside one of them, it alone is tried beside the others. What residuals see beside any of them is tried before
+    /// what they hardly see beside one, and this not at all where that leaves little more than noise.
     fn beside_all(&self, hypotheses: &[Model]) -> Result<(Round, Vec<Model>), Stopped> {
         let mut next: Vec<Model> = Vec::new();
         let mut round = Round::default();
         let mut enough: Option<Setting> = None;
+        let mut sights = Vec::new();
         for (i, model) in hypotheses.iter().enumerate() {
-            let (own, found) = match &enough {
-                _ if i > 0 && self.is_spent() => break,
-                Some(effect) => (Round::default(), self.also(model, effect)?),
-                None => self.beside(model)?,
-            };
+            if i > 0 && self.is_spent() {
+                break;
+            }
+            if let Some(effect) = &enough {
+                next.extend(self.also(model, effect)?);
+                continue;
+            }
+            let own = self.beside(model)?;
             if i == 0 {
-                round = own;
+                round = own.round;
             }
-            if enough.is_none() {
-                let last = found.iter().find(|model| self.is_noise(model));
-                enough = last.and_then(|model| model.fit.effects.last().cloned());
+            let last = own.found.iter().find(|model| self.is_noise(model));
+            enough = last.and_then(|model| model.fit.effects.last().cloned());
+            sights.push(own.sight);
+            next.extend(own.found);
+        }
+        if !sights.contains(&Sight::All) {
+            let hidden = |&i: &usize| sights[i] == Sight::Less;
+            for i in (0..sights.len()).filter(hidden) {
+                if i > 0 && self.is_spent() {
+                    break;
+                }
+                let mut tried = Vec::new();
+                let list = if i == 0 { &mut round.tried } else { &mut tried };
+                next.extend(self.unseen(&hypotheses[i], list)?);
             }
-            next.extend(found);
         }
         next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         next.dedup_by(|a, b| same(&a.fit.effects, &b.fit.effects));

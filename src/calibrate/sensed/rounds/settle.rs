@@ -37,8 +37,8 @@ impl Search<'_> {
             };
             let steps = if effects.is_empty() { 0 } else { 6 };
             let target = self.target(&baseline, false);
-            let Some(mut fit) = target.fit(&effects, steps) else { break };
-            fit.jacobian = target.jacobian(&fit);
+            let Some(fit) = target.fit(&effects, steps) else { break };
+            let fit = target.settled(fit);
             let Some(held) = self.target(&baseline, true).look(&fit.effects) else { break };
             let change = change(&effects, &fit);
             effects.clone_from(&fit.effects);

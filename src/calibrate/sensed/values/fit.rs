@@ -4,6 +4,7 @@ use crate::calibrate::results::outcome::inverse_normal;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
 use crate::calibrate::values::fit::{free, values, with_values};
+use crate::calibrate::values::instrument::{Replicated, Unpulled, unpulled};
 use crate::calibrate::values::least_squares::{self, FitEffort, least_squares};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
@@ -46,6 +47,20 @@ pub struct FitTarget<'a> {
     pub on: &'a [Segment],
 }
 
+impl Replicated for FitTarget<'_> {
+    fn replicas(&self) -> usize {
+        self.baseline.replicas
+    }
+
+    fn white(&self, effects: &[Setting]) -> Option<DVector<f64>> {
+        Some(self.look(effects)?.white)
+    }
+
+    fn white_of(&self, effects: &[Setting], replica: usize) -> Option<DVector<f64>> {
+        self.baseline.white_of(self.problem, effects, self.on, replica)
+    }
+}
+
 impl FitTarget<'_> {
     /// The residual with these effects; none where such a machine cannot be.
     pub fn look(&self, effects: &[Setting]) -> Option<Fit> {
@@ -64,6 +79,16 @@ impl FitTarget<'_> {
     pub fn jacobian(&self, fit: &Fit) -> Option<DMatrix<f64>> {
         let look = |values: &[f64]| Some(self.look(&with_values(&fit.effects, values))?.white);
         least_squares::jacobian(&look, &free(&fit.effects), &values(&fit.effects), &fit.white)
+    }
+
+    /// A fit with values that no rattle pulls, and the derivatives there.
+    pub fn settled(&self, fit: Fit) -> Fit {
+        if !self.baseline.rattles || fit.effects.is_empty() {
+            return Fit { jacobian: self.jacobian(&fit), ..fit };
+        }
+        let Unpulled { effects, white, jacobian } =
+            unpulled(self, &fit.effects, fit.white, fit.jacobian);
+        Fit { effects, chi2: white.norm_squared(), white, jacobian, told: fit.told }
     }
 
     /// Least squares from the given values on, at most `steps` steps; none where the model cannot be at its
