@@ -5,13 +5,16 @@
 
 use freeplay::calibrate::evidence::{as_good, evidence};
 use freeplay::calibrate::left::{is_noise, left};
-use freeplay::calibrate::model::{LegsCase, LegsSegment};
+use freeplay::calibrate::model::{LegsCase, LegsRun, LegsSegment};
 use freeplay::calibrate::outcome::{LegsOutcome, MOST, Verdict, calibrate};
 use freeplay::calibrate::rattle::Rattle;
 use freeplay::calibrate::recording;
 use freeplay::calibrate::report::{LegsReport, Sources, calibrated};
 use freeplay::calibrate::result::{LegsPrepared, case, prepare};
 use freeplay::calibrate::self_test::{self, HiddenValue as Estimated, LegsTrial};
+use freeplay::calibrate::sensed::problem::RigProblem;
+use freeplay::calibrate::sensed::recording::Recording;
+use freeplay::calibrate::sensed::search::Search;
 use freeplay::calibrate::settle::{FitData, refined, settle};
 use freeplay::calibrate::start::{SwingStart, as_seen};
 use freeplay::calibrate::way::name;
@@ -88,7 +91,7 @@ fn check(rig: usize) {
         assert!(log.channels().eq(run.log.channels()), "the log's columns");
     }
     schema(rig);
-    let found = outcome.effects.iter().filter(|(effect, _)| effect.map().is_none()).count();
+    let found = outcome.effects.iter().filter(|(effect, _)| effect.efforts().is_none()).count();
     match outcome.verdict {
         Verdict::NothingMissing => assert!(outcome.effects.is_empty()),
         Verdict::Explained => assert!(found > 0 && found == outcome.effects.len()),
@@ -208,6 +211,40 @@ fn a_worn_joint_that_rattles_settles_at_its_clearance() {
     assert!((found - truth).abs() < 0.06 * truth, "{found} m, hidden {truth} m");
     let left = left(&case, &question, &settled);
     assert!(is_noise(&left), "{left:?}");
+}
+
+/// The same by its sensors alone, as any mechanism.
+#[test]
+fn by_sensors_a_worn_joint_that_rattles_settles_at_its_clearance() {
+    let hidden = vec!["joint-wear".into()];
+    let trial = LegsTrial { hidden, size: 3.0, gravity: false, withheld: false, seed: 11_050 };
+    let (case, hidden) = self_test::recorded(&trial).unwrap();
+    let truth = hidden[0].value("clearance_m").unwrap();
+    let mut problem = by_sensors(&case);
+    let logs = problem.simulated(&problem.let_go(&[]).unwrap(), 2).unwrap();
+    assert!(problem.rattle(&logs) > 1.0);
+    problem.lean_as_noise_allows(&logs);
+    let split = problem.split();
+    let search = Search::new(&problem, &split, &[], &|_| {});
+    let settled = search.settle(&[hidden[0].with(&[1.5e-4])], 3).unwrap().unwrap();
+    let found = settled.fit.effects[0].value("clearance_m").unwrap();
+    println!("hidden {truth:.3e} m, found {found:.3e} m");
+    assert!((found - truth).abs() < 0.06 * truth, "{found} m, hidden {truth} m");
+    assert!(search.is_noise(&settled), "{:?}", search.left(&settled));
+}
+
+/// A case of the 3-RPR's own method as one of any mechanism with its sensors.
+fn by_sensors(case: &LegsCase) -> RigProblem {
+    let rig = freeplay::model::expand(&case.rig).unwrap();
+    let sensors = freeplay::model::parts_of(&rig).unwrap().sensors;
+    let folder = tempfile::tempdir().unwrap();
+    let recording = |run: &LegsRun| {
+        let path = folder.path().join(&run.log.name);
+        std::fs::write(&path, run.log.to_csv()).unwrap();
+        Recording::read(&path, &sensors, false).unwrap()
+    };
+    let recordings = case.runs.iter().map(recording).collect();
+    RigProblem::new(rig, recordings, case.simulator.control).unwrap()
 }
 
 /// A regression: a model that is off swings with another frequency than the machine, so kicks found no

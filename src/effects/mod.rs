@@ -20,9 +20,9 @@ mod unnamed;
 pub use kind::{JointKinds, Kind, Parameter, Scan, ScanRange, Senses, Targets};
 pub use setting::{Setting, Wrong};
 pub use target::Target;
+pub use unnamed::UNNAMED;
 pub use unnamed::efforts::{Efforts, Over};
 pub use unnamed::history::{History, OverTime};
-pub use unnamed::{DependsOn, Map, MapMotion, UNNAMED};
 
 /// Every effect there is, in the order in which they are listed.
 pub const ALL: &[&Kind] = &[

@@ -1,8 +1,7 @@
 //! An effect as a scenario's `[[effect]]` has it.
 
-use super::{Efforts, History, Kind, Map, Setting, Target, Targets, Wrong, named};
+use super::{Efforts, History, Kind, Setting, Target, Targets, Wrong, named};
 use crate::measure::spelling::nearest;
-use std::sync::Arc;
 
 fn wrong(key: &str, message: String, help: String) -> Wrong {
     Wrong { key: key.into(), message, help }
@@ -23,7 +22,7 @@ impl Setting {
             ));
         };
         if kind.name == super::unnamed::KIND.name {
-            return Self::unnamed_from_table(kind, table);
+            return Self::unnamed_from_table(table);
         }
         let mut setting = Self::on(kind, Target::Machine, &[]);
         for (key, value) in table {
@@ -45,17 +44,11 @@ impl Setting {
     }
 
     /// The effect without a name: a history, or a table of efforts or forces.
-    fn unnamed_from_table(kind: &'static Kind, table: &toml::Table) -> Result<Self, Wrong> {
+    fn unnamed_from_table(table: &toml::Table) -> Result<Self, Wrong> {
         if table.get("depends_on").and_then(toml::Value::as_str) == Some("time") {
             return Ok(Self::unnamed_history(History::from_table(table)?));
         }
-        let mut setting = Self::on(kind, Target::Machine, &[]);
-        if table.contains_key("joints") {
-            setting.efforts = Some(Arc::new(Efforts::from_table(table)?));
-        } else {
-            setting.map = Some(Arc::new(Map::from_table(table)?));
-        }
-        Ok(setting)
+        Ok(Self::unnamed_efforts(Efforts::from_table(table)?))
     }
 }
 

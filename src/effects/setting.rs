@@ -1,6 +1,6 @@
 //! An effect with its numbers.
 
-use super::{Efforts, History, Kind, Map, Parameter, Target, Targets};
+use super::{Efforts, History, Kind, Parameter, Target, Targets};
 use crate::measure::spelling::nearest;
 use crate::mechanism::{Axes, JointIndex, Mark, Mechanism};
 use nalgebra::Vector2;
@@ -45,8 +45,6 @@ pub struct Setting {
     pub target: Target,
     pub(super) values: Vec<(&'static str, f64)>,
     /// What an effect without a name does.
-    pub(super) map: Option<Arc<Map>>,
-    /// The same of a mechanism's joints.
     pub(super) efforts: Option<Arc<Efforts>>,
     /// The same over time.
     pub(super) history: Option<Arc<History>>,
@@ -56,7 +54,6 @@ impl PartialEq for Setting {
     fn eq(&self, other: &Self) -> bool {
         self.is(other)
             && self.values == other.values
-            && self.map == other.map
             && self.efforts == other.efforts
             && self.history == other.history
     }
@@ -81,7 +78,7 @@ impl Setting {
 
     /// The effect `kind` of a target, with these values of its parameters.
     pub fn on(kind: &'static Kind, target: Target, values: &[(&'static str, f64)]) -> Self {
-        Self { kind, target, values: values.to_vec(), map: None, efforts: None, history: None }
+        Self { kind, target, values: values.to_vec(), efforts: None, history: None }
     }
 
     /// The effect `kind` of a target of `mechanism`, where a variant's values change nothing; none where none do.
@@ -111,13 +108,7 @@ impl Setting {
         }
     }
 
-    /// A fitted map of forces that have no name.
-    pub fn unnamed(map: Map) -> Self {
-        let kind = &super::unnamed::KIND;
-        Self { map: Some(Arc::new(map)), ..Self::on(kind, Target::Machine, &[]) }
-    }
-
-    /// A fitted table of efforts in joints that have no name.
+    /// A fitted table of efforts or forces that have no name.
     pub fn unnamed_efforts(table: Efforts) -> Self {
         let kind = &super::unnamed::KIND;
         Self { efforts: Some(Arc::new(table)), ..Self::on(kind, Target::Machine, &[]) }
@@ -144,11 +135,6 @@ impl Setting {
     /// The table of efforts of an effect without a name.
     pub fn efforts(&self) -> Option<&Efforts> {
         self.efforts.as_deref()
-    }
-
-    /// The map of an effect without a name.
-    pub fn map(&self) -> Option<&Map> {
-        self.map.as_deref()
     }
 
     /// The value of a parameter: as given, or its default.
@@ -313,16 +299,11 @@ impl Serialize for Setting {
         for (name, value) in &self.values {
             map.serialize_entry(name, value)?;
         }
-        if let Some(unnamed) = &self.map {
-            map.serialize_entry("depends_on", &unnamed.depends_on)?;
-            map.serialize_entry("middle", &unnamed.middle)?;
-            map.serialize_entry("reach", &unnamed.reach)?;
-            map.serialize_entry("lengths", &unnamed.lengths)?;
-            map.serialize_entry("coefficients", &unnamed.coefficients)?;
-        }
         if let Some(table) = &self.efforts {
             map.serialize_entry("depends_on", &table.depends_on)?;
-            map.serialize_entry("joints", &table.joints)?;
+            if !table.depends_on.acts_on_output() {
+                map.serialize_entry("joints", &table.joints)?;
+            }
             map.serialize_entry("middle", &table.middle)?;
             map.serialize_entry("reach", &table.reach)?;
             map.serialize_entry("rates", &table.rates)?;

@@ -7,13 +7,8 @@ use crate::effects::Setting;
 
 /// One sentence on what an effect rests on.
 pub fn evidence(outcome: &LegsOutcome, effect: &Setting) -> String {
-    if let (Some(_), Some(described)) = (effect.map(), &outcome.described) {
-        let depends = described.others.first().map_or("", |(class, _)| class.words());
-        return format!(
-            "a force that varies with {depends} removes {:.0} % of what stands above noise on data \
-             not used for its fit; no effect with a name does",
-            100.0 * described.share
-        );
+    if let (Some(_), Some(described)) = (effect.efforts(), &outcome.described) {
+        return described.evidence();
     }
     let Some((round, own)) = added(outcome, effect) else { return String::new() };
     let mut text = if own.share > 0.0 {

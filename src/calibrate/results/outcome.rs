@@ -2,8 +2,9 @@
 
 use crate::calibrate::rounds::left::{LegsLeft, is_noise, left};
 use crate::calibrate::rounds::search::{LegsFound, search};
-use crate::calibrate::rounds::unnamed::{DescribedMap, describe};
+use crate::calibrate::rounds::unnamed::describe;
 use crate::calibrate::rounds::way::{LegsRound, Way};
+use crate::calibrate::sensed::unnamed::DescribedEfforts;
 use crate::calibrate::values::errors::{self, ChannelError};
 use crate::calibrate::values::fit::{self, LegsFit};
 use crate::calibrate::values::model::{LegsCase, LegsRun, LegsSegment, SearchError};
@@ -68,7 +69,7 @@ pub struct LegsOutcome {
     /// The effects that were found, each with its estimates.
     pub effects: Vec<(Setting, Vec<ValueEstimate>)>,
     /// What was described where nothing could be named.
-    pub described: Option<DescribedMap>,
+    pub described: Option<DescribedEfforts>,
     /// What is left of the residuals under the declared and under the calibrated model.
     pub before: Vec<LegsLeft>,
     /// The same under the named effects alone.
@@ -217,10 +218,10 @@ fn remaining(
     question: &FitData,
     declared: Way,
     mut certain: Vec<Way>,
-) -> Result<(Way, Option<DescribedMap>), SearchError> {
+) -> Result<(Way, Option<DescribedEfforts>), SearchError> {
     certain.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     certain.truncate(BASES);
-    let mut best: Option<(Way, Option<DescribedMap>)> = None;
+    let mut best: Option<(Way, Option<DescribedEfforts>)> = None;
     for way in [declared].into_iter().chain(certain) {
         let described = if question.without.contains(&UNNAMED) {
             None

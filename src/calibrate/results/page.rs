@@ -4,11 +4,11 @@ use super::charts::{Charts, OVER};
 use super::outcome::{LegsOutcome, Verdict};
 use super::report::{EffectReport, LegsReport};
 use crate::calibrate::rounds::left::is_noise;
-use crate::calibrate::rounds::unnamed::DescribedMap;
 use crate::calibrate::rounds::way::{LegsRound, name as in_words};
+use crate::calibrate::sensed::unnamed::DescribedEfforts;
 use crate::calibrate::values::errors::{ChannelError, worst};
 use crate::calibrate::values::model::LegsCase;
-use crate::effects::{Map, Setting};
+use crate::effects::{Efforts, Setting};
 use crate::report::{Fact, PagePart, PageTable, document, known_to, length, number};
 
 /// Candidates of a round that the page lists; the others are in `report.json`.
@@ -116,8 +116,8 @@ fn values(outcome: &LegsOutcome, report: &LegsReport) -> PageTable {
                 about.to_owned(),
             ]);
         }
-        if let Some(map) = effect.map() {
-            let [count, meaning] = coefficients(map);
+        if let Some(table) = effect.efforts() {
+            let [count, meaning] = coefficients(table);
             let none = || "–".to_owned();
             rows.push(vec![
                 in_words(effect),
@@ -143,16 +143,16 @@ fn values(outcome: &LegsOutcome, report: &LegsReport) -> PageTable {
     }
 }
 
-/// How many coefficients a map has for each of its components, and what they are the forces of.
-fn coefficients(map: &Map) -> [String; 2] {
-    let (component, acts) = if map.depends_on.acts_on_output() {
-        ("component", "force along x, force along y and torque on the platform")
+/// How many coefficients a table has for each of its efforts, and what they are of.
+fn coefficients(table: &Efforts) -> [String; 2] {
+    let (each, acts) = if table.depends_on.acts_on_output() {
+        ("component", "force along x, force along y and torque on the output")
     } else {
-        ("rod", "force on each rod")
+        ("joint", "effort in each joint")
     };
-    let count = map.coefficients.first().map_or(0, Vec::len);
-    let over = map.depends_on.words();
-    [format!("{count} for each {component}"), format!("{acts}, over {over}; in calibrated.toml")]
+    let count = table.coefficients.first().map_or(0, Vec::len);
+    let over = table.depends_on.words();
+    [format!("{count} for each {each}"), format!("{acts}, over {over}; in calibrated.toml")]
 }
 
 fn equations(report: &LegsReport) -> Vec<String> {
@@ -162,7 +162,7 @@ fn equations(report: &LegsReport) -> Vec<String> {
 /// What an effect is and what it rests on, in whole sentences.
 pub fn why(effect: &EffectReport) -> String {
     let joint = effect.on.words();
-    // Evidence of an effect with a name says what it does, that of a map names what does it.
+    // Evidence of an effect with a name says what it does, that of a table names what does it.
     let evidence = match (effect.evidence.as_str(), effect.depends_on) {
         ("", _) => String::new(),
         (evidence, None) => format!(" It {evidence}."),
@@ -268,9 +268,10 @@ fn of_round(number_of_round: usize, round: &LegsRound, outcome: &LegsOutcome) ->
 }
 
 /// Tables over one quantity or another that stand in for what has no name.
-fn of_tables(described: &DescribedMap) -> impl Iterator<Item = Vec<String>> {
+fn of_tables(described: &DescribedEfforts) -> impl Iterator<Item = Vec<String>> {
     described.others.iter().map(|(depends_on, share)| {
-        let kept = described.effect.map().is_some_and(|map| map.depends_on == *depends_on);
+        let table = described.effect.efforts();
+        let kept = table.is_some_and(|table| table.depends_on == *depends_on);
         vec![
             "–".to_owned(),
             format!("a table over {}", depends_on.words()),
@@ -345,24 +346,21 @@ fn provenance(case: &LegsCase, report: &LegsReport) -> Vec<(String, String)> {
 mod tests {
     use super::*;
     use crate::calibrate::results::report::Depends;
-    use crate::effects::DependsOn;
-
-    fn map(depends_on: DependsOn, components: usize, features: usize) -> Map {
-        let coefficients = vec![vec![0.0; features]; components];
-        Map { depends_on, middle: [0.0; 3], reach: [1.0; 3], lengths: [0.0, 1.0], coefficients }
-    }
+    use crate::effects::Over;
 
     #[test]
-    fn a_map_is_said_to_act_where_it_acts() {
-        let [count, meaning] = coefficients(&map(DependsOn::Position, 3, 27));
-        assert_eq!(count, "27 for each component");
-        assert!(
-            meaning.contains("torque on the platform, over the platform's position"),
-            "{meaning}"
-        );
-        let [count, meaning] = coefficients(&map(DependsOn::ActuatorLength, 3, 10));
-        assert_eq!(count, "10 for each rod");
-        assert!(meaning.starts_with("force on each rod, over the length"), "{meaning}");
+    fn a_table_is_said_to_act_where_it_acts() {
+        let said = |depends_on, joints: &[&str], features| {
+            let joints: Vec<String> = joints.iter().map(|joint| (*joint).to_owned()).collect();
+            let empty = Efforts::empty(depends_on, joints, &[[0.0, 1.0, 1.0]; 3]);
+            coefficients(&Efforts { coefficients: vec![vec![0.0; features]; 3], ..empty })
+        };
+        let [count, meaning] = said(Over::OutputPosition, &[], 51);
+        assert_eq!(count, "51 for each component");
+        assert!(meaning.contains("torque on the output, over the output's position"), "{meaning}");
+        let [count, meaning] = said(Over::JointPosition, &["P1", "P2", "P3"], 14);
+        assert_eq!(count, "14 for each joint");
+        assert!(meaning.starts_with("effort in each joint, over the coordinate"), "{meaning}");
     }
 
     #[test]
@@ -377,7 +375,8 @@ mod tests {
             equation: "f = 0",
         };
         assert_eq!(why(&effect(None, "removes it")), "kind: f = 0. It removes it.");
-        let map = effect(Some(Depends::Map(DependsOn::Velocity)), "a force that varies removes it");
+        let map =
+            effect(Some(Depends::Efforts(Over::OutputVelocity)), "a force that varies removes it");
         assert_eq!(why(&map), "kind: f = 0. What speaks for it: a force that varies removes it.");
         assert_eq!(why(&effect(None, "")), "kind: f = 0.");
     }

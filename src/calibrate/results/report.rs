@@ -8,7 +8,7 @@ use crate::calibrate::rounds::left::LegsLeft;
 use crate::calibrate::rounds::way::name;
 use crate::calibrate::values::errors::ChannelError;
 use crate::calibrate::values::model::LegsCase;
-use crate::effects::{DependsOn, Over, OverTime, Setting, Target};
+use crate::effects::{Over, OverTime, Setting, Target};
 use crate::measure::student::NORMAL95;
 use crate::scenario::Scenario;
 use crate::simulate::Provenance;
@@ -101,9 +101,7 @@ impl Serialize for ActsOn {
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(untagged)]
 pub enum Depends {
-    /// A map of forces.
-    Map(DependsOn),
-    /// A table of efforts in joints.
+    /// A table of efforts or forces.
     Efforts(Over),
     /// A history of efforts.
     History(OverTime),
@@ -112,10 +110,8 @@ pub enum Depends {
 impl Depends {
     /// Of an effect, if it has no name.
     pub fn of(effect: &Setting) -> Option<Self> {
-        let map = effect.map().map(|map| Self::Map(map.depends_on));
-        let table = || effect.efforts().map(|table| Self::Efforts(table.depends_on));
-        let history = || effect.history().map(|history| Self::History(history.depends_on));
-        map.or_else(table).or_else(history)
+        let table = effect.efforts().map(|table| Self::Efforts(table.depends_on));
+        table.or_else(|| effect.history().map(|history| Self::History(history.depends_on)))
     }
 }
 

@@ -24,7 +24,7 @@ pub fn summary(outcome: &LegsOutcome) -> String {
     let named: Vec<String> = outcome
         .effects
         .iter()
-        .filter(|(effect, _)| effect.map().is_none())
+        .filter(|(effect, _)| effect.efforts().is_none())
         .map(|(effect, _)| name(effect))
         .collect();
     let list = named.join(" and ");
@@ -57,16 +57,11 @@ pub fn summary(outcome: &LegsOutcome) -> String {
                 Some(described) => format!(
                     " What remains depends on {}: a fitted table of forces stands in for it. It \
                      predicts, it explains nothing.",
-                    described
-                        .effect
-                        .map()
-                        .map_or("something unknown", |map| map.depends_on.words())
+                    described.words()
                 ),
-                None => {
-                    " Nor does what remains depend on position, velocity or acceleration in a way \
+                None => " Nor does what remains depend on position or velocity in a way \
                          that a table could hold."
-                        .to_owned()
-                }
+                    .to_owned(),
             };
             format!(
                 "The declared model lacks something that no effect with a name here explains.\

@@ -74,7 +74,7 @@ pub fn run(trial: &LegsTrial) -> Result<LegsTried, SearchError> {
 
 fn judge(trial: &LegsTrial, hidden: &[Setting], outcome: &LegsOutcome) -> LegsTried {
     let found: Vec<Setting> = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
-    let named = || outcome.effects.iter().filter(|(effect, _)| effect.map().is_none());
+    let named = || outcome.effects.iter().filter(|(effect, _)| effect.efforts().is_none());
     let right = if trial.withheld {
         outcome.verdict == Verdict::Unexplained
     } else if hidden.is_empty() {

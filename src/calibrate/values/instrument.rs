@@ -136,3 +136,77 @@ fn step(jacobian: &DMatrix<f64>, gradient: &DVector<f64>) -> DVector<f64> {
     let solved = normal.cholesky().map(|factor| -factor.solve(gradient));
     solved.unwrap_or_else(|| DVector::zeros(jacobian.ncols()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::named;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// Rows of a residual, and replicas.
+    const ROWS: usize = 4000;
+    const REPLICAS: usize = 6;
+
+    /// What a recording shows is a value times what a model multiplies it by, which a look sees with as much rattle of
+    /// the recording's own as it is large itself; likewise of replicas at half that value.
+    struct Rattling {
+        data: DVector<f64>,
+        seen: DVector<f64>,
+        half: f64,
+        replicas: Vec<DVector<f64>>,
+        shown: DVector<f64>,
+    }
+
+    impl Rattling {
+        fn new(value: f64) -> Self {
+            let mut random = ChaCha8Rng::seed_from_u64(1);
+            let mut normal = || DVector::from_fn(ROWS, |_, _| StandardNormal.sample(&mut random));
+            let right: DVector<f64> = normal();
+            let mut rattling = || -> DVector<f64> { &right + normal() };
+            let (seen, replicas) = (rattling(), (0..REPLICAS).map(|_| rattling()).collect());
+            let half = 0.5 * value;
+            Self { data: &right * value, seen, half, replicas, shown: &right * half }
+        }
+
+        fn bias(&self) -> DVector<f64> {
+            let own = self.replicas.iter().map(|seen| &self.shown - seen * self.half);
+            own.sum::<DVector<f64>>() / REPLICAS as f64
+        }
+    }
+
+    impl Replicated for Rattling {
+        fn replicas(&self) -> usize {
+            REPLICAS
+        }
+
+        fn white(&self, effects: &[Setting]) -> Option<DVector<f64>> {
+            Some(&self.data - &self.seen * values(effects)[0] - self.bias())
+        }
+
+        fn white_of(&self, effects: &[Setting], replica: usize) -> Option<DVector<f64>> {
+            Some(&self.shown - &self.replicas[replica] * values(effects)[0] - self.bias())
+        }
+    }
+
+    /// Least squares are pulled to half of the value by as much rattle as there is of what it is multiplied by.
+    #[test]
+    fn rattle_does_not_pull_values() {
+        let target = Rattling::new(0.3);
+        let least = target.seen.dot(&(&target.data - target.bias())) / target.seen.norm_squared();
+        assert!((0.10..0.20).contains(&least), "the test rests on it: {least}");
+        let friction =
+            |mu| vec![Setting::new(named("journal-friction").unwrap(), None, &[("mu", mu)])];
+        let start = friction(least);
+        let found = unpulled(&target, &start, target.white(&start).unwrap(), None);
+        let mu = values(&found.effects)[0];
+        assert!((mu - 0.3).abs() < 0.02, "{mu}");
+        assert_eq!(found.white, target.white(&found.effects).unwrap());
+        // What replicas say of another value knows nothing of the recording's rattle.
+        let [to, from] = [0.1, 0.3].map(friction);
+        let there = changed(&target, &from, &to).unwrap() - target.white(&from).unwrap();
+        let mean = target.replicas.iter().sum::<DVector<f64>>() / REPLICAS as f64;
+        assert!((there - mean * 0.2).norm() < 1e-9);
+    }
+}

@@ -46,8 +46,8 @@ impl Over {
             Over::JointRate => "the speed of each joint",
             Over::JointPosition => "the coordinate of each joint",
             Over::Position => "the machine's position",
-            Over::OutputVelocity => "the velocity of its output",
-            Over::OutputPosition => "the place of its output",
+            Over::OutputVelocity => "the output's velocity",
+            Over::OutputPosition => "the output's position",
         }
     }
 }
@@ -244,6 +244,29 @@ mod tests {
         assert!((slide.twist.x - (0.5 + 4.0 / 2.0 * 0.1)).abs() < 1e-6, "{}", slide.twist.x);
     }
 
+    /// A constant force on the output accelerates it evenly, and a drag that grows with its velocity slows it down:
+    /// `v(t) = v₀ exp(−c t/(v_r m))`, c being the coefficient of `v/v_r`.
+    #[test]
+    fn a_table_pushes_the_output() {
+        let ended = |depends_on, rest: usize, x: [f64; 2]| {
+            let list = |first: [f64; 2]| {
+                let numbers = [first.to_vec(), vec![0.0; rest]].concat();
+                format!("{numbers:?}")
+            };
+            let lists = [list(x), list([0.0; 2]), list([0.0; 2])].join(", ");
+            let effect = format!(
+                "[[output]]\nbody = \"slide\"\n[[effect]]\nkind = \"unnamed\"\n\
+                 depends_on = \"{depends_on}\"\nmiddle = [0.0, 1.0, 0.0]\nreach = [1.0, 1.0, 1.0]\n\
+                 rates = [0.5, 1.0, 1.0]\ncoefficients = [{lists}]\n"
+            );
+            ended(&format!("{WHEEL_AND_SLIDE}{effect}"), 0.1)[1].twist.x
+        };
+        let pushed = ended("output-position", 49, [4.0, 0.0]);
+        assert!((pushed - (0.5 + 4.0 / 2.0 * 0.1)).abs() < 1e-6, "{pushed}");
+        let slowed = ended("output-velocity", 8, [0.0, -3.0]);
+        assert!((slowed - 0.5 * (-3.0f64 * 0.1 / (0.5 * 2.0)).exp()).abs() < 1e-6, "{slowed}");
+    }
+
     #[test]
     fn tables_that_do_not_fit_are_refused() {
         let table = |text: &str| toml::from_str::<toml::Table>(text).unwrap_or_default();
@@ -252,9 +275,15 @@ mod tests {
             "reach = [1.0]\ncoefficients = [[1.0]]",
             "reach = [1.0, 2.0]\ncoefficients = [[1.0, 0.0, 0.0, 0.0]]",
             "reach = [0.0]\ncoefficients = [[1.0, 0.0, 0.0, 0.0]]",
+            "reach = [1.0]\ncoefficients = [[1.0]]\nlengths = [0.3]",
         ] {
             assert!(Efforts::from_table(&table(&format!("{head}{bad}"))).is_err(), "{bad}");
         }
+        let output = "depends_on = \"output-velocity\"\njoints = [\"O\"]\nmiddle = [0.0, 0.0, 0.0]\n\
+                      reach = [1.0, 1.0, 1.0]\nrates = [1.0, 1.0, 1.0]\n";
+        let lists = vec![vec![0.0; 10]; 3];
+        let wrong = Efforts::from_table(&table(&format!("{output}coefficients = {lists:?}")));
+        assert!(wrong.is_err_and(|wrong| wrong.message.contains("names joints")));
         let good = "reach = [1.0]\ncoefficients = [[1.0, 0.0, 0.0, 0.0]]";
         assert!(Efforts::from_table(&table(&format!("{head}{good}"))).is_ok());
     }

@@ -5,9 +5,9 @@ use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::rounds::words::name;
 use crate::calibrate::sensed::thresholds::{GAIN_PER_VALUE, TWINS};
 use crate::calibrate::sensed::values::certainty::uncertain;
-use crate::calibrate::sensed::values::fit::Fit;
 use crate::calibrate::sensed::values::model::Model;
 use crate::calibrate::sensed::values::trajectory::Far;
+use crate::calibrate::values::instrument::changed;
 use crate::effects::{CONTAINS, Kind, Setting};
 
 impl Search<'_> {
@@ -23,8 +23,13 @@ impl Search<'_> {
                 let fewer = best.fit.effects[i].values().count() - variant.values().count();
                 let mut effects = best.fit.effects.clone();
                 effects[i] = variant;
-                let fit = self.target(&best.baseline, false).fit(&effects, STEPS)?;
-                let held = self.target(&best.baseline, true).look(&fit.effects)?.chi2;
+                let [on, hold] = [false, true].map(|held| self.target(&best.baseline, held));
+                let fit = on.settled(on.fit(&effects, STEPS)?);
+                let held = match best.baseline.rattles {
+                    // The rattle of the data speaks for the values that were fitted to it.
+                    true => changed(&hold, &best.fit.effects, &fit.effects)?.norm_squared(),
+                    false => hold.look(&fit.effects)?.chi2,
+                };
                 let lost = held - best.held;
                 (lost < GAIN_PER_VALUE * fewer as f64 + TWINS[0]).then_some((fit, held))
             });
@@ -36,9 +41,7 @@ impl Search<'_> {
                 false => self.settle(&fit.effects, 1)?,
             };
             best = settled.unwrap_or_else(|| {
-                let jacobian = self.target(&best.baseline, false).jacobian(&fit);
                 let misfit = best.misfit + held - best.held;
-                let fit = Fit { jacobian, ..fit };
                 Model { fit, held, misfit, baseline: best.baseline.clone() }
             });
         }

@@ -8,6 +8,7 @@ use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::thresholds::{TABLE, TABLE_PASSES};
 use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::model::Model;
+use crate::calibrate::values::instrument::Replicated;
 use crate::calibrate::values::ridge::{Regressed, ridged};
 use crate::effects::{Efforts, Over, Setting};
 use crate::mechanism::JointIndex;
@@ -94,28 +95,38 @@ fn best_tables(
     classes: &[Over],
 ) -> Vec<(f64, Efforts)> {
     let (problem, split) = (search.problem, search.split);
-    let [on, hold] =
+    let targets =
         [&split.on, &split.hold].map(|on| FitTarget { problem, baseline: &simulated.baseline, on });
-    let effects = &model.fit.effects;
-    let (Some(fitted), Some(held)) = (on.look(effects), hold.look(effects)) else {
-        return Vec::new();
-    };
     let Some(joints) = joints_moved(problem, split, &search.names) else { return Vec::new() };
     let output = output_moved(problem, split, &joints);
+    tables(targets, &model.fit.effects, [Some(joints), output], classes)
+}
+
+/// The best table of each class over what moved, joints or the output, with the share that it removes of what stands above
+/// noise in the second target when fitted to the first, the best first.
+pub(in crate::calibrate) fn tables(
+    [on, hold]: [impl Replicated; 2],
+    effects: &[Setting],
+    moved: [Option<MovedParts>; 2],
+    classes: &[Over],
+) -> Vec<(f64, Efforts)> {
+    let (Some(fitted), Some(held)) = (on.white(effects), hold.white(effects)) else {
+        return Vec::new();
+    };
     let mut found: Vec<(f64, Efforts)> = Vec::new();
     for depends_on in classes {
-        let on_output = depends_on.acts_on_output();
-        let Some(moved) = (if on_output { output.as_ref() } else { Some(&joints) }) else {
+        let Some(moved) = &moved[usize::from(depends_on.acts_on_output())] else { continue };
+        let MovedParts { joints, ranges, sizes } = moved;
+        let empty = Efforts::empty(*depends_on, joints.clone(), ranges);
+        let [Some(columns), Some(held_columns)] = [
+            columns(&on, effects, &fitted, &empty, sizes),
+            columns(&hold, effects, &held, &empty, sizes),
+        ] else {
             continue;
         };
-        let Moved { joints, ranges, sizes } = moved;
-        let empty = Efforts::empty(*depends_on, joints.clone(), ranges);
-        let pair = [(&on, &fitted.white), (&hold, &held.white)]
-            .map(|(target, white)| columns(target, effects, white, &empty, sizes));
-        let [Some(columns), Some(held_columns)] = pair else { continue };
         let features = columns.ncols() / sizes.len();
-        let fits = Regressed { columns: &columns, white: &fitted.white };
-        let holds = Regressed { columns: &held_columns, white: &held.white };
+        let fits = Regressed { columns: &columns, white: &fitted };
+        let holds = Regressed { columns: &held_columns, white: &held };
         if let Some((share, weights)) = ridged(fits, holds, sizes.len()) {
             let part = |(weights, size): (&[f64], &f64)| weights.iter().map(|w| w * size).collect();
             let coefficients = weights.as_slice().chunks(features).zip(sizes).map(part).collect();
@@ -127,17 +138,17 @@ fn best_tables(
 }
 
 /// What moved in the data that is fitted to.
-struct Moved {
+pub(in crate::calibrate) struct MovedParts {
     /// Joints whose coordinates these are; none of the output's.
-    joints: Vec<String>,
+    pub joints: Vec<String>,
     /// Middle, half range and largest rate of each coordinate.
-    ranges: Vec<[f64; 3]>,
+    pub ranges: Vec<[f64; 3]>,
     /// Size of what is left along each, as an effort.
-    sizes: Vec<f64>,
+    pub sizes: Vec<f64>,
 }
 
 /// Joints whose efforts are looked at.
-fn joints_moved(problem: &RigProblem, split: &Split, names: &[Name]) -> Option<Moved> {
+fn joints_moved(problem: &RigProblem, split: &Split, names: &[Name]) -> Option<MovedParts> {
     let dynamics: Vec<usize> =
         (0..names.len()).filter(|&i| names[i].kind == ResidualKind::Dynamics).collect();
     let joints: Vec<String> = dynamics.iter().map(|&i| names[i].of.clone()).collect();
@@ -154,12 +165,12 @@ fn joints_moved(problem: &RigProblem, split: &Split, names: &[Name]) -> Option<M
         let squares: f64 = values.iter().map(|value| value * value).sum();
         sizes.push((squares / values.len().max(1) as f64).sqrt().max(f64::MIN_POSITIVE));
     }
-    (!joints.is_empty()).then_some(Moved { joints, ranges, sizes })
+    (!joints.is_empty()).then_some(MovedParts { joints, ranges, sizes })
 }
 
 /// The output of a machine of more than two freedoms: with one or two its place follows from their coordinates, over all of
 /// which there is a table.
-fn output_moved(problem: &RigProblem, split: &Split, joints: &Moved) -> Option<Moved> {
+fn output_moved(problem: &RigProblem, split: &Split, joints: &MovedParts) -> Option<MovedParts> {
     if joints.joints.len() < 3 {
         return None;
     }
@@ -187,7 +198,7 @@ fn output_moved(problem: &RigProblem, split: &Split, joints: &Moved) -> Option<M
     };
     let force = joints.joints.iter().zip(&joints.sizes).map(as_force).fold(0.0, f64::max);
     let sizes = vec![force, force, force * length];
-    Some(Moved { joints: Vec::new(), ranges: ranges.to_vec(), sizes })
+    Some(MovedParts { joints: Vec::new(), ranges: ranges.to_vec(), sizes })
 }
 
 /// Middle, half range and largest rate of a joint's coordinate as its own sensor shows it.
@@ -208,7 +219,7 @@ fn range(problem: &RigProblem, on: &[Segment], joint: JointIndex) -> Option<[f64
 /// Change of a target's residual by each coefficient of a table in units of `sizes`, joint by joint: it is
 /// linear in them.
 fn columns(
-    target: &FitTarget,
+    target: &impl Replicated,
     effects: &[Setting],
     white: &DVector<f64>,
     table: &Efforts,
@@ -221,7 +232,7 @@ fn columns(
         let mut coefficients = vec![vec![0.0; features]; coordinates];
         coefficients[i / features][i % features] = sizes[i / features];
         let unit = Setting::unnamed_efforts(Efforts { coefficients, ..table.clone() });
-        Some(target.look(&[effects, &[unit]].concat())?.white - white)
+        Some(target.white(&[effects, &[unit]].concat())? - white)
     });
     Some(DMatrix::from_columns(&columns.collect::<Option<Vec<_>>>()?))
 }
