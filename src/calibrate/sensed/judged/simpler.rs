@@ -21,6 +21,9 @@ impl Search<'_> {
         for i in 0..best.fit.effects.len() {
             let simpler = self.variants(&best.fit.effects[i]).into_iter().find_map(|variant| {
                 let fewer = best.fit.effects[i].values().count() - variant.values().count();
+                // Another name is another hypothesis.
+                let own = variant.is(&best.fit.effects[i]);
+                let chance = TWINS[usize::from(best.baseline.rattles && !own)];
                 let mut effects = best.fit.effects.clone();
                 effects[i] = variant;
                 let [on, hold] = [false, true].map(|held| self.target(&best.baseline, held));
@@ -31,7 +34,7 @@ impl Search<'_> {
                     false => hold.look(&fit.effects)?.chi2,
                 };
                 let lost = held - best.held;
-                (lost < GAIN_PER_VALUE * fewer as f64 + TWINS[0]).then_some((fit, held))
+                (lost < GAIN_PER_VALUE * fewer as f64 + chance).then_some((fit, held))
             });
             let Some((fit, held)) = simpler else { continue };
             (self.tell)(&format!("settling a simpler {}", name(&fit.effects[i])));
