@@ -117,11 +117,10 @@ pub const MOMENT: u64 = 40_000_000;
 /// Sizes of a machine beyond which a place is afar: what sits there acts as if it had no place.
 pub const AFAR: f64 = 2.0;
 
-/// Drop of −2 log likelihood from which an effect has calmed the rattle of recordings, for each coefficient of the residuals:
-/// how much replicas rattle is all of them in common. With 5900 coefficients of a 3-RPR misfits of one and the same model,
-/// settled again, were up to 1050 apart, 0.18 of each, and friction of 0.11 in its journals brought 2700 and more, 0.46;
-/// with 4150 of another one friction of 0.1 brought 1640 and 1230.
-pub const CALMER: f64 = 0.25;
+/// Drop of −2 log likelihood from which an effect has calmed the rattle of recordings, for each residual: misfits
+/// of one and the same model of a 3-RPR with nine of them, settled again, were up to 1050 apart, and friction of
+/// 0.11 in its journals brings 2700 and more.
+pub const CALMER: f64 = 167.0;
 
 /// Share of a swing that a model may be wrong by before its values are settled: a frequency that is off by a
 /// thousandth has lost the phase after some seconds. Two swings of one size and any phase differ by √2 of it.

@@ -6,7 +6,7 @@ use super::search::Search;
 use super::unseen::away;
 use super::words::name;
 use crate::calibrate::sensed::residuals::problem::Stopped;
-use crate::calibrate::sensed::thresholds::{CALMER, PROMISING};
+use crate::calibrate::sensed::thresholds::CALMER;
 use crate::calibrate::sensed::values::model::Model;
 use crate::effects::{CALMING, Setting, Target};
 
@@ -21,7 +21,6 @@ impl Search<'_> {
     pub(super) fn calmer(&self, model: &Model) -> Result<(Round, Option<Model>), Stopped> {
         let mut round = Round::default();
         let mut best: Option<Model> = None;
-        let enough = CALMER * model.fit.white.len() as f64;
         let output = self.problem.declared.names.output.as_deref();
         let own = |candidate: &&Setting| {
             let whole = match &candidate.target {
@@ -36,14 +35,7 @@ impl Search<'_> {
         for candidate in self.candidates.iter().filter(own) {
             (self.tell)(&format!("simulating with {}: does it calm the rattle?", name(candidate)));
             let effects = [model.fit.effects.as_slice(), &[away(candidate)]].concat();
-            let Some(mut settled) = self.settle(&effects, 2)? else { continue };
-            // How much a rattle is calmed by says little of the value that calms it as much as was recorded.
-            if model.cost() - settled.cost() > PROMISING * enough
-                && let Some(closer) = self.settle(&settled.fit.effects, 3)?
-                && closer.cost() < settled.cost()
-            {
-                settled = closer;
-            }
+            let Some(settled) = self.settle(&effects, 2)? else { continue };
             let gain = model.cost() - settled.cost();
             let effect = settled.fit.effects[model.fit.effects.len()].clone();
             // It removes nothing that stands above noise.
@@ -60,6 +52,7 @@ impl Search<'_> {
             }
         }
         round.tried.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let enough = CALMER * self.names.len() as f64;
         let gains = |best: &Model| {
             [model.cost() - best.cost(), self.misfit_of_fitted(model) - self.misfit_of_fitted(best)]
         };
