@@ -149,8 +149,8 @@ mod tests {
     const ROWS: usize = 4000;
     const REPLICAS: usize = 6;
 
-    /// What a recording shows is a value times what a model multiplies it by, which a look sees with as much rattle of
-    /// the recording's own as it is large itself; likewise of replicas at half that value.
+    /// What a recording shows is a value times what a model multiplies it by, which a look sees with half as much rattle
+    /// of the recording's own as it is large itself; likewise of replicas at half that value.
     struct Rattling {
         data: DVector<f64>,
         seen: DVector<f64>,
@@ -164,7 +164,7 @@ mod tests {
             let mut random = ChaCha8Rng::seed_from_u64(1);
             let mut normal = || DVector::from_fn(ROWS, |_, _| StandardNormal.sample(&mut random));
             let right: DVector<f64> = normal();
-            let mut rattling = || -> DVector<f64> { &right + normal() };
+            let mut rattling = || -> DVector<f64> { &right + normal() * 0.5 };
             let (seen, replicas) = (rattling(), (0..REPLICAS).map(|_| rattling()).collect());
             let half = 0.5 * value;
             Self { data: &right * value, seen, half, replicas, shown: &right * half }
@@ -190,18 +190,18 @@ mod tests {
         }
     }
 
-    /// Least squares are pulled to half of the value by as much rattle as there is of what it is multiplied by.
+    /// Least squares are pulled to 1/(1 + ¼) of the value by half as much rattle as there is of what it is multiplied by.
     #[test]
     fn rattle_does_not_pull_values() {
         let target = Rattling::new(0.3);
         let least = target.seen.dot(&(&target.data - target.bias())) / target.seen.norm_squared();
-        assert!((0.10..0.20).contains(&least), "the test rests on it: {least}");
+        assert!((0.22..0.26).contains(&least), "the test rests on it: {least}");
         let friction =
             |mu| vec![Setting::new(named("journal-friction").unwrap(), None, &[("mu", mu)])];
         let start = friction(least);
         let found = unpulled(&target, &start, target.white(&start).unwrap(), None);
         let mu = values(&found.effects)[0];
-        assert!((mu - 0.3).abs() < 0.02, "{mu}");
+        assert!((mu - 0.3).abs() < 0.01, "{mu}");
         assert_eq!(found.white, target.white(&found.effects).unwrap());
         // What replicas say of another value knows nothing of the recording's rattle.
         let [to, from] = [0.1, 0.3].map(friction);
