@@ -6,8 +6,10 @@ use crate::calibrate::rounds::unnamed::describe;
 use crate::calibrate::rounds::way::{LegsRound, Way};
 use crate::calibrate::sensed::unnamed::DescribedEfforts;
 use crate::calibrate::values::errors::{self, ChannelError};
-use crate::calibrate::values::fit::{self, LegsFit};
+use crate::calibrate::values::fit::LegsFit;
+use crate::calibrate::values::least_squares::values;
 use crate::calibrate::values::model::{LegsCase, LegsRun, LegsSegment, SearchError};
+use crate::calibrate::values::normal::{inverse_normal, pull};
 use crate::calibrate::values::settle::{FitData, Settled};
 use crate::effects::{Scan, Setting, UNNAMED};
 use crate::measure::log::Log;
@@ -249,7 +251,7 @@ const WORTH_A_MAP: f64 = 0.05;
 /// Estimates of each effect's values: `(JᵀJ)⁻¹` in units of noise, wider where the fit's own residual
 /// is larger than noise, and where rattle pulls the values further than noise of one frequency by itself.
 fn estimates(model: &Settled, on: &[LegsSegment]) -> Vec<Vec<ValueEstimate>> {
-    let count = fit::values(&model.fit.effects).len();
+    let count = values(&model.fit.effects).len();
     let mean_square = model.fit.chi2 / (model.fit.white.len().saturating_sub(count).max(1)) as f64;
     let jacobian = model.fit.jacobian.as_ref().filter(|_| count > 0);
     let inverse = jacobian.and_then(inverse_normal);
@@ -280,70 +282,4 @@ fn estimates(model: &Settled, on: &[LegsSegment]) -> Vec<Vec<ValueEstimate>> {
                 .collect()
         })
         .collect()
-}
-
-/// `(JᵀJ)⁻¹`, of values of very different size; 0 of those that no residual depends on, none of what is no number.
-pub(in crate::calibrate) fn inverse_normal(jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    // The decomposition does not end with such.
-    if !jacobian.iter().all(|value| value.is_finite()) {
-        return None;
-    }
-    let length = |norm: f64| if norm > 0.0 { norm } else { 1.0 };
-    let scale: Vec<f64> = jacobian.column_iter().map(|c| length(c.norm())).collect();
-    let scaled = |matrix: DMatrix<f64>| {
-        DMatrix::from_fn(scale.len(), scale.len(), |r, c| matrix[(r, c)] / (scale[r] * scale[c]))
-    };
-    Some(scaled(scaled(jacobian.transpose() * jacobian).pseudo_inverse(1e-12).ok()?))
-}
-
-/// Mean square of what draws of noise do to values, in units of `(JᵀJ)⁻¹`: the noise is known frequency
-/// by frequency, and a rattle that hangs together over several pulls a value that all of them tell of
-/// further (a parametric bootstrap; Efron and Tibshirani, *An Introduction to the Bootstrap*, 1993, §6.5).
-pub(in crate::calibrate) fn pull(
-    jacobian: &DMatrix<f64>,
-    inverse: &DMatrix<f64>,
-    draws: &[DVector<f64>],
-) -> f64 {
-    let squares = draws.iter().map(|draw| {
-        let along = jacobian.transpose() * draw;
-        along.dot(&(inverse * &along))
-    });
-    squares.sum::<f64>() / (draws.len() * jacobian.ncols()) as f64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A value that nothing depends on has no part in the others' intervals, and does not keep them from being found.
-    #[test]
-    fn a_value_without_consequences_is_left_out() {
-        let jacobian = DMatrix::from_row_slice(3, 2, &[2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let inverse = inverse_normal(&jacobian).unwrap();
-        assert_eq!((inverse[(0, 0)], inverse[(1, 1)]), (0.25, 0.0));
-        assert!(inverse_normal(&DMatrix::from_element(2, 2, f64::NAN)).is_none());
-    }
-
-    /// The mean of n numbers that are noise each by itself is known to 1/√n; of noise that hangs together
-    /// (pairs of the same number) to √2/√n.
-    #[test]
-    fn noise_that_hangs_together_pulls_further() {
-        let jacobian = DMatrix::from_element(4, 1, 1.0);
-        let inverse = inverse_normal(&jacobian).unwrap();
-        assert!((inverse[(0, 0)] - 0.25).abs() < 1e-12);
-        let signs = |i: usize, k: u32| if i >> k & 1 == 0 { 1.0 } else { -1.0 };
-        let alone = (0..16).map(|i| DVector::from_fn(4, |r, _| signs(i, r as u32)));
-        assert!((pull(&jacobian, &inverse, &alone.collect::<Vec<_>>()) - 1.0).abs() < 1e-12);
-        let pairs = (0..4).map(|i| DVector::from_fn(4, |r, _| signs(i, r as u32 / 2)));
-        assert!((pull(&jacobian, &inverse, &pairs.collect::<Vec<_>>()) - 2.0).abs() < 1e-12);
-    }
-
-    /// A mass in kg and a clearance in m, told apart although one is a million times the other.
-    #[test]
-    fn values_of_different_size_have_their_own_deviations() {
-        let jacobian = DMatrix::from_row_slice(2, 2, &[1e-3, 0.0, 0.0, 1e9]);
-        let inverse = inverse_normal(&jacobian).unwrap();
-        assert!((inverse[(0, 0)] - 1e6).abs() < 1e-3);
-        assert!((inverse[(1, 1)] - 1e-18).abs() < 1e-27);
-    }
 }

@@ -2,7 +2,7 @@
 
 use super::baseline::LegsBaseline;
 use super::instrument::{Replicated, Unpulled, unpulled};
-use super::least_squares::{self, FitEffort, Free, least_squares};
+use super::least_squares::{self, FitEffort, free, least_squares, values, with_values};
 use super::model::{LegsCase, LegsSegment};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
@@ -18,32 +18,6 @@ pub struct LegsFit {
     pub white: DVector<f64>,
     /// Its derivative by each parameter, if the fit got so far.
     pub jacobian: Option<DMatrix<f64>>,
-}
-
-/// The values of all effects in a row.
-pub fn values(effects: &[Setting]) -> Vec<f64> {
-    effects.iter().flat_map(|effect| effect.values().map(|(_, value)| value)).collect()
-}
-
-/// The effects with other values.
-pub fn with_values(effects: &[Setting], values: &[f64]) -> Vec<Setting> {
-    let mut rest = values;
-    effects
-        .iter()
-        .map(|effect| {
-            let (own, others) = rest.split_at(effect.values().count());
-            rest = others;
-            effect.with(own)
-        })
-        .collect()
-}
-
-/// Step and bounds of each parameter.
-pub fn free(effects: &[Setting]) -> Vec<Free> {
-    let parameters = effects
-        .iter()
-        .flat_map(|effect| effect.values().filter_map(|(name, _)| effect.kind.parameter(name)));
-    parameters.map(|parameter| Free { step: parameter.step, bounds: parameter.bounds }).collect()
 }
 
 /// What is fitted to what.

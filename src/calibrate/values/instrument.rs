@@ -7,8 +7,7 @@
 //! their derivatives, `J̄`, knows nothing of the data's rattle: `J̄ᵀ r(θ) = 0` (instrumental variables, §1.4
 //! there) has the right values as its answer.
 
-use super::fit::{free, values, with_values};
-use super::least_squares::{Free, jacobian};
+use super::least_squares::{Free, free, jacobian, values, with_values};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

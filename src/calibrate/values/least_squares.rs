@@ -1,5 +1,6 @@
 //! Gauss–Newton with bounds, in the damping of Levenberg and Marquardt.
 
+use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -216,6 +217,32 @@ fn step(
             (value + step * scale).clamp(*low, *high)
         })
         .collect()
+}
+
+/// The values of all effects in a row.
+pub fn values(effects: &[Setting]) -> Vec<f64> {
+    effects.iter().flat_map(|effect| effect.values().map(|(_, value)| value)).collect()
+}
+
+/// The effects with other values.
+pub fn with_values(effects: &[Setting], values: &[f64]) -> Vec<Setting> {
+    let mut rest = values;
+    effects
+        .iter()
+        .map(|effect| {
+            let (own, others) = rest.split_at(effect.values().count());
+            rest = others;
+            effect.with(own)
+        })
+        .collect()
+}
+
+/// Step and bounds of each parameter.
+pub fn free(effects: &[Setting]) -> Vec<Free> {
+    let parameters = effects
+        .iter()
+        .flat_map(|effect| effect.values().filter_map(|(name, _)| effect.kind.parameter(name)));
+    parameters.map(|parameter| Free { step: parameter.step, bounds: parameter.bounds }).collect()
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
 //! Models and their values: a [`model`] and its runs, what simulations say of its residuals ([`baseline`]), where to start looking
-//! ([`candidates`]), values from residuals ([`fit`], [`least_squares`], [`instrument`], `ridge`) and from whole simulations ([`settle`],
+//! ([`candidates`]), values from residuals ([`fit`], [`least_squares`], [`instrument`], `normal`) and from whole simulations ([`settle`],
 //! [`whole`], [`axes`]), and by how much predictions miss ([`errors`]).
 
 pub mod axes;
@@ -10,6 +10,6 @@ pub mod fit;
 pub mod instrument;
 pub mod least_squares;
 pub mod model;
-pub(super) mod ridge;
+pub(super) mod normal;
 pub mod settle;
 pub mod whole;

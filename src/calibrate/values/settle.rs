@@ -3,6 +3,7 @@
 use super::baseline::{LegsBaseline, Like};
 use super::fit::{self, LegsFit, LegsFitTarget};
 use super::instrument::changed;
+use super::least_squares::values;
 use super::model::{LegsCase, LegsSegment, SearchError};
 use super::whole::{close, rough};
 use crate::effects::Setting;
@@ -171,7 +172,7 @@ fn noisiness(case: &LegsCase, question: &FitData, baseline: &LegsBaseline) -> f6
 
 /// Largest change of a value by a fit, in its standard deviations, each by itself.
 fn change(before: &[Setting], fit: &LegsFit) -> f64 {
-    let (before, after) = (fit::values(before), fit::values(&fit.effects));
+    let (before, after) = (values(before), values(&fit.effects));
     let Some(jacobian) = &fit.jacobian else { return 0.0 };
     let columns = jacobian.column_iter().map(|column| column.norm());
     let moved = before.iter().zip(&after).zip(columns).map(|((b, a), size)| (a - b).abs() * size);

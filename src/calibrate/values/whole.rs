@@ -6,8 +6,10 @@
 //! the third digit of what loads it. The start is fitted with the values ([`crate::calibrate::measured::start`]).
 
 use super::axes::ValueAxes;
-use super::fit::{LegsFit, free, values, with_values};
-use super::least_squares::{FitEffort, Free, ResidualAt, jacobian, least_squares};
+use super::fit::LegsFit;
+use super::least_squares::{
+    FitEffort, Free, ResidualAt, free, jacobian, least_squares, values, with_values,
+};
 use super::model::{LegsCase, LegsSegment};
 use crate::calibrate::measured::rattle::noise;
 use crate::calibrate::measured::spectrum::{Signal, transform};

@@ -13,8 +13,8 @@
 use super::sight::{Seen, Sight};
 use crate::calibrate::sensed::limits::ways;
 use crate::calibrate::sensed::thresholds::{GAIN, GAIN_PER_VALUE, SURE, TWINS};
-use crate::calibrate::values::fit::{free, values, with_values};
 use crate::calibrate::values::least_squares::{FitEffort, jacobian, least_squares};
+use crate::calibrate::values::least_squares::{free, values, with_values};
 use crate::effects::Setting;
 use crate::mechanism::Mechanism;
 use nalgebra::{DMatrix, DVector};

@@ -9,7 +9,7 @@ use crate::calibrate::sensed::thresholds::{TABLE, TABLE_PASSES};
 use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::model::Model;
 use crate::calibrate::values::instrument::Replicated;
-use crate::calibrate::values::ridge::{Regressed, ridged};
+use crate::calibrate::values::normal::{Regressed, ridged};
 use crate::effects::{Efforts, Over, Setting};
 use crate::mechanism::JointIndex;
 use nalgebra::{DMatrix, DVector};

@@ -4,10 +4,10 @@
 use super::simulate::{deviation, record};
 use super::start::{Closed, LEAD, closed, placed, release, still};
 use super::swinging::{OutputKicks, kicked, kicks_as_seen};
-use crate::calibrate::results::outcome::inverse_normal;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::calibrate::values::least_squares::{Best, FitEffort, Free, least_squares};
+use crate::calibrate::values::normal::inverse_normal;
 use crate::effects::Setting;
 use crate::engine::{Halt, Schedule, StepControl, run};
 use crate::mechanism::{Actuator, Drive, JointIndex, Mechanism};

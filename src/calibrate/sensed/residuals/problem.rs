@@ -394,7 +394,6 @@ impl RigProblem {
         let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
         let sensors = crate::model::parts_of(&rig).unwrap().sensors;
         let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
-        let control = crate::calibrate::results::result::control(&rig);
-        Self::new(rig, vec![recording], control).unwrap()
+        Self::new(rig, vec![recording], StepControl::Tolerance(1e-5)).unwrap()
     }
 }

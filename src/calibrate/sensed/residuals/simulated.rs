@@ -5,7 +5,7 @@ use crate::calibrate::sensed::motion::released::let_go_at;
 use crate::calibrate::sensed::motion::simulate;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds;
-use crate::calibrate::values::fit::{free, values, with_values};
+use crate::calibrate::values::least_squares::{free, values, with_values};
 use crate::effects::Setting;
 use crate::engine::Halt;
 use crate::mechanism::Mechanism;

@@ -1,6 +1,6 @@
 //! Models with one effect more than another one has, simulated.
 
-use super::round::{Round, Tried};
+use super::round::{Beside, Round, SeenBeside, Tried};
 use super::search::Search;
 use super::words::names;
 use crate::calibrate::sensed::judged::left::Left;
@@ -8,25 +8,6 @@ use crate::calibrate::sensed::residuals::problem::{Run, Stopped};
 use crate::calibrate::sensed::thresholds::{AFAR, GAIN, MOSTLY, NOISE, PROMISING, SIMULATED};
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::effects::{Parameter, ScanRange, Setting};
-
-/// What is beside a model.
-pub(super) struct Beside {
-    pub round: Round,
-    /// Models with one effect more, simulated, the best first.
-    pub found: Vec<Model>,
-    pub sight: Sight,
-}
-
-/// How much of what a model lacks residuals see beside it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Sight {
-    /// All but little more than noise.
-    All,
-    /// Most of it.
-    Most,
-    /// Less: only simulations may show what it lacks.
-    Less,
-}
 
 impl Search<'_> {
     /// The best models with one effect more than this one has that residuals see.
@@ -69,9 +50,9 @@ impl Search<'_> {
             self.is_noise(found) || most && self.left(found).iter().all(noisy)
         };
         let sight = match (found.iter().any(little), tried.iter().any(seen)) {
-            (true, _) => Sight::All,
-            (false, true) => Sight::Most,
-            (false, false) => Sight::Less,
+            (true, _) => SeenBeside::All,
+            (false, true) => SeenBeside::Most,
+            (false, false) => SeenBeside::Less,
         };
         found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         Ok(Beside { round: Round { tried, ..Round::default() }, found, sight })

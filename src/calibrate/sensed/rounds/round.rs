@@ -54,3 +54,22 @@ impl Round {
         gain(effect).zip(gain(own)).is_some_and(|(gain, own)| gain < own - enough)
     }
 }
+
+/// What is beside a model.
+pub(super) struct Beside {
+    pub round: Round,
+    /// Models with one effect more, simulated, the best first.
+    pub found: Vec<Model>,
+    pub sight: SeenBeside,
+}
+
+/// How much of what a model lacks residuals see beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SeenBeside {
+    /// All but little more than noise.
+    All,
+    /// Most of it.
+    Most,
+    /// Less: only simulations may show what it lacks.
+    Less,
+}

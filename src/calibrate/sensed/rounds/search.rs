@@ -1,9 +1,8 @@
 //! One effect after another, until what is left is noise; several hypotheses at once, for the first of two
 //! effects is often mistaken for a rival that also takes up a part of the second.
 
-use super::hypotheses::Sight;
 use super::rest::Rest;
-use super::round::Round;
+use super::round::{Round, SeenBeside};
 use super::words::names;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Split, Stopped};
@@ -159,8 +158,8 @@ impl<'a> Search<'a> {
             sights.push(own.sight);
             next.extend(own.found);
         }
-        if !sights.contains(&Sight::All) {
-            let hidden = |&i: &usize| sights[i] == Sight::Less;
+        if !sights.contains(&SeenBeside::All) {
+            let hidden = |&i: &usize| sights[i] == SeenBeside::Less;
             for i in (0..sights.len()).filter(hidden) {
                 if i > 0 && self.is_spent() {
                     break;

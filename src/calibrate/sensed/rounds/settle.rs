@@ -11,7 +11,7 @@ use crate::calibrate::sensed::values::fit::Fit;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::{Far, fitted, followed, predicted, shorter};
 use crate::calibrate::sensed::values::whole::Whole;
-use crate::calibrate::values::fit::values;
+use crate::calibrate::values::least_squares::values;
 use crate::effects::Setting;
 
 /// A change of a value, in its standard deviations, that is none.

@@ -10,7 +10,7 @@ use crate::calibrate::sensed::values::linear::stepped_along;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::{Far, followed, shorter};
 use crate::calibrate::sensed::values::whole::Whole;
-use crate::calibrate::values::fit::free;
+use crate::calibrate::values::least_squares::free;
 use crate::calibrate::values::least_squares::{Free, ResidualAt, derivative};
 use crate::effects::Setting;
 use crate::mechanism::Mechanism;

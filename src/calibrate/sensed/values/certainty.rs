@@ -2,10 +2,10 @@
 
 use super::fit::Fit;
 use super::model::Model;
-use crate::calibrate::results::outcome::{inverse_normal, pull};
 use crate::calibrate::results::report::Fitted;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
 use crate::calibrate::sensed::thresholds::SURE;
+use crate::calibrate::values::normal::{inverse_normal, pull};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 

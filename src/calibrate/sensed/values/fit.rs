@@ -1,11 +1,11 @@
 //! Values of effects fitted to residuals in units of noise.
 
-use crate::calibrate::results::outcome::inverse_normal;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
-use crate::calibrate::values::fit::{free, values, with_values};
 use crate::calibrate::values::instrument::{Replicated, Unpulled, unpulled};
 use crate::calibrate::values::least_squares::{self, FitEffort, least_squares};
+use crate::calibrate::values::least_squares::{free, values, with_values};
+use crate::calibrate::values::normal::inverse_normal;
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 

@@ -4,14 +4,14 @@
 //! let go is fitted beside the values of effects, for a recording tells both only together.
 
 use super::errors::{OVERSAMPLED, floors_of, in_floors};
-use crate::calibrate::results::outcome::{inverse_normal, pull};
 use crate::calibrate::sensed::motion::released::SMALL;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Stopped};
-use crate::calibrate::values::fit::{free, values, with_values};
 use crate::calibrate::values::least_squares::{
     FitEffort, Free, derivative, jacobian, least_squares,
 };
+use crate::calibrate::values::least_squares::{free, values, with_values};
+use crate::calibrate::values::normal::{inverse_normal, pull};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 
