@@ -69,7 +69,12 @@ impl Search<'_> {
             let least = self.whole(&all[0].1) + TWINS[0];
             let twins = all.iter().take_while(|(_, model)| self.whole(model) < least);
             let twins: Vec<&Setting> = twins.map(|(effect, _)| effect).collect();
-            let (won, model) = all.swap_remove(preferred(&twins).unwrap_or(0));
+            let first = preferred(&twins).unwrap_or(0);
+            // An effect that contains another one fits its rattle as well: it goes before it where it does better than chance.
+            let inner = all.iter().position(|(effect, model)| {
+                all[first].0.contains(effect) && self.whole(model) < enough
+            });
+            let (won, model) = all.swap_remove(inner.unwrap_or(first));
             if let Some(round) = round {
                 round.as_good.retain(|known| !known.is(&won));
                 near.retain(|effect| !effect.is(&won));
