@@ -37,6 +37,16 @@ fn preferred(alike: &[&Setting]) -> Option<usize> {
     (0..alike.len()).min_by_key(rank)
 }
 
+/// Of effects that explain about as much, the best first, the place of the one that is named. The first `alike` of them are as
+/// good by chance alone, which is no reason to blame the machine; an effect that contains another one fits its rattle as well,
+/// and goes before it only where it does better than all of these.
+fn chosen(near: &[Setting], alike: usize) -> usize {
+    let twins: Vec<&Setting> = near.iter().take(alike).collect();
+    let first = preferred(&twins).unwrap_or(0);
+    let inner = near.get(first).and_then(|own| near.iter().position(|effect| own.contains(effect)));
+    inner.unwrap_or(first)
+}
+
 impl Search<'_> {
     /// The model, or one with rivals in place of its effects that explains all runs better; `rounds` hear what is as
     /// good as each effect.
@@ -56,6 +66,9 @@ impl Search<'_> {
             let enough = self.whole(&all[0].1) + TWINS[usize::from(best.baseline.rattles)];
             let as_good = all.iter().take_while(|(_, model)| self.whole(model) < enough);
             let mut near: Vec<Setting> = as_good.map(|(effect, _)| effect.clone()).collect();
+            let least = self.whole(&all[0].1) + TWINS[0];
+            let alike = all.iter().take_while(|(_, model)| self.whole(model) < least).count();
+            let place = chosen(&near, alike);
             let round = rounds
                 .iter_mut()
                 .find(|round| round.added.as_ref().is_some_and(|added| added.is(&own)));
@@ -65,16 +78,7 @@ impl Search<'_> {
                 };
                 near.extend(beyond.into_iter().filter(|effect| !ruled_out(effect)));
             }
-            // What is as good by chance alone is no reason to blame the machine.
-            let least = self.whole(&all[0].1) + TWINS[0];
-            let twins = all.iter().take_while(|(_, model)| self.whole(model) < least);
-            let twins: Vec<&Setting> = twins.map(|(effect, _)| effect).collect();
-            let first = preferred(&twins).unwrap_or(0);
-            // An effect that contains another one fits its rattle as well: it goes before it where it does better than chance.
-            let inner = all.iter().position(|(effect, model)| {
-                all[first].0.contains(effect) && self.whole(model) < enough
-            });
-            let (won, model) = all.swap_remove(inner.unwrap_or(first));
+            let (won, model) = all.swap_remove(place);
             if let Some(round) = round {
                 round.as_good.retain(|known| !known.is(&won));
                 near.retain(|effect| !effect.is(&won));
@@ -236,7 +240,7 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::preferred;
+    use super::{chosen, preferred};
     use crate::effects::{Setting, Target, named};
 
     /// A machine is blamed only where no instrument would explain as much, and of something seldom only where nothing common
@@ -259,5 +263,18 @@ mod tests {
         assert_eq!(preferred(&[&round]), Some(0));
         assert_eq!(preferred(&[&payload, &wear, &wear]), Some(1));
         assert_eq!(preferred(&[&wear, &zero, &zero]), Some(1));
+    }
+
+    /// Friction that falls with speed fits a rattle better than plain friction of the same joint by less than few replicas tell.
+    #[test]
+    fn what_contains_another_effect_has_to_do_better_than_chance() {
+        let on = |kind, joint: &str| Setting::new(named(kind).unwrap(), Some(joint), &[]);
+        let [falling, plain] =
+            ["stribeck-friction", "actuator-friction"].map(|kind| on(kind, "P3"));
+        let other = on("actuator-friction", "P1");
+        assert_eq!(chosen(&[falling.clone(), other.clone(), plain.clone()], 1), 2);
+        assert_eq!(chosen(&[falling.clone(), other.clone()], 1), 0);
+        assert_eq!(chosen(&[plain, falling, other], 1), 0);
+        assert_eq!(chosen(&[], 0), 0);
     }
 }
