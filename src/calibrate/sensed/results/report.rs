@@ -91,7 +91,7 @@ pub(super) fn summary(outcome: &SensedOutcome) -> String {
              explains it{worst}.{}",
             match &outcome.described {
                 Some(described) => format!(
-                    " It varies with {}: a fitted table of efforts stands in for it, which predicts and \
+                    " It varies with {}: a fitted table stands in for it, which predicts and \
                      explains nothing.",
                     described.words()
                 ),
