@@ -1,6 +1,6 @@
 //! What remains when no effect explains it: efforts or forces as a table of what they depend on.
 
-use crate::calibrate::sensed::unnamed::{DescribedEfforts, MovedParts, tables};
+use crate::calibrate::sensed::unnamed::{DescribedEfforts, MovedParts, spanned, tables};
 use crate::calibrate::values::fit::LegsFitTarget;
 use crate::calibrate::values::model::SearchError;
 use crate::calibrate::values::model::{LegsCase, LegsSegment};
@@ -66,29 +66,33 @@ fn best_tables(
 
 /// How far the actuators and the platform moved; efforts are in N, torques on the platform in N·m.
 fn moved(case: &LegsCase, on: &[LegsSegment]) -> [MovedParts; 2] {
-    let mut ends = [[f64::INFINITY, f64::NEG_INFINITY, 0.0]; 6];
-    let mut widen = |k: usize, value: f64, rate: f64| {
-        let [low, high, fastest] = ends[k];
-        ends[k] = [low.min(value), high.max(value), fastest.max(rate.abs())];
+    let rows = || {
+        let of = |segment: &LegsSegment| {
+            let run = &case.runs[segment.run];
+            segment.rows.clone().map(move |row| (run, row))
+        };
+        on.iter().flat_map(of)
     };
-    for segment in on {
-        let run = &case.runs[segment.run];
-        for row in segment.rows.clone() {
-            let [pose, rate] = run.lens.motion(row);
-            (0..3).for_each(|k| widen(3 + k, pose[k], rate[k]));
-            for leg in 0..3 {
-                let Some(q) = run.log.get(Channel::Length(leg)) else { continue };
-                widen(leg, q[row], (q[row + 1] - q[row]) / run.log.interval);
+    let part = |joints, ranges: Vec<[f64; 3]>| {
+        let sizes = vec![1.0; ranges.len()];
+        MovedParts { joints, ranges, sizes }
+    };
+    let (mut joints, mut lengths, mut pose) = (Vec::new(), Vec::new(), Vec::new());
+    for channel in case.runs.iter().take(1).flat_map(|run| run.log.channels()) {
+        match channel {
+            Channel::Length(leg) => {
+                joints.push(format!("P{}", leg + 1));
+                lengths.push(spanned(rows().filter_map(|(run, row)| {
+                    let q = run.log.get(channel)?;
+                    Some([q[row], (q[row + 1] - q[row]) / run.log.interval])
+                })));
             }
+            Channel::Pose(k) => pose.push(spanned(rows().map(|(run, row)| {
+                let [pose, rate] = run.lens.motion(row);
+                [pose[k], rate[k]]
+            }))),
+            Channel::Command(_) | Channel::Force(_) => {}
         }
     }
-    let ranges = ends.map(|[low, high, rate]| [0.5 * (low + high), 0.5 * (high - low), rate]);
-    let (legs, pose) = ranges.split_at(3);
-    let joints = (1..=3).map(|leg| format!("P{leg}")).collect();
-    let part = |joints, ranges: &[[f64; 3]]| MovedParts {
-        joints,
-        ranges: ranges.to_vec(),
-        sizes: vec![1.0; 3],
-    };
-    [part(joints, legs), part(Vec::new(), pose)]
+    [part(joints, lengths), part(Vec::new(), pose)]
 }

@@ -134,7 +134,7 @@ impl Efforts {
                 features.extend(grid());
             }
             Over::Position => features.extend((0..self.joints.len()).flat_map(along)),
-            Over::OutputVelocity => features.extend((0..3).flat_map(odd)),
+            Over::OutputVelocity => features.extend((0..self.coordinates()).flat_map(odd)),
             Over::OutputPosition => {
                 features.push(relative(2));
                 features.extend(grid());

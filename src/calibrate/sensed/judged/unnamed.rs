@@ -15,6 +15,9 @@ use crate::mechanism::JointIndex;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+/// Coordinates of a body: its place and angle.
+const PLANAR: usize = 3;
+
 /// A table that stands in for what has no name.
 #[derive(Clone, Debug)]
 pub struct DescribedEfforts {
@@ -175,19 +178,16 @@ fn output_moved(problem: &RigProblem, split: &Split, joints: &MovedParts) -> Opt
         return None;
     }
     let machine = &problem.declared;
-    let mut ends = [[f64::INFINITY, f64::NEG_INFINITY, 0.0]; 3];
+    let mut places = Vec::new();
     for segment in &split.on {
         let run = &problem.runs[segment.run].view;
         for pose in problem.poses(run, machine, segment)?.iter() {
             let output = machine.output_state(&pose.states(machine));
-            let place = output.position.push(pose.angles()[machine.output]);
-            for (k, [low, high, fastest]) in ends.iter_mut().enumerate() {
-                (*low, *high) = (low.min(place[k]), high.max(place[k]));
-                *fastest = fastest.max(output.twist[k].abs());
-            }
+            places.push((output.position.push(pose.angles()[machine.output]), output.twist));
         }
     }
-    let ranges = ends.map(|[low, high, rate]| [0.5 * (low + high), 0.5 * (high - low), rate]);
+    let along = |k: usize| spanned(places.iter().map(|(place, rate)| [place[k], rate[k]]));
+    let ranges = (0..PLANAR).map(along).collect();
     // A joint that turns takes a torque, for which a force acts at the distance of the machine's size.
     let length = machine.size();
     let as_force = |(name, size): (&String, &f64)| {
@@ -198,22 +198,30 @@ fn output_moved(problem: &RigProblem, split: &Split, joints: &MovedParts) -> Opt
     };
     let force = joints.joints.iter().zip(&joints.sizes).map(as_force).fold(0.0, f64::max);
     let sizes = vec![force, force, force * length];
-    Some(MovedParts { joints: Vec::new(), ranges: ranges.to_vec(), sizes })
+    Some(MovedParts { joints: Vec::new(), ranges, sizes })
 }
 
 /// Middle, half range and largest rate of a joint's coordinate as its own sensor shows it.
 fn range(problem: &RigProblem, on: &[Segment], joint: JointIndex) -> Option<[f64; 3]> {
     let sensor = position_sensor(&problem.declared, joint)?;
-    let (mut low, mut high, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
+    let mut motion = Vec::new();
     for segment in on {
         let view = &problem.runs[segment.run].view;
         let values = view.smooth(sensor)?.get(segment.rows.clone())?;
-        for pair in values.windows(2) {
-            (low, high) = (low.min(pair[0]), high.max(pair[0]));
-            fastest = fastest.max((pair[1] - pair[0]).abs() / view.interval);
-        }
+        motion.extend(values.windows(2).map(|pair| [pair[0], (pair[1] - pair[0]) / view.interval]));
     }
-    (low < high).then_some([0.5 * (low + high), 0.5 * (high - low), fastest])
+    let spanned = spanned(motion.into_iter());
+    (spanned[1] > 0.0).then_some(spanned)
+}
+
+/// Middle, half range and largest rate of a coordinate with its rates.
+pub(in crate::calibrate) fn spanned(motion: impl Iterator<Item = [f64; 2]>) -> [f64; 3] {
+    let (mut low, mut high, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
+    for [value, rate] in motion {
+        (low, high) = (low.min(value), high.max(value));
+        fastest = fastest.max(rate.abs());
+    }
+    [0.5 * (low + high), 0.5 * (high - low), fastest]
 }
 
 /// Change of a target's residual by each coefficient of a table in units of `sizes`, joint by joint: it is

@@ -2,19 +2,19 @@
 //! which is noise.
 
 use super::problem::{RigProblem, Segment, Start, Stopped};
+use super::swing::{Likeliest, swing};
 use crate::calibrate::measured::draws::{Coefficients, difference, mean, without};
 use crate::calibrate::measured::spectrum::{Covariances, Noise};
 use crate::calibrate::sensed::motion::simulate::{apart, with_noise};
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
-use crate::calibrate::sensed::thresholds::{DRAWS, MISSED, SEEN};
+use crate::calibrate::sensed::thresholds::{DRAWS, SEEN};
 use crate::effects::Setting;
 use crate::mechanism::Mechanism;
 use crate::scenario::Problem as Wrong;
 use nalgebra::DVector;
 use rayon::prelude::*;
-use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
 /// Bias and noise on one segment.
@@ -295,54 +295,6 @@ impl Own<'_> {
     }
 }
 
-/// What of the residual is a swing. Where loads keep joints in contact, bodies swing in their play, and nobody knows how they
-/// were let go: what the same machine does without a swing tells where that shows.
-fn swing(bias: &[Vec<f64>], still: Option<&Coefficients>) -> Coefficients {
-    let nothing = || bias.iter().map(|c| vec![0.0; c.len()]).collect();
-    still.map_or_else(nothing, |still| difference(bias, still))
-}
-
-/// Shares of the model's swing by which the recorded one may differ from it: from those of models that swing as recorded
-/// to one of the same size and any phase.
-fn shares() -> [f64; SHARES] {
-    let step = |k: usize| k as f64 / (SHARES - 1) as f64;
-    std::array::from_fn(|k| MISSED * (SQRT_2 / MISSED).powf(step(k)))
-}
-
-/// Number of these: each half again as large as the one before.
-const SHARES: usize = 5;
-
-/// The likeliest noise, by the share of the swing in it.
-struct Likeliest {
-    share: f64,
-    noise: Noise,
-    /// As of [`BiasAndNoise`].
-    lost: f64,
-}
-
-impl Likeliest {
-    /// That of what is `left` of the data.
-    fn of(draws: &[Coefficients], left: &[Vec<f64>], swing: &[Vec<f64>]) -> Self {
-        let covariances = Covariances::from_draws(draws, swing);
-        let near = covariances.noise(MISSED);
-        if swing.iter().flatten().all(|value| *value == 0.0) {
-            return Self { share: MISSED, noise: near, lost: 0.0 };
-        }
-        let least = near.swinging();
-        let likelihood = |noise: &Noise| noise.whiten(left).norm_squared() + noise.swinging();
-        let mut best = (likelihood(&near), MISSED, near);
-        for share in shares().into_iter().skip(1) {
-            let noise = covariances.noise(share);
-            let own = likelihood(&noise);
-            if own < best.0 {
-                best = (own, share, noise);
-            }
-        }
-        let (_, share, noise) = best;
-        Self { share, lost: noise.swinging() - least, noise }
-    }
-}
-
 /// Noiseless recordings of a model, run by run, and whether they rattle. Of a machine that does as declared a model need
 /// not: what presses its journals on their rings makes it as predictable as any, and one simulation stands for it.
 fn replicas(
@@ -413,30 +365,6 @@ mod tests {
         assert!(shrunk(0.0).abs() < 1e-6, "{}", shrunk(0.0));
         assert!(shrunk(-0.3) > 1.0, "{}", shrunk(-0.3));
         assert!(shrunk(0.3) < -1.0, "{}", shrunk(0.3));
-    }
-
-    /// A recorded swing of the model's size and another phase is noise of its size; one that is nearly the model's is not taken
-    /// for more.
-    #[test]
-    fn a_swing_is_as_likely_as_it_is_large() {
-        let mut random = ChaCha8Rng::seed_from_u64(2);
-        let mut normal = || Distribution::<f64>::sample(&StandardNormal, &mut random);
-        let draws: Vec<Coefficients> =
-            (0..DRAWS).map(|_| vec![(0..400).map(|_| normal()).collect()]).collect();
-        let sharp = |k: usize| 30.0 * (-((k as f64 - 200.0) / 20.0).powi(2)).exp();
-        let swing = vec![(0..400).map(|k| sharp(k) * (0.3 * k as f64).sin()).collect::<Vec<_>>()];
-        let mut likeliest = |size: f64| {
-            let other = |k: usize| size * sharp(k) * (0.3 * k as f64 + 1.5).sin();
-            let left = vec![(0..400).map(|k| other(k) + normal()).collect()];
-            let found = Likeliest::of(&draws, &left, &swing);
-            (found.share, found.noise.whiten(&left).norm_squared() / 400.0, found.lost)
-        };
-        let (share, mean_square, lost) = likeliest(0.1);
-        assert!(share == MISSED && mean_square < 1.2 && lost == 0.0, "{share} {mean_square}");
-        let (share, mean_square, lost) = likeliest(0.7);
-        assert!((0.4..1.1).contains(&share) && (0.7..1.3).contains(&mean_square) && lost > 0.0);
-        let (share, mean_square, _) = likeliest(1.4);
-        assert!(share > 0.9 && (0.7..1.3).contains(&mean_square), "{share} {mean_square}");
     }
 
     /// One replica of four that rattles three times as much as the others stands out as far as a recording that does so

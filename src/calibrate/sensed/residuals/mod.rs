@@ -1,5 +1,5 @@
 //! A rig and its runs ([`problem`]), what these say against a model ([`residual`]), and what a right model leaves of that
-//! ([`baseline`]), by noiseless recordings of models ([`simulated`]). How far
+//! ([`baseline`]), by noiseless recordings of models ([`simulated`]); a swing that is not the recorded one is a part of that (`swing`). How far
 //! journals are taken to lean follows from noise ([`lean`]).
 
 pub mod baseline;
@@ -7,3 +7,4 @@ pub mod lean;
 pub mod problem;
 pub mod residual;
 pub(super) mod simulated;
+mod swing;
