@@ -92,8 +92,33 @@ impl Covariances {
     /// From coefficients of pure noise, several draws of it; and of a swing that comes on top, of which no
     /// more is known than its size.
     pub fn from_draws(draws: &[Vec<Vec<f64>>], swing: &[Vec<f64>]) -> Self {
-        let bins = draws[0].iter().map(Vec::len).max().unwrap_or(0);
-        Self((0..bins).map(|k| CovariancesAt::from_draws(draws, swing, k)).collect())
+        let lengths: Vec<usize> = draws[0].iter().map(Vec::len).collect();
+        let bins = lengths.iter().copied().max().unwrap_or(0);
+        // Neighbouring frequencies are averaged over some of the same ones.
+        let noises = products(draws, bins);
+        let swings = products(std::slice::from_ref(&swing), bins);
+        let at = |k: usize| {
+            let active: Vec<usize> = (0..lengths.len()).filter(|&c| lengths[c] > k).collect();
+            let mean = |of: &[DMatrix<f64>], reach: usize, draws: u32| {
+                let (mut sum, mut count) = (DMatrix::zeros(lengths.len(), lengths.len()), 0);
+                let reached = |&j: &usize| active.iter().all(|&c| lengths[c] > j);
+                for j in (k.saturating_sub(reach)..=k + reach).filter(reached) {
+                    sum += &of[j];
+                    count += draws;
+                }
+                sum.select_rows(&active).select_columns(&active) / f64::from(count)
+            };
+            let reach = NEIGHBOURS.max((SHARE * k as f64) as usize);
+            let mut noise = mean(&noises, reach, draws.len() as u32);
+            // A hair of the diagonal keeps channels without noise from being singular.
+            for i in 0..active.len() {
+                noise[(i, i)] = noise[(i, i)] * (1.0 + 1e-6) + 1e-30;
+            }
+            // A swing is sharper than noise.
+            let swing = mean(&swings, NEIGHBOURS, 1);
+            CovariancesAt { active, noise, swing }
+        };
+        Self((0..bins).map(at).collect())
     }
 
     /// The noise in which the swing is so many times as large.
@@ -113,38 +138,21 @@ impl Covariances {
     }
 }
 
-impl CovariancesAt {
-    fn from_draws(draws: &[Vec<Vec<f64>>], swing: &[Vec<f64>], k: usize) -> Self {
-        let channels = draws[0].len();
-        let active: Vec<usize> = (0..channels).filter(|&c| draws[0][c].len() > k).collect();
-        let reach = NEIGHBOURS.max((SHARE * k as f64) as usize);
-        let size = active.len();
-        let [mut covariance, mut swinging] = [(); 2].map(|()| DMatrix::<f64>::zeros(size, size));
-        let (mut count, mut places) = (0.0, 0.0);
-        for j in k.saturating_sub(reach)..=k + reach {
-            if active.iter().any(|&c| draws[0][c].len() <= j) {
-                continue;
+/// Σ over draws of the products of channels at each frequency, zero of channels that do not reach it.
+fn products<D: AsRef<[Vec<f64>]>>(draws: &[D], bins: usize) -> Vec<DMatrix<f64>> {
+    let channels = draws.first().map_or(0, |draw| draw.as_ref().len());
+    let mut vector = DVector::zeros(channels);
+    let at = |k: usize| {
+        let mut sum = DMatrix::zeros(channels, channels);
+        for draw in draws {
+            for (number, channel) in vector.iter_mut().zip(draw.as_ref()) {
+                *number = channel.get(k).copied().unwrap_or(0.0);
             }
-            let at = |draw: &[Vec<f64>]| DVector::from_fn(size, |i, _| draw[active[i]][j]);
-            for draw in draws {
-                let vector = at(draw);
-                covariance.ger(1.0, &vector, &vector, 1.0);
-                count += 1.0;
-            }
-            // A swing is sharper than noise.
-            if j.abs_diff(k) <= NEIGHBOURS {
-                let vector = at(swing);
-                swinging.ger(1.0, &vector, &vector, 1.0);
-                places += 1.0;
-            }
+            sum.ger(1.0, &vector, &vector, 1.0);
         }
-        covariance /= count;
-        // A hair of the diagonal keeps channels without noise from being singular.
-        for i in 0..size {
-            covariance[(i, i)] = covariance[(i, i)] * (1.0 + 1e-6) + 1e-30;
-        }
-        Self { active, noise: covariance, swing: swinging / f64::max(places, 1.0) }
-    }
+        sum
+    };
+    (0..bins).map(at).collect()
 }
 
 impl Noise {
@@ -156,14 +164,18 @@ impl Noise {
 
     /// Coefficients in units of the noise: independent, of variance one, if they are noise.
     pub fn whiten(&self, coefficients: &[Vec<f64>]) -> DVector<f64> {
-        let mut white = Vec::new();
+        let mut white = DVector::zeros(self.active.iter().map(Vec::len).sum());
+        let mut begun = 0;
         for (k, (factor, active)) in self.factors.iter().zip(&self.active).enumerate() {
-            let vector =
-                DVector::from_iterator(active.len(), active.iter().map(|&c| coefficients[c][k]));
-            let solved = factor.l_dirty().solve_lower_triangular(&vector);
-            white.extend(solved.iter().flat_map(|v| v.iter().copied()));
+            let mut own = white.rows_mut(begun, active.len());
+            for (number, &channel) in own.iter_mut().zip(active) {
+                *number = coefficients[channel][k];
+            }
+            // A factor of a covariance has no zero on its diagonal.
+            factor.l_dirty().solve_lower_triangular_mut(&mut own);
+            begun += active.len();
         }
-        DVector::from_vec(white)
+        white
     }
 
     /// Logarithm of the determinant of the covariance, of the swing aside: what a model pays for being

@@ -79,15 +79,33 @@ enum EffortSource<'a> {
     None,
 }
 
-/// A model beside a view of a recording.
+/// A model beside a view of a recording, and what of the one is read beside the other.
 struct Look<'a> {
     view: &'a View,
     mechanism: &'a Mechanism,
     basis: &'a Basis,
-    /// Rate of each driven joint's reading.
-    rates: Vec<Option<Vec<f64>>>,
+    /// What the encoder of each drive shows, where its rate can be had.
+    encoders: Vec<Option<Encoder>>,
     /// What each drive with a sampled controller gives by its recorded outputs.
     asked: Vec<Option<Vec<f64>>>,
+    /// Drives whose law can be held against their measured effort, with the sensor of that.
+    laws: Vec<(usize, usize)>,
+    /// Where the effort of each joint of the basis comes from, if anybody knows it.
+    efforts: Vec<Option<EffortSource<'a>>>,
+    /// The same of drives that the basis does not read.
+    outside: Vec<(JointIndex, EffortSource<'a>)>,
+    /// Measured positions that the basis does not need, and accelerations: the sensor, and how late and how large it shows
+    /// what it reads, its waves among that.
+    others: Vec<(usize, Sensor)>,
+}
+
+/// What an encoder shows its drive.
+struct Encoder {
+    sensor: usize,
+    /// How late that is: what else an encoder gets wrong its drive gets wrong, too.
+    late: Sensor,
+    /// Rate of its reading.
+    rate: Vec<f64>,
 }
 
 /// The residuals of a view under a mechanism on some rows; none where the measured motion leads it where it
@@ -99,8 +117,7 @@ pub fn residuals(
     rows: Range<usize>,
     motions: &Motions,
 ) -> Option<Residuals> {
-    let (rates, asked) = (rates(view, mechanism), asked(view, mechanism));
-    let look = Look { view, mechanism, basis, rates, asked };
+    let look = Look::new(view, mechanism, basis);
     let mut found = Residuals::default();
     look.names(&mut found);
     let poses = motions.of(view, mechanism, basis, rows.clone())?;
@@ -111,12 +128,15 @@ pub fn residuals(
     Some(found)
 }
 
-fn rates(view: &View, mechanism: &Mechanism) -> Vec<Option<Vec<f64>>> {
-    let rate = |drive: &crate::mechanism::Actuator| {
+fn encoders(view: &View, mechanism: &Mechanism) -> Vec<Option<Encoder>> {
+    let of = |drive: &crate::mechanism::Actuator| {
         let sensor = position_sensor(mechanism, drive.joint)?;
-        Some(derivative(view.plain(sensor)?, view.interval))
+        let rate = derivative(view.plain(sensor)?, view.interval);
+        let shows = mechanism.sensors[sensor].clone();
+        let late = Sensor { scale: 1.0, offset: 0.0, waves: Vec::new(), ..shows };
+        Some(Encoder { sensor, late, rate })
     };
-    mechanism.actuators.iter().map(rate).collect()
+    mechanism.actuators.iter().map(of).collect()
 }
 
 /// Efforts of drives with sampled controllers, out of what these were recorded to ask for.
@@ -132,44 +152,56 @@ fn asked(view: &View, mechanism: &Mechanism) -> Vec<Option<Vec<f64>>> {
 }
 
 impl<'a> Look<'a> {
-    fn drive_of(&self, joint: JointIndex) -> Option<usize> {
-        self.mechanism.actuators.iter().position(|drive| drive.joint == joint)
+    fn new(view: &'a View, mechanism: &'a Mechanism, basis: &'a Basis) -> Self {
+        let (encoders, asked) = (encoders(view, mechanism), asked(view, mechanism));
+        let (laws, efforts, outside, others) = Default::default();
+        let mut look =
+            Self { view, mechanism, basis, encoders, asked, laws, efforts, outside, others };
+        let drives = 0..mechanism.actuators.len();
+        look.laws = drives.clone().filter_map(|drive| Some((drive, look.law_of(drive)?))).collect();
+        look.efforts = basis.joints.iter().map(|&joint| look.effort(joint)).collect();
+        let joints = drives.map(|drive| mechanism.actuators[drive].joint);
+        let outside = joints.filter(|joint| !basis.joints.contains(joint));
+        look.outside = outside.filter_map(|joint| Some((joint, look.effort(joint)?))).collect();
+        let bare = |i: usize| (i, Sensor { waves: Vec::new(), ..mechanism.sensors[i].clone() });
+        let others = (0..mechanism.sensors.len()).filter(|&i| look.is_other(i));
+        look.others = others.map(bare).collect();
+        look
     }
 
-    /// Drives whose law can be held against their measured effort, with the sensors of effort and position.
-    fn laws(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        (0..self.mechanism.actuators.len()).filter_map(|drive| {
-            let known = match self.mechanism.actuators[drive].drive {
-                Drive::Servo { .. } => self.rates[drive].is_some(),
-                Drive::Effort => true,
-                Drive::Prescribed | Drive::Sampled(_) => false,
-            };
-            let effort = effort_sensor(self.mechanism, drive)?;
-            (known && self.view.plain(effort).is_some()).then_some((drive, effort))
-        })
+    /// The sensor of a drive's effort, if its law can be held against that.
+    fn law_of(&self, drive: usize) -> Option<usize> {
+        let known = match self.mechanism.actuators[drive].drive {
+            Drive::Servo { .. } => self.encoders[drive].is_some(),
+            Drive::Effort => true,
+            Drive::Prescribed | Drive::Sampled(_) => false,
+        };
+        let effort = effort_sensor(self.mechanism, drive)?;
+        (known && self.view.plain(effort).is_some()).then_some(effort)
     }
 
-    /// Measured positions that the basis does not need, and accelerations, by sensor.
-    fn others(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.mechanism.sensors.len()).filter(|&i| {
-            let reads = self.mechanism.sensors[i].reads;
-            let position = !matches!(
-                reads,
-                Reads::Command(_) | Reads::Added(_) | Reads::Effort(_) | Reads::Output(_)
-            );
-            position && !self.basis.needs(i) && self.view.plain(i).is_some()
-        })
+    /// Whether a sensor measured a position that the basis does not need, or an acceleration.
+    fn is_other(&self, sensor: usize) -> bool {
+        let reads = self.mechanism.sensors[sensor].reads;
+        let position = !matches!(
+            reads,
+            Reads::Command(_) | Reads::Added(_) | Reads::Effort(_) | Reads::Output(_)
+        );
+        position && !self.basis.needs(sensor) && self.view.plain(sensor).is_some()
     }
 
     fn effort(&self, joint: JointIndex) -> Option<EffortSource<'a>> {
-        let Some(drive) = self.drive_of(joint) else { return Some(EffortSource::None) };
+        let of_joint = |drive: &crate::mechanism::Actuator| drive.joint == joint;
+        let Some(drive) = self.mechanism.actuators.iter().position(of_joint) else {
+            return Some(EffortSource::None);
+        };
         if let Some(sensor) = effort_sensor(self.mechanism, drive)
             && let (Some(smooth), Some(slow)) = (self.view.smooth(sensor), self.view.slow(sensor))
         {
             return Some(EffortSource::Measured(sensor, smooth, slow));
         }
         match self.mechanism.actuators[drive].drive {
-            Drive::Servo { .. } if self.rates[drive].is_some() => Some(EffortSource::Law(drive)),
+            Drive::Servo { .. } if self.encoders[drive].is_some() => Some(EffortSource::Law(drive)),
             Drive::Effort => Some(EffortSource::Law(drive)),
             Drive::Sampled(_) if self.asked[drive].is_some() => Some(EffortSource::Asked(drive)),
             // What holds a prescribed coordinate is anything, a servo's effort is unknown without its error, and a
@@ -187,18 +219,17 @@ impl<'a> Look<'a> {
             found.names.push(Name { kind, of: of.to_owned(), unit });
             found.signals.push(Signal { values: Vec::new(), band });
         };
-        for (drive, _) in self.laws() {
+        for &(drive, _) in &self.laws {
             let actuator = &self.mechanism.actuators[drive];
             add(ResidualKind::Law, &actuator.name, unit(actuator.joint), PLAIN_BAND);
         }
-        for &joint in &self.basis.joints {
-            if self.effort(joint).is_some() {
+        for (&joint, effort) in self.basis.joints.iter().zip(&self.efforts) {
+            if effort.is_some() {
                 let name = self.mechanism.joint_name(joint);
                 add(ResidualKind::Dynamics, name, unit(joint), DYNAMICS_BAND);
             }
         }
-        for sensor in self.others() {
-            let of = &self.mechanism.sensors[sensor];
+        for (_, of) in &self.others {
             let (kind, band) = match of.reads {
                 Reads::Acceleration(..) => (ResidualKind::Acceleration, DYNAMICS_BAND),
                 _ => (ResidualKind::Closure, PLAIN_BAND),
@@ -211,16 +242,9 @@ impl<'a> Look<'a> {
     fn law(&self, drive: usize, command: Command, row: usize) -> f64 {
         let actuator = &self.mechanism.actuators[drive];
         let read = || {
-            let sensor = position_sensor(self.mechanism, actuator.joint)?;
-            // What an encoder gets wrong its drive gets wrong, too.
-            let late = Sensor {
-                scale: 1.0,
-                offset: 0.0,
-                waves: Vec::new(),
-                ..self.mechanism.sensors[sensor].clone()
-            };
-            let rate = self.view.shown(&late, self.rates[drive].as_ref()?, row);
-            Some([self.view.shown(&late, self.view.plain(sensor)?, row), rate])
+            let Encoder { sensor, late, rate } = self.encoders[drive].as_ref()?;
+            let rate = self.view.shown(late, rate, row);
+            Some([self.view.shown(late, self.view.plain(*sensor)?, row), rate])
         };
         match actuator.drive {
             Drive::Effort => command.position,
@@ -231,9 +255,18 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// What a drive with a sampled controller gives at a row.
-    fn given(&self, drive: usize, row: usize) -> f64 {
-        self.asked[drive].as_ref().map_or(0.0, |asked| asked[row])
+    /// What a joint is given at a row, and the slow part of it.
+    fn given(&self, source: &EffortSource, commands: &[Command], row: usize) -> [f64; 2] {
+        match *source {
+            EffortSource::Measured(sensor, smooth, slow) => {
+                [smooth, slow].map(|series| self.looked_at(sensor, series, row))
+            }
+            EffortSource::Asked(drive) => {
+                [self.asked[drive].as_ref().map_or(0.0, |asked| asked[row]); 2]
+            }
+            EffortSource::Law(drive) => [self.law(drive, commands[drive], row); 2],
+            EffortSource::None => [0.0; 2],
+        }
     }
 
     /// What a sensor looked at, at a row of one of its series.
@@ -257,28 +290,19 @@ impl<'a> Look<'a> {
                 signal.values.push(value);
             }
         };
-        for (drive, sensor) in self.laws() {
+        for &(drive, sensor) in &self.laws {
             let measured = self.looked_at(sensor, self.view.plain(sensor)?, row);
             push(measured - self.law(drive, commands[drive], row));
         }
-        let efforts: Vec<Option<[f64; 2]>> = self
-            .basis
-            .joints
-            .iter()
-            .map(|&joint| {
-                Some(match self.effort(joint)? {
-                    EffortSource::Measured(sensor, smooth, slow) => {
-                        [smooth, slow].map(|series| self.looked_at(sensor, series, row))
-                    }
-                    EffortSource::Asked(drive) => [self.given(drive, row); 2],
-                    EffortSource::Law(drive) => [self.law(drive, commands[drive], row); 2],
-                    EffortSource::None => [0.0; 2],
-                })
-            })
-            .collect();
+        let given = |source: &EffortSource| self.given(source, &commands, row);
+        let efforts: Vec<Option<[f64; 2]>> =
+            self.efforts.iter().map(|source| source.as_ref().map(given)).collect();
         let slow: Vec<Option<f64>> = efforts.iter().map(|e| e.map(|[_, slow]| slow)).collect();
+        let outside = self.outside.iter();
+        let applied: Vec<(JointIndex, f64)> =
+            outside.map(|(joint, source)| (*joint, given(source)[0])).collect();
         let Taken { efforts: taken, mut leaning, .. } =
-            pose.taken(self.mechanism, t, &slow, &self.applied(&commands, row))?;
+            pose.taken(self.mechanism, t, &slow, &applied)?;
         let states = pose.states(self.mechanism);
         for (leaning, centred) in leaning.iter_mut().zip(&states) {
             *leaning = between(centred, leaning, self.basis.lean);
@@ -292,41 +316,16 @@ impl<'a> Look<'a> {
         let angles: Vec<f64> =
             turned.map(|(state, near)| angle_near(state.rotation, *near)).collect();
         self.fill(pose, &leaning, &angles, now);
-        for sensor in self.others() {
-            let of = &self.mechanism.sensors[sensor];
+        for (sensor, errors) in &self.others {
+            let of = &self.mechanism.sensors[*sensor];
             let states = match of.reads {
                 Reads::Acceleration(..) => &states,
                 _ => &leaning,
             };
             let reading = of.reading(self.mechanism, states, &angles, now);
-            // Waves are among what it reads.
-            let errors = Sensor { waves: Vec::new(), ..of.clone() };
-            push(self.view.shown(&errors, self.view.plain(sensor)?, row) - reading);
+            push(self.view.shown(errors, self.view.plain(*sensor)?, row) - reading);
         }
         Some(())
-    }
-
-    /// Efforts of drives that the basis does not read.
-    fn applied(&self, commands: &[Command], row: usize) -> Vec<(JointIndex, f64)> {
-        let outside = |drive: &usize| {
-            let joint = self.mechanism.actuators[*drive].joint;
-            !self.basis.joints.contains(&joint)
-        };
-        let drives = (0..self.mechanism.actuators.len()).filter(outside);
-        drives
-            .map(|drive| {
-                let joint = self.mechanism.actuators[drive].joint;
-                let effort = match self.effort(joint) {
-                    Some(EffortSource::Measured(sensor, smooth, _)) => {
-                        self.looked_at(sensor, smooth, row)
-                    }
-                    Some(EffortSource::Asked(drive)) => self.given(drive, row),
-                    Some(EffortSource::Law(drive)) => self.law(drive, commands[drive], row),
-                    Some(EffortSource::None) | None => 0.0,
-                };
-                (joint, effort)
-            })
-            .collect()
     }
 
     /// What sensors look at beside states.

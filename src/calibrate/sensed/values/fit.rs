@@ -75,6 +75,16 @@ impl FitTarget<'_> {
         })
     }
 
+    /// What an effect changes of the residual, as it does beside the declared model; none where there is no such machine.
+    pub fn response(&self, effect: &Setting) -> Option<DVector<f64>> {
+        let mut all = Vec::new();
+        for segment in self.on {
+            let response = self.problem.response(effect, segment)?;
+            all.extend(self.baseline.whiten(segment, &response)?.iter());
+        }
+        Some(DVector::from_vec(all))
+    }
+
     /// Derivative of the residual by each value.
     pub fn jacobian(&self, fit: &Fit) -> Option<DMatrix<f64>> {
         let look = |values: &[f64]| Some(self.look(&with_values(&fit.effects, values))?.white);
