@@ -103,7 +103,7 @@ pub struct RigProblem {
     pub(super) simulations: AtomicUsize,
     pub(super) work: AtomicU64,
     motions: Motions,
-    pub(super) responses: Responses,
+    pub(in crate::calibrate::sensed) responses: Responses,
     /// Run by run, what makes a machine that rests swing as was recorded, where it does not as it is let go.
     kicks: Mutex<Vec<Option<OutputKicks>>>,
     /// Machines as they were let go: the start of a free one costs more than a simulation.
