@@ -1,8 +1,8 @@
 //! The one way in: a rig and recordings of any machine, and the folder of what it lacks.
 //!
-//! Every machine is calibrated by its sensors ([`sensed`]), instruments and noise among what may be wrong. Where that does not
-//! explain a 3-RPR whose twelve columns are all there by one effect, it is tried by the method that was made for it as well, which
-//! follows rattling joints and pairs of effects further, but holds its instruments for right.
+//! Every machine is calibrated by its sensors ([`sensed`]), instruments and noise among what may be wrong. A 3-RPR whose
+//! twelve columns are all there is tried by the method that was made for it first, which follows rattling joints and pairs of
+//! effects further, but holds its instruments for right: what it finds missing is found by both.
 
 use super::measured::recording;
 use super::results::outcome::Verdict;
@@ -114,20 +114,16 @@ pub fn into_folder(
         }
         Method::Both(own, by_sensors) => (own, by_sensors),
     };
-    // A model that breaks down there takes nothing from what the other method finds.
-    let seen = by_sensors.and_then(|prepared| {
-        let sensed::prepare::Prepared { rig, recordings, .. } = *prepared;
-        by_residuals(rig, recordings, without, tell).ok()
-    });
-    let Some(mut other) = seen else {
-        return Ok(result::made(*own, without, tell)?.written(folder)?.into());
-    };
-    let sensed::report::Report { verdict, effects, errors, noises, .. } = &other.report;
-    let seen = Weighed::new(*verdict, effects, errors, noises.len());
-    if seen.is_enough() {
-        return Ok(other.written(folder)?.into());
-    }
     let mut own = result::made(*own, without, tell)?;
+    let complete = own.report.verdict == Verdict::NothingMissing;
+    let Some(by_sensors) = by_sensors.filter(|_| !complete) else {
+        return Ok(own.written(folder)?.into());
+    };
+    let sensed::prepare::Prepared { rig, recordings, .. } = *by_sensors;
+    // A model that breaks down there takes nothing from what was found.
+    let Ok(mut other) = by_residuals(rig, recordings, without, tell) else {
+        return Ok(own.written(folder)?.into());
+    };
     let (seconds, runs) = (own.report.wall_s, own.report.simulations);
     own.report.wall_s += other.report.wall_s;
     own.report.simulations += other.report.simulations;
@@ -135,7 +131,8 @@ pub fn into_folder(
     other.report.simulations += runs;
     let LegsReport { verdict, effects, errors, .. } = &own.report;
     let first = Weighed::new(*verdict, effects, errors, 0);
-    match seen.goes_before(&first) {
+    let sensed::report::Report { verdict, effects, errors, noises, .. } = &other.report;
+    match Weighed::new(*verdict, effects, errors, noises.len()).goes_before(&first) {
         true => Ok(other.written(folder)?.into()),
         false => Ok(own.written(folder)?.into()),
     }
@@ -165,15 +162,6 @@ impl Weighed {
             effects: effects.len(),
             instruments: effects.iter().all(shown) && effects.len() + noises > 0,
             missed: worst(errors).map_or(0.0, |error| error.after / error.floor),
-        }
-    }
-
-    /// Whether nothing that holds instruments for right says more: one effect explains everything, or instruments alone are wrong.
-    fn is_enough(&self) -> bool {
-        match self.verdict {
-            Verdict::Explained => self.instruments || self.effects == 1,
-            Verdict::NothingMissing => self.instruments,
-            Verdict::Unexplained => false,
         }
     }
 
@@ -248,8 +236,6 @@ mod tests {
             !wear.goes_before(&wear) && !anchors.goes_before(&wear) && !blind.goes_before(&wear)
         );
         assert!(!nothing.goes_before(&wear));
-        assert!([&wear, &camera, &noise].iter().all(|found| found.is_enough()));
-        assert!(![&anchors, &nothing, &blind].iter().any(|found| found.is_enough()));
         let nearer = answer(Verdict::Unexplained, 1, false, 2.0);
         assert!(nearer.goes_before(&nothing) && !nothing.goes_before(&nearer));
     }
