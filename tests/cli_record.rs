@@ -87,8 +87,8 @@ fn what_cannot_be_recorded_is_refused() {
     }
     place
         .refused(&format!("record {RIG} --set contact.law=native"), &["contact.law", "hertz-step"]);
-    // Hours of computing, told after a second.
-    let says = ["hours of computing", "--yes", "--duration"];
+    // Hours of computing, told after a second; days on a busy computer.
+    let says = ["of computing", "--yes", "--duration"];
     place.refused(&format!("record {PLANAR} --duration 9000 --rate 200"), &says);
 }
 

@@ -95,27 +95,29 @@ impl Covariances {
         let lengths: Vec<usize> = draws[0].iter().map(Vec::len).collect();
         let bins = lengths.iter().copied().max().unwrap_or(0);
         // Neighbouring frequencies are averaged over some of the same ones.
-        let noises = products(draws, bins);
-        let swings = products(std::slice::from_ref(&swing), bins);
+        let noises = by_frequency(draws, bins);
+        let swings = by_frequency(std::slice::from_ref(&swing), bins);
         let at = |k: usize| {
             let active: Vec<usize> = (0..lengths.len()).filter(|&c| lengths[c] > k).collect();
-            let mean = |of: &[DMatrix<f64>], reach: usize, draws: u32| {
-                let (mut sum, mut count) = (DMatrix::zeros(lengths.len(), lengths.len()), 0);
+            let mean = |of: &[Vec<DVector<f64>>], reach: usize| {
+                let (mut sum, mut count) = (DMatrix::zeros(lengths.len(), lengths.len()), 0.0);
                 let reached = |&j: &usize| active.iter().all(|&c| lengths[c] > j);
                 for j in (k.saturating_sub(reach)..=k + reach).filter(reached) {
-                    sum += &of[j];
-                    count += draws;
+                    for vector in &of[j] {
+                        sum.ger(1.0, vector, vector, 1.0);
+                        count += 1.0;
+                    }
                 }
-                sum.select_rows(&active).select_columns(&active) / f64::from(count)
+                sum.select_rows(&active).select_columns(&active) / count
             };
             let reach = NEIGHBOURS.max((SHARE * k as f64) as usize);
-            let mut noise = mean(&noises, reach, draws.len() as u32);
+            let mut noise = mean(&noises, reach);
             // A hair of the diagonal keeps channels without noise from being singular.
             for i in 0..active.len() {
                 noise[(i, i)] = noise[(i, i)] * (1.0 + 1e-6) + 1e-30;
             }
             // A swing is sharper than noise.
-            let swing = mean(&swings, NEIGHBOURS, 1);
+            let swing = mean(&swings, NEIGHBOURS);
             CovariancesAt { active, noise, swing }
         };
         Self((0..bins).map(at).collect())
@@ -138,21 +140,14 @@ impl Covariances {
     }
 }
 
-/// Σ over draws of the products of channels at each frequency, zero of channels that do not reach it.
-fn products<D: AsRef<[Vec<f64>]>>(draws: &[D], bins: usize) -> Vec<DMatrix<f64>> {
-    let channels = draws.first().map_or(0, |draw| draw.as_ref().len());
-    let mut vector = DVector::zeros(channels);
-    let at = |k: usize| {
-        let mut sum = DMatrix::zeros(channels, channels);
-        for draw in draws {
-            for (number, channel) in vector.iter_mut().zip(draw.as_ref()) {
-                *number = channel.get(k).copied().unwrap_or(0.0);
-            }
-            sum.ger(1.0, &vector, &vector, 1.0);
-        }
-        sum
+/// Each draw's channels at each frequency, zero of those that do not reach it.
+fn by_frequency<D: AsRef<[Vec<f64>]>>(draws: &[D], bins: usize) -> Vec<Vec<DVector<f64>>> {
+    let at = |draw: &D, k: usize| {
+        let channels = draw.as_ref().iter();
+        let numbers: Vec<f64> = channels.map(|c| c.get(k).copied().unwrap_or(0.0)).collect();
+        DVector::from_vec(numbers)
     };
-    (0..bins).map(at).collect()
+    (0..bins).map(|k| draws.iter().map(|draw| at(draw, k)).collect()).collect()
 }
 
 impl Noise {
