@@ -100,9 +100,8 @@ pub const JUDGED: usize = 24;
 pub const MOSTLY: f64 = 0.5;
 
 /// Share of the best rival's drop of cost that a rival has to bring by its first simulation to be simulated again
-/// at the values that this led to: what trials of the 3-RPR gave. And where some rival leaves no more than noise: values that
-/// are a third off by looks leave a tenth, for what is left grows with the square.
-pub const PROMISING: [f64; 2] = [0.6, 0.9];
+/// at the values that this led to: what trials of the 3-RPR gave.
+pub const PROMISING: f64 = 0.6;
 
 /// Simulations of a run after which no further effect is looked for: what two cores do in two minutes, at some 0.8 s for one of
 /// 3 s. A round with four hypotheses beside each other takes some 150 of them where none of these is all that is missing.

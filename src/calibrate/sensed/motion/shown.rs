@@ -1,7 +1,7 @@
 //! Coordinates and poses as sensors and commands show them, as commands and motions of a machine.
 
 use super::simulate::deviation;
-use crate::calibrate::sensed::recorded::view::{View, effort_sensor, position_sensor};
+use crate::calibrate::sensed::recorded::view::{View, effort_sensor};
 use crate::measure::filter::derivative;
 use crate::mechanism::motion::{Motion, PathPoint};
 use crate::mechanism::{Command, Commands, Drive, JointIndex, Mechanism, TrackerFrame};
@@ -48,34 +48,13 @@ pub fn commanded(view: &View, mechanism: &Mechanism, drive: usize) -> [Vec<f64>;
 }
 
 /// Takes from the coordinate of a drive's end what lies between it and its joint: the encoder sits at the drive's end of
-/// what gives way. Where nobody knows the effort, that is unknown.
+/// what gives way. Where nobody measured the effort, that is unknown.
 fn behind(view: &View, mechanism: &Mechanism, drive: usize, position: &mut [f64]) {
     let Some(link) = mechanism.actuators[drive].transmission else { return };
-    let Some((effort, noise)) = effort(view, mechanism, drive) else { return };
-    position.iter_mut().zip(effort).for_each(|(q, force)| *q -= link.pressed(force, noise));
-}
-
-/// Effort of a drive in N or N·m at each row, and its noise: as it was measured, or by a servo's law, `k_p e + k_d ė` of the error
-/// e that its encoder shows.
-fn effort(view: &View, mechanism: &Mechanism, drive: usize) -> Option<(Vec<f64>, f64)> {
-    let of = |sensor: usize| {
-        let read = view.smooth(sensor)?;
-        Some((read.to_vec(), deviation(&mechanism.sensors[sensor], read)))
-    };
-    if let Some(measured) = effort_sensor(mechanism, drive).and_then(of) {
-        return Some(measured);
-    }
-    let Drive::Servo { stiffness, damping } = mechanism.actuators[drive].drive else { return None };
-    let (read, noise) =
-        position_sensor(mechanism, mechanism.actuators[drive].joint).and_then(of)?;
-    let mut commands = vec![Command::default(); mechanism.actuators.len()];
-    let efforts = read.iter().zip(derivative(&read, view.interval)).enumerate();
-    let efforts = efforts.map(|(row, (position, rate))| {
-        mechanism.commands.at(row as f64 * view.interval, &mut commands);
-        let told = commands[drive];
-        stiffness * (told.position - position) + damping * (told.rate - rate)
-    });
-    Some((efforts.collect(), stiffness * noise))
+    let Some(sensor) = effort_sensor(mechanism, drive) else { return };
+    let Some(effort) = view.smooth(sensor) else { return };
+    let noise = deviation(&mechanism.sensors[sensor], effort);
+    position.iter_mut().zip(effort).for_each(|(q, force)| *q -= link.pressed(*force, noise));
 }
 
 /// What a sensor looked at, smoothed, at each row.

@@ -1,7 +1,6 @@
 //! A rig and the runs that it is held against.
 
 use super::residual::{Residuals, residuals};
-use super::responses::Responses;
 use crate::calibrate::measured::spectrum::transform;
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::motion::motions::{Motions, Poses};
@@ -103,7 +102,6 @@ pub struct RigProblem {
     pub(super) simulations: AtomicUsize,
     pub(super) work: AtomicU64,
     motions: Motions,
-    pub(in crate::calibrate::sensed) responses: Responses,
     /// Run by run, what makes a machine that rests swing as was recorded, where it does not as it is let go.
     kicks: Mutex<Vec<Option<OutputKicks>>>,
     /// Machines as they were let go: the start of a free one costs more than a simulation.
@@ -154,7 +152,9 @@ impl RigProblem {
         };
         let runs: Vec<Run> = recordings.into_iter().map(run).collect();
         let kicks = Mutex::new(vec![None; runs.len()]);
-        let (simulations, work, motions, responses) = Default::default();
+        let (simulations, work) = (AtomicUsize::new(0), AtomicU64::new(0));
+        let motions = Motions::default();
+        let released = Mutex::new(LruCache::new(LET_GO));
         let problem = Self {
             rig,
             declared,
@@ -165,9 +165,8 @@ impl RigProblem {
             simulations,
             work,
             motions,
-            responses,
             kicks,
-            released: Mutex::new(LruCache::new(LET_GO)),
+            released,
         };
         if problem.names().is_some_and(|names| names.is_empty()) {
             let message = "say nothing that a model could get wrong: how the machine moves, and nothing beside it";

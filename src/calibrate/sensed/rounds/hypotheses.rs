@@ -59,7 +59,7 @@ impl Search<'_> {
     }
 
     /// Simulates rivals again at the values that their first simulations led to, those that promise nearly as much
-    /// as the best of them; where one leaves no more than noise, those that all but do: it is held against the others later.
+    /// as the best of them.
     fn again(
         &self,
         model: &Model,
@@ -67,9 +67,7 @@ impl Search<'_> {
         tried: &mut [Tried],
     ) -> Result<(), Stopped> {
         let best = found.iter().map(Model::cost).fold(model.cost(), f64::min);
-        let explained = found.iter().any(|rival| self.is_noise(rival));
-        let share = PROMISING[usize::from(explained)];
-        let enough = model.cost() - share * (model.cost() - best);
+        let enough = model.cost() - PROMISING * (model.cost() - best);
         for rival in found.iter_mut().filter(|rival| rival.cost() <= enough) {
             let Some(settled) = self.settle(&rival.fit.effects, 1)? else { continue };
             if !settled.baseline.rattles || settled.misfit < rival.misfit {
