@@ -1,7 +1,8 @@
 //! What must hold of any good calibration, on the recordings in `assets/rigs`: an independent simulator's,
 //! whose hidden effects are written nowhere in this repository.
 //!
-//! Slow: a calibration takes a minute or two.
+//! Slow: a calibration takes a minute or two. Trials with effects that are known are ignored unless asked for
+//! (`cargo test --release --test val_calibrate -- --ignored`).
 
 use freeplay::calibrate::evidence::{as_good, evidence};
 use freeplay::calibrate::left::{is_noise, left};
@@ -215,6 +216,7 @@ fn a_worn_joint_that_rattles_settles_at_its_clearance() {
 
 /// The same by its sensors alone, as any mechanism.
 #[test]
+#[ignore = "two minutes"]
 fn by_sensors_a_worn_joint_that_rattles_settles_at_its_clearance() {
     let hidden = vec!["joint-wear".into()];
     let trial = LegsTrial { hidden, size: 3.0, gravity: false, withheld: false, seed: 11_050 };
@@ -252,6 +254,7 @@ fn by_sensors(case: &LegsCase) -> RigProblem {
 /// another frequency. The values of a payload and a worn joint stood still far off (the payload 30 mm
 /// beside its place), and an anchor offset was nearer.
 #[test]
+#[ignore = "two minutes"]
 fn a_payload_and_a_worn_joint_settle_from_far_off() {
     let hidden = vec!["payload".into(), "joint-wear".into()];
     let trial = LegsTrial { hidden, size: 3.0, gravity: true, withheld: false, seed: 16_000 };
@@ -275,6 +278,7 @@ fn a_payload_and_a_worn_joint_settle_from_far_off() {
 /// An anchor moved along its leg and an encoder's wrong zero are one and the same where joints rattle. The
 /// difference of two noisy misfits decided, half of the time for what is seldom met.
 #[test]
+#[ignore = "two minutes"]
 fn of_two_effects_that_do_as_well_the_common_one_is_named_and_the_other_said() {
     let hidden = vec!["anchor-offset".into()];
     let trial = LegsTrial { hidden, size: 1.0, gravity: false, withheld: false, seed: 12_040 };
@@ -293,6 +297,7 @@ fn of_two_effects_that_do_as_well_the_common_one_is_named_and_the_other_said() {
 /// machine. A regression: whether joints rattle was decided on the declared machine, so that the truth itself
 /// missed the recording by eight times noise, and the verdict was `unexplained`, 126 floors off.
 #[test]
+#[ignore = "three minutes"]
 fn a_machine_that_rattles_under_what_it_lacks_is_understood() {
     let hidden = vec!["unbalance".into()];
     let trial = LegsTrial { hidden, size: 1.0, gravity: true, withheld: false, seed: 40_130 };
@@ -329,6 +334,7 @@ fn a_complete_model_is_let_go_although_one_like_it_was_kicked() {
 /// load does not turn. A regression: that was the verdict, although the platform swings otherwise under it
 /// and its simulation missed the recording by 3.3 floors.
 #[test]
+#[ignore = "two minutes"]
 fn what_simulations_miss_is_not_explained() {
     let hidden = vec!["joint-wear".into()];
     let trial = LegsTrial { hidden, size: 3.0, gravity: true, withheld: true, seed: 40_055 };
@@ -342,6 +348,7 @@ fn what_simulations_miss_is_not_explained() {
 /// alone is noise, only that recorded joints hardly rattle. A regression: a residual that is noise ended the
 /// search, friction was not found, and the drag's torque was wrong by a fifth.
 #[test]
+#[ignore = "two minutes"]
 fn what_calms_joints_is_found_where_nothing_stands_above_noise() {
     let hidden = vec!["drag".into(), "journal-friction".into()];
     let trial = LegsTrial { hidden, size: 3.0, gravity: false, withheld: false, seed: 40_701 };
