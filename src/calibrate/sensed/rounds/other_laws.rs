@@ -2,7 +2,7 @@
 //! says which way they are. Whole simulations at a list of values do.
 
 use crate::calibrate::sensed::thresholds::NEAR;
-use crate::calibrate::sensed::values::linear::stepped_along;
+use crate::calibrate::sensed::values::linear::remains;
 use crate::calibrate::sensed::values::whole::Whole;
 use crate::effects::{ALL, Setting};
 use crate::mechanism::Mechanism;
@@ -26,12 +26,10 @@ pub(super) fn other_laws(
     (starts, left): (&[DVector<f64>], &DVector<f64>),
     least: f64,
 ) -> Vec<Setting> {
-    let remains =
-        |left: &DVector<f64>| Some(stepped_along(starts, starts.len(), left, &[], &[])?.0);
-    let Some(before) = remains(left) else { return Vec::new() };
+    let Some(before) = remains(starts, left) else { return Vec::new() };
     let gain = |start: &Setting| {
         let with = whole.look(&[own, std::slice::from_ref(start)].concat())?;
-        Some((before - remains(&with)?, start.clone()))
+        Some((before - remains(starts, &with)?, start.clone()))
     };
     let fresh = |form: &&Vec<Setting>| !own.iter().any(|effect| effect.is(&form[0]));
     let more = |a: &(f64, Setting), b: &(f64, Setting)| b.0.total_cmp(&a.0);

@@ -6,7 +6,7 @@ use super::search::Search;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
 use crate::calibrate::sensed::thresholds::{MOMENT, NEAR};
-use crate::calibrate::sensed::values::linear::stepped_along;
+use crate::calibrate::sensed::values::linear::{remains, stepped_along};
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::{Far, followed, shorter};
 use crate::calibrate::sensed::values::whole::Whole;
@@ -26,7 +26,13 @@ const AWAY: f64 = 10.0;
 /// in phase, and a machine has come up to speed.
 const SECONDS: f64 = 0.5;
 
-/// Candidates that are fitted to whole simulations, of those that take most off by one step of all their values.
+/// How often a step that keeps less than half of what it promises is halved: a long one of what hardly acts promises much.
+const HALVED: i32 = 3;
+
+/// How often one is doubled as long as that takes more off: what gives way acts the less by a hair the stiffer it is as declared.
+const DOUBLED: i32 = 4;
+
+/// Candidates that are fitted to whole simulations, of those that take most off some way along one step of all their values.
 const FITTED: usize = 3;
 
 impl Search<'_> {
@@ -114,28 +120,7 @@ impl Search<'_> {
         let Some(left) = whole.look(own) else { return Ok(Vec::new()) };
         let Some(starts) = whole.by_start(own, &left) else { return Ok(Vec::new()) };
         (self.tell)("simulating every effect for a moment");
-        let fresh = |candidate: &&Setting| {
-            candidate.kind.scan.is_none() && !own.iter().any(|effect| effect.is(candidate))
-        };
-        let candidates: Vec<&Setting> = self.candidates.iter().filter(fresh).collect();
-        let stepped = |candidate: &&Setting| {
-            let with =
-                |values: &[f64]| whole.look(&[own.as_slice(), &[candidate.with(values)]].concat());
-            linear_step(&with, (&self.problem.declared, candidate), &starts, &left)
-        };
-        let mut steps: Vec<(f64, Setting)> = candidates
-            .par_iter()
-            .filter_map(stepped)
-            .filter(|(gain, _)| *gain > price(model))
-            .collect();
-        steps.sort_by(|a, b| b.0.total_cmp(&a.0));
-        // Variants of one effect are one candidate.
-        let mut kept: Vec<Setting> = Vec::new();
-        for (_, start) in steps {
-            if kept.len() < FITTED && !kept.iter().any(|known| known.is(&start)) {
-                kept.push(start);
-            }
-        }
+        let mut kept = self.stepped(model, &whole, (&starts, &left));
         if follows {
             kept.extend(other_laws(
                 &whole,
@@ -147,21 +132,116 @@ impl Search<'_> {
         }
         Ok(kept)
     }
+
+    /// Candidates beside a model that simulations some way along one linear step of their values say most for, beside what other
+    /// coordinates to let the machine go from make up for, by which `starts` are the derivatives of what is `left`.
+    fn stepped(
+        &self,
+        model: &Model,
+        whole: &Whole,
+        (starts, left): (&[DVector<f64>], &DVector<f64>),
+    ) -> Vec<Setting> {
+        let own = &model.fit.effects;
+        let fresh = |candidate: &&Setting| {
+            candidate.kind.scan.is_none() && !own.iter().any(|effect| effect.is(candidate))
+        };
+        let candidates: Vec<&Setting> = self.candidates.iter().filter(fresh).collect();
+        let stepped = |candidate: &&Setting| {
+            let with =
+                |values: &[f64]| whole.look(&[own.as_slice(), &[candidate.with(values)]].concat());
+            linear_step(&with, (&self.problem.declared, candidate), starts, left)
+        };
+        let mut steps: Vec<Stepped> = candidates
+            .par_iter()
+            .filter_map(stepped)
+            .filter(|step| step.gain > price(model))
+            .collect();
+        steps.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        // Variants of one effect are one candidate.
+        let mut apart: Vec<Stepped> = Vec::new();
+        for step in steps {
+            if !apart.iter().any(|known| known.to.is(&step.to)) {
+                apart.push(step);
+            }
+        }
+        let mut tried: Vec<(f64, Setting)> = apart
+            .par_iter()
+            .filter_map(|step| step.tried(whole, own, starts, left))
+            .filter(|(gain, _)| *gain > price(model))
+            .collect();
+        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+        tried.into_iter().take(FITTED).map(|(_, start)| start).collect()
+    }
 }
 
-/// Drop of the sum of squares of what is `left` by one linear step of a candidate's values, beyond that by one of the
-/// coordinates from which a machine that nothing holds was let go, by which `starts` are the derivatives; and the candidate
-/// after it. None where such a machine cannot be.
+/// A candidate and one linear step of its values.
+struct Stepped {
+    /// Drop of the sum of squares that it promises.
+    gain: f64,
+    /// Before it.
+    from: Setting,
+    /// After it.
+    to: Setting,
+}
+
+impl Stepped {
+    /// What a simulation some way along the step takes off the sum of squares of what is `left` beside `own` effects, less what
+    /// other coordinates to let the machine go from make up for, by which `starts` are the derivatives; and the candidate there.
+    /// None where such a machine cannot be.
+    fn tried(
+        &self,
+        whole: &Whole,
+        own: &[Setting],
+        starts: &[DVector<f64>],
+        left: &DVector<f64>,
+    ) -> Option<(f64, Setting)> {
+        let before = remains(starts, left)?;
+        let gain = |times: f64| {
+            let there = self.times(times);
+            let seen = whole.look(&[own, std::slice::from_ref(&there)].concat())?;
+            Some((before - remains(starts, &seen)?, there))
+        };
+        let kept = |tried: &(f64, Setting)| tried.0 > 0.5 * self.gain;
+        let first = gain(1.0);
+        let Some(mut best) = first.clone().filter(kept) else {
+            let shorter = (1..=HALVED).filter_map(|halved| gain(0.5f64.powi(halved)));
+            return first.into_iter().chain(shorter).max_by(|a, b| a.0.total_cmp(&b.0));
+        };
+        for doubled in 1..=DOUBLED {
+            let more = gain(2.0f64.powi(doubled)).filter(|more| more.0 > best.0);
+            let Some(more) = more else { break };
+            best = more;
+        }
+        Some(best)
+    }
+
+    /// The candidate so many times along the step, as far as its values make sense.
+    fn times(&self, times: f64) -> Setting {
+        let bounds = free(std::slice::from_ref(&self.from)).into_iter().map(|free| free.bounds);
+        let ends = self.from.values().zip(self.to.values()).zip(bounds);
+        let values =
+            ends.map(
+                |(((_, from), (_, to)), [low, high])| {
+                    if from == to { from } else { (from + times * (to - from)).clamp(low, high) }
+                },
+            );
+        self.from.with(&values.collect::<Vec<f64>>())
+    }
+}
+
+/// A linear step of a candidate's values, whose gain is the drop of the sum of squares of what is `left` beyond that by one of the
+/// coordinates from which a machine that nothing holds was let go, by which `starts` are the derivatives. None where such a
+/// machine cannot be.
 fn linear_step(
     look: ResidualAt,
     (mechanism, candidate): (&Mechanism, &Setting),
     starts: &[DVector<f64>],
     left: &DVector<f64>,
-) -> Option<(f64, Setting)> {
+) -> Option<Stepped> {
     let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
     let neutral: Vec<f64> = candidate.values().map(|(_, value)| value).collect();
     let free = free(std::slice::from_ref(candidate));
-    let alone = stepped_along(starts, starts.len(), left, &[], &[])?.0;
+    let alone = remains(starts, left)?;
     let stepped = |columns: &[DVector<f64>], own: &[f64], free: &[Free]| {
         let all = [starts, columns].concat();
         let (least, change) = stepped_along(&all, starts.len(), left, own, free)?;
@@ -182,14 +262,16 @@ fn linear_step(
         let turn = change[1].atan2(change[0]).rem_euclid(TAU) / TAU;
         let angle = begin[1] + turn * listed.len() as f64 * (next[1] - begin[1]);
         let amplitude = neutral[0] + change[0].hypot(change[1]);
-        return Some((gain, candidate.with(&[amplitude, angle])));
+        let [from, to] = [neutral[0], amplitude].map(|size| candidate.with(&[size, angle]));
+        return Some(Stepped { gain, from, to });
     }
     let mut values = listed.first().map_or_else(|| neutral.clone(), begun);
     let moving = if listed.is_empty() { values.len() } else { 1 };
     let columns: Vec<_> = (0..moving).map(|i| slope(&values, i)).collect::<Option<_>>()?;
     let (gain, change) = stepped(&columns, &values[..moving], &free[..moving])?;
+    let from = candidate.with(&values);
     values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
-    Some((gain, candidate.with(&values)))
+    Some(Stepped { gain, from, to: candidate.with(&values) })
 }
 
 /// Whether a list of starts goes once round the period of an angle, their last value, in equal steps: what a quarter of them
@@ -206,4 +288,40 @@ pub(super) fn away(effect: &Setting) -> Setting {
         parameter.map_or(value, |p| (value + AWAY * p.step).clamp(p.bounds[0], p.bounds[1]))
     });
     effect.with(&values.collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::sensed::residuals::problem::RigProblem;
+    use crate::effects::{Target, named};
+    use crate::mechanism::Drive;
+
+    /// A coupling that gives way twice as much as the servo behind it does by its gain: by a hair of that much less is seen to act,
+    /// and one linear step leads to less than half of it.
+    #[test]
+    fn what_acts_the_less_by_a_hair_is_gone_after() {
+        let problem = RigProblem::planar("planar-1");
+        let drive = &problem.declared.actuators[0];
+        let Drive::Servo { stiffness, .. } = drive.drive else { panic!("{drive:?}") };
+        let compliance = 2.0 / stiffness;
+        let target = Target::Joints(vec![drive.name.clone()]);
+        let kind = named("drive-compliance").unwrap();
+        let hidden = Setting::on(kind, target, &[("compliance_rad_Nm", compliance)]);
+        let released = problem.let_go(std::slice::from_ref(&hidden)).unwrap();
+        let recorded = problem.simulated(&released, 1).unwrap().remove(0).remove(0);
+        let problem = problem.recorded_as(recorded);
+        let split = problem.split();
+        let candidates = [hidden.with(&[0.0])];
+        let search = Search::new(&problem, &split, &candidates, &|_| {});
+        let declared = search.settle(&[], 1).unwrap().unwrap();
+        let first: Vec<Segment> =
+            split.on.iter().map(|whole| shorter(&problem, whole, Some(SECONDS))).collect();
+        let baseline = || Baseline::of(&problem, &[], &[], &first);
+        let whole = Whole::of(&problem, &[], &first, baseline).unwrap();
+        let left = whole.look(&[]).unwrap();
+        let start = search.stepped(&declared, &whole, (&[], &left)).remove(0);
+        let value = start.values().next().unwrap().1;
+        assert!((0.6..1.5).contains(&(value / compliance)), "{value} of {compliance} rad/Nm");
+    }
 }

@@ -99,6 +99,15 @@ pub(in crate::calibrate::sensed) fn stepped_along(
     Some(((left + &columns * &change).norm_squared(), change))
 }
 
+/// The sum of squares of what is `left` after one step of the coordinates from which a machine that nothing holds was let go, by
+/// which `starts` are the derivatives.
+pub(in crate::calibrate::sensed) fn remains(
+    starts: &[DVector<f64>],
+    left: &DVector<f64>,
+) -> Option<f64> {
+    Some(stepped_along(starts, starts.len(), left, &[], &[])?.0)
+}
+
 impl Derivatives {
     /// The largest drop of the sum of squares, on data to judge on, that such a step of the candidate's values brings in
     /// draws of noise (on both kinds of data): where joints rattle noise has more of some shapes than a covariance frequency
