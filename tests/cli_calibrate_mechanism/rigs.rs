@@ -2,6 +2,9 @@
 //! declarations lack is not written down anywhere.
 
 use crate::cli_common::Place;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardUniform};
 use serde_json::Value;
 use std::path::Path;
 
@@ -13,22 +16,39 @@ fn file(rig: &str, name: &str) -> String {
 
 /// Calibrates a rig, and returns its report.
 fn report(name: &str) -> Value {
-    let file = |file: &str| self::file(name, file);
-    let place = Place::new();
+    let [a, b] = ["run-a.csv", "run-b.csv"].map(|run| file(name, run));
+    report_of(&Place::new(), name, &a, &b)
+}
+
+/// The same by these recordings.
+fn report_of(place: &Place, name: &str, run_a: &str, run_b: &str) -> Value {
+    let rig = file(name, "rig.toml");
     let text = place.good(&format!(
-        "calibrate --rig {} --data {} --validate {} --out found --json --quiet",
-        file("rig.toml"),
-        file("run-a.csv"),
-        file("run-b.csv")
+        "calibrate --rig {rig} --data {run_a} --validate {run_b} --out found --json --quiet"
     ));
     for written in ["calibrated.toml", "index.html", "predicted-run-a.csv", "predicted-run-b.csv"] {
         assert!(!place.read(&format!("found/{written}")).is_empty(), "{written}");
     }
     // What was found is a scenario like any other.
-    let joint = driven(&std::fs::read_to_string(file("rig.toml")).unwrap());
+    let joint = driven(&std::fs::read_to_string(rig).unwrap());
     let moves = format!("--set motion.joint={joint} --set motion.kind=line");
     place.good(&format!("check found/calibrated.toml --quiet {moves}"));
     serde_json::from_str(&text).unwrap()
+}
+
+/// A file of numbers, each but the first of a row off by up to 1e-11 of itself.
+fn a_hair_off(path: &str, random: &mut ChaCha8Rng) -> String {
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut cell = |(i, cell): (usize, &str)| match cell.parse::<f64>() {
+        Ok(value) if i > 0 => {
+            let hair: f64 = StandardUniform.sample(random);
+            format!("{:?}", value * (1.0 + 1e-11 * (2.0 * hair - 1.0)))
+        }
+        _ => cell.to_owned(),
+    };
+    let mut row =
+        |row: &str| row.split(',').enumerate().map(&mut cell).collect::<Vec<_>>().join(",");
+    text.lines().map(|line| row(line) + "\n").collect()
 }
 
 /// A joint whose commands a rig records; its first joint where nothing drives it.
@@ -179,6 +199,24 @@ fn a_slider_crank_whose_piston_carries_more_is_explained_although_its_joints_lif
     // A piston that cannot turn does not tell where on it a load sits.
     assert!(report["effects"][0]["params"]["com_x_m"].is_null(), "{}", report["effects"]);
     assert!(value(&report, "mass_kg") > 0.0);
+}
+
+/// Regressions: what is rounded at the last digit decided whether two simulations of joints that lift off happened to be alike;
+/// what they all leave was no noise then, and a payload that was found was not named, or after four hundred more simulations.
+#[test]
+#[ignore = "five minutes"]
+fn what_is_found_of_joints_that_lift_off_does_not_hang_on_a_hair() {
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    for _ in 0..5 {
+        let place = Place::new();
+        for run in ["run-a.csv", "run-b.csv"] {
+            place.write(run, &a_hair_off(&file("planar-1", run), &mut random));
+        }
+        let report = report_of(&place, "planar-1", "run-a.csv", "run-b.csv");
+        assert_eq!(report["verdict"], "explained", "{}", report["summary"]);
+        assert_eq!(report["effects"][0]["kind"], "payload");
+        assert!(report["simulations"].as_u64().unwrap() < 400, "{}", report["simulations"]);
+    }
 }
 
 #[test]

@@ -47,6 +47,9 @@ pub const PREDICTING: usize = 12;
 /// by more than sensors see: a tenth of the noise's variance.
 pub const SEEN: f64 = 0.3;
 
+/// The same below which two replicas are alike because nothing rattles, not by chance.
+pub const NEARLY_SEEN: f64 = 0.02;
+
 /// The same up to which one replica of a machine that falls stands for the other: a fit that takes its difference for noise
 /// is then at most three times less certain than it could be.
 pub const ALIKE: f64 = 3.0;

@@ -28,6 +28,11 @@ impl Factors {
         Self { height, decomposed }
     }
 
+    /// Whether the matrix is square.
+    pub fn is_square(&self) -> bool {
+        matches!(self.decomposed, Decomposed::Square(_))
+    }
+
     /// The solution; none of a singular matrix.
     pub fn solve(&self, right: &DVector<f64>) -> Option<DVector<f64>> {
         match &self.decomposed {

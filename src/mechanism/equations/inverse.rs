@@ -3,6 +3,7 @@
 
 use super::assembly::matrix;
 use super::factors::Factors;
+use super::rows::Row;
 use crate::contact::Friction;
 use crate::mechanism::{
     Bearing, BodyState, Command, JointIndex, Mechanism, Revolute, Situation, Tracker,
@@ -65,15 +66,19 @@ impl Tracker {
         let places: Vec<usize> = (0..joints.len()).filter(is_revolute).collect();
         let own: Vec<usize> = places.iter().map(|&k| joints[k]).collect();
         // What is imposed stays where it is. By a target the rows of joints stand first, without those of drives among them.
-        let determining = self.determining();
+        let (imposed, determining) = self.determining();
         let target = (!self.by_drives()).then(|| Factors::of(rows.clone()));
         let factors = target.as_ref().unwrap_or(determining);
         // `Jᵀ x = w` asks for rows of (Jᵀ)⁻¹, which are columns of J⁻¹.
         let [efforts, shifts] = [&driven, &own].map(|of| factors.responses(of));
         let (efforts, shifts) = (efforts?, shifts?);
         let forces = forces(&shifts, &efforts, self.mechanism().size())?;
-        let shifts = match target {
+        let held = |imposed: &[Row]| at_rest(&shifts, &efforts, &matrix(imposed, bodies));
+        let shifts = match &target {
             None => shifts,
+            Some(all) if all.is_square() && determining.is_square() => {
+                held(&imposed[joints.len()..])?
+            }
             Some(_) => determining.responses(&places)?,
         };
         Some(Posed {
@@ -305,6 +310,17 @@ fn forces(joints: &DMatrix<f64>, drives: &DMatrix<f64>, size: f64) -> Option<DMa
     Some(joints.transpose() - joints.tr_mul(&weighted) * left)
 }
 
+/// What the gaps of joints shift where drives move so that what is imposed (rows T) stays as it is, out of what gaps (P) and
+/// drives (Q) shift by themselves: `P − Q (T Q)⁻¹ T P`, of `T (P g + Q q) = 0`.
+fn at_rest(
+    joints: &DMatrix<f64>,
+    drives: &DMatrix<f64>,
+    imposed: &DMatrix<f64>,
+) -> Option<DMatrix<f64>> {
+    let moved = (imposed * drives).lu().solve(&(imposed * joints))?;
+    Some(joints - drives * moved)
+}
+
 /// Takes the friction of joints with clearance, under these joint forces (N), from what bodies need.
 fn rub(
     mechanism: &Mechanism,
@@ -347,6 +363,21 @@ fn friction(joint: &Revolute) -> Option<(Friction, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Two bodies, four rows of joints, two drives, and two rows of something else that stays as it is.
+    #[test]
+    fn what_is_imposed_stays_where_it_is_when_joints_give_way() {
+        let number = |i: usize, k: usize| ((7 * i * i + 5 * k + 3 * i * k + 1) as f64).sin();
+        let by_drives = DMatrix::from_fn(6, 6, number);
+        let imposed = DMatrix::from_fn(2, 6, |i, k| number(i + 9, k));
+        let mut determining = by_drives.clone();
+        determining.rows_mut(4, 2).copy_from(&imposed);
+        let factors = Factors::of(by_drives);
+        let [joints, drives] = [vec![0, 1, 2, 3], vec![4, 5]].map(|rows| factors.responses(&rows));
+        let found = at_rest(&joints.unwrap(), &drives.unwrap(), &imposed).unwrap();
+        let expected = Factors::of(determining).responses(&[0, 1, 2, 3]).unwrap();
+        assert!((&found - &expected).amax() < 1e-9, "{found} {expected}");
+    }
 
     /// Two bodies, five rows of joints of which one says twice what another does, and two drives: forces are the smallest
     /// of those that leave least, as normal equations in weighted rows give them (with the smallest solution by singular

@@ -41,6 +41,20 @@ pub enum Imposed {
     },
 }
 
+/// What closes joints from one instant to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Closing {
+    /// Newton's steps, each with the derivatives where it begins: to the last digit.
+    Newton,
+    /// Steps with the derivatives of the instant before, as long as each leaves a tenth at most of what there was (the chord
+    /// method: C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, 5.4): a third of the time, and gaps of
+    /// 1e-12 m, which is nothing beside what sensors see.
+    Chord,
+}
+
+/// Largest share of a gap that a step with old derivatives may leave: what leaves more takes more of them than new ones cost.
+const SLOW: f64 = 0.1;
+
 /// A mechanism at one instant of its motion.
 ///
 /// ```
@@ -61,6 +75,7 @@ pub enum Imposed {
 pub struct Tracker {
     mechanism: Mechanism,
     imposed: Imposed,
+    closing: Closing,
     /// Size of the mechanism in m: its largest distance of two points of a body.
     size: f64,
     t: f64,
@@ -68,7 +83,8 @@ pub struct Tracker {
     /// Angle of each body in rad, whole turns included.
     angles: Vec<f64>,
     accelerations: DVector<f64>,
-    /// The rows that determine the present state.
+    /// The rows that determine the present state, and their factors.
+    rows: Vec<Row>,
     factors: Factors,
 }
 
@@ -106,11 +122,27 @@ impl Tracker {
         let turned = |(body, state): (&Body, &BodyState)| angle_near(state.rotation, body.angle);
         let angles = mechanism.bodies.iter().zip(&states).map(turned).collect();
         let factors = Factors::of(DMatrix::zeros(0, 0));
-        let mut tracker =
-            Self { mechanism, imposed, size, t, states, angles, accelerations, factors };
+        let (closing, rows) = (Closing::Newton, Vec::new());
+        let mut tracker = Self {
+            mechanism,
+            imposed,
+            closing,
+            size,
+            t,
+            states,
+            angles,
+            accelerations,
+            rows,
+            factors,
+        };
         let closed = tracker.close(tracker.states.clone(), t, f64::INFINITY).ok_or(Stuck { t })?;
         tracker.accept(closed, t).ok_or(Stuck { t })?;
         Ok(tracker)
+    }
+
+    /// The same, closed in another way from here on.
+    pub fn closing(self, closing: Closing) -> Self {
+        Self { closing, ..self }
     }
 
     /// Time in s of the present state.
@@ -177,13 +209,19 @@ impl Tracker {
     /// Closed states at time `t` near the given ones, if there are any no farther than `trusted`, and the conditions on them.
     fn close(&self, mut states: Vec<BodyState>, t: f64, trusted: f64) -> Option<Closed> {
         let mut moved = DVector::zeros(3 * states.len());
+        let (mut own, mut before) = (None, f64::INFINITY);
         for pass in 0..25 {
             let system = self.system(&states, t);
             let gap = system.gaps.amax();
             if gap < CLOSED && pass > 0 {
                 return Some((states, system));
             }
-            let shift = solve(&system.rows, states.len(), &-&system.gaps)?;
+            if self.closing == Closing::Newton || gap > SLOW * before {
+                own = Some(Factors::of(finite(matrix(&system.rows, states.len()))?));
+            }
+            before = gap;
+            let factors = own.as_ref().unwrap_or(&self.factors);
+            let shift = finite(factors.solve(&-&system.gaps)?)?;
             moved += &shift;
             let far = moved.iter().enumerate().fold(0.0f64, |far, (i, x)| {
                 far.max(if i % 3 == 2 { x.abs() } else { x.abs() / self.size })
@@ -212,13 +250,14 @@ impl Tracker {
         for ((angle, before), now) in self.angles.iter_mut().zip(&self.states).zip(&states) {
             *angle = angle_near(now.rotation, *angle + before.rotation.angle_to(&now.rotation));
         }
-        (self.states, self.t, self.factors) = (states, t, factors);
+        (self.states, self.t) = (states, t);
+        (self.rows, self.factors) = (system.rows, factors);
         Some(())
     }
 
-    /// The rows that determine the present state: those of joints in their order, then what is imposed.
-    pub(super) fn determining(&self) -> &Factors {
-        &self.factors
+    /// The rows that determine the present state, those of joints in their order, then what is imposed; and their factors.
+    pub(super) fn determining(&self) -> (&[Row], &Factors) {
+        (&self.rows, &self.factors)
     }
 
     /// Whether drives impose the motion.
@@ -273,13 +312,6 @@ impl Tracker {
 
 fn on(body: Option<usize>, jacobian: Vector3<f64>, bias: f64) -> Row {
     Row { bodies: [None, body], jacobians: [Vector3::zeros(), jacobian], bias, softness: 0.0 }
-}
-
-/// The motion of `bodies` bodies that meets the rows: exactly where they determine it, else the smallest
-/// in the sense of least squares.
-pub(super) fn solve(rows: &[Row], bodies: usize, right: &DVector<f64>) -> Option<DVector<f64>> {
-    let matrix = finite(matrix(rows, bodies))?;
-    finite(Factors::of(matrix).solve(right)?)
 }
 
 /// Numbers, if all of them are finite.

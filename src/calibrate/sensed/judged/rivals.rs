@@ -110,7 +110,9 @@ impl Search<'_> {
             (self.tell)(&format!("simulating with {} in place of {own}", names(&effects)));
             // What is told apart by ten units of thousands has to stand at its own best values.
             let times = if model.baseline.rattles { 1 } else { 4 };
-            let Some(settled) = self.settle(&effects, times)? else { continue };
+            let enough = model.misfit + CLOSE;
+            let settled = self.settle_within(&effects, times, enough)?;
+            let Some(settled) = settled else { continue };
             // What does not come down to noise explains nothing, whatever it costs.
             let imitates = settled.fit.effects.last().is_some_and(|own| self.imitates(own));
             if self.is_noise(&settled) && !imitates {

@@ -9,7 +9,7 @@ use crate::calibrate::sensed::motion::simulate::{apart, with_noise};
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
-use crate::calibrate::sensed::thresholds::{DRAWS, SEEN};
+use crate::calibrate::sensed::thresholds::{DRAWS, NEARLY_SEEN, SEEN};
 use crate::effects::Setting;
 use crate::mechanism::Mechanism;
 use crate::scenario::Problem as Wrong;
@@ -296,23 +296,41 @@ impl Own<'_> {
 }
 
 /// Noiseless recordings of a model, run by run, and whether they rattle. Of a machine that does as declared a model need
-/// not: what presses its journals on their rings makes it as predictable as any, and one simulation stands for it.
+/// not: what presses its journals on their rings makes it as predictable as any, and one simulation stands for it. Two that
+/// are nearly as far apart as sensors see may be so near each other by chance: then all replicas are asked.
 fn replicas(
     problem: &RigProblem,
     effects: &[Setting],
     deviations: &[f64],
     starts: &[Start],
 ) -> Result<(Vec<Vec<Recording>>, bool), Stopped> {
-    let mut simulated = problem.simulated(starts, problem.replicas.min(2))?;
     let sensors = &problem.declared.sensors;
-    let apart = |logs: &Vec<Recording>| logs.len() > 1 && apart(sensors, &logs[0], &logs[1]) > SEEN;
-    let rattles = simulated.iter().any(apart);
-    let exact = if rattles && deviations.is_empty() { 2 } else { 1 };
-    simulated.iter_mut().for_each(|logs| logs.truncate(exact));
-    if rattles {
-        let others = exact..problem.replicas;
-        let others = problem.simulated_about(effects, deviations, starts, others)?;
-        simulated.iter_mut().zip(others).for_each(|(logs, others)| logs.extend(others));
+    let farthest = |simulated: &[Vec<Recording>]| {
+        let beside = |logs: &Vec<Recording>| {
+            let others = logs[1..].iter().map(|other| apart(sensors, &logs[0], other));
+            others.fold(0.0, f64::max)
+        };
+        simulated.iter().map(beside).fold(0.0, f64::max)
+    };
+    let with_others = |mut own: Vec<Vec<Recording>>, kept: usize, deviations: &[f64]| {
+        own.iter_mut().for_each(|logs| logs.truncate(kept));
+        let others =
+            problem.simulated_about(effects, deviations, starts, kept..problem.replicas)?;
+        own.iter_mut().zip(others).for_each(|(logs, others)| logs.extend(others));
+        Ok::<_, Stopped>(own)
+    };
+    let two = problem.replicas.min(2);
+    let mut simulated = problem.simulated(starts, two)?;
+    let gap = farthest(&simulated);
+    let about = gap > SEEN && !deviations.is_empty();
+    if gap > NEARLY_SEEN && !about {
+        simulated = with_others(simulated, two, &[])?;
+    }
+    let rattles = farthest(&simulated) > SEEN;
+    match rattles {
+        true if deviations.is_empty() => {}
+        true => simulated = with_others(simulated, 1, deviations)?,
+        false => simulated.iter_mut().for_each(|logs| logs.truncate(1)),
     }
     Ok((simulated, rattles))
 }

@@ -1,13 +1,13 @@
 //! A rig and the runs that it is held against.
 
 use super::residual::{Residuals, residuals};
+use super::responses::Responses;
 use crate::calibrate::measured::spectrum::transform;
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::motion::motions::{Motions, Poses};
 use crate::calibrate::sensed::motion::released::{
     Released, StartError, let_go_at, released, released_near,
 };
-use crate::calibrate::sensed::motion::simulate;
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::motion::swinging::{OutputKicks, kicks_as_seen};
 use crate::calibrate::sensed::recorded::recording::Recording;
@@ -102,6 +102,7 @@ pub struct RigProblem {
     pub(super) simulations: AtomicUsize,
     pub(super) work: AtomicU64,
     motions: Motions,
+    pub(in crate::calibrate::sensed) responses: Responses,
     /// Run by run, what makes a machine that rests swing as was recorded, where it does not as it is let go.
     kicks: Mutex<Vec<Option<OutputKicks>>>,
     /// Machines as they were let go: the start of a free one costs more than a simulation.
@@ -152,9 +153,7 @@ impl RigProblem {
         };
         let runs: Vec<Run> = recordings.into_iter().map(run).collect();
         let kicks = Mutex::new(vec![None; runs.len()]);
-        let (simulations, work) = (AtomicUsize::new(0), AtomicU64::new(0));
-        let motions = Motions::default();
-        let released = Mutex::new(LruCache::new(LET_GO));
+        let (simulations, work, motions, responses) = Default::default();
         let problem = Self {
             rig,
             declared,
@@ -165,8 +164,9 @@ impl RigProblem {
             simulations,
             work,
             motions,
+            responses,
             kicks,
-            released,
+            released: Mutex::new(LruCache::new(LET_GO)),
         };
         if problem.names().is_some_and(|names| names.is_empty()) {
             let message = "say nothing that a model could get wrong: how the machine moves, and nothing beside it";
@@ -303,16 +303,6 @@ impl RigProblem {
         Ok(let_go_at(&self.rig, drawn, recording, &coordinates, self.control)?)
     }
 
-    /// Finds out whether replicas of the machine with these effects differ by more than sensors see, and by how
-    /// much, in units of their noise. Where they do, means are taken of several simulations from now on.
-    ///
-    /// # Errors
-    /// A run that broke down.
-    pub fn look_for_rattle(&mut self, effects: &[Setting]) -> Result<f64, Stopped> {
-        let logs = self.simulated(&self.let_go(effects)?, 2)?;
-        Ok(self.rattle(&logs))
-    }
-
     /// Where the runs of a model with these effects begin as it is let go, whatever swing was recorded.
     ///
     /// # Errors
@@ -323,17 +313,6 @@ impl RigProblem {
             Ok(Start { run, released, effects: effects.to_vec(), still: None })
         };
         (0..self.runs.len()).into_par_iter().map(start).collect()
-    }
-
-    /// The same by simulations of two replicas or more of each run.
-    pub fn rattle(&mut self, logs: &[Vec<Recording>]) -> f64 {
-        let sensors = &self.declared.sensors;
-        let apart = |pair: &Vec<Recording>| simulate::apart(sensors, &pair[0], &pair[1]);
-        let largest = logs.iter().map(apart).fold(0.0, f64::max);
-        if largest > thresholds::SEEN {
-            self.replicas = thresholds::REPLICAS;
-        }
-        largest
     }
 
     /// Whether nothing holds the machine with these effects in some run.
@@ -387,13 +366,23 @@ impl RigProblem {
         self
     }
 
+    /// The problem with this recording in place of all.
+    pub fn recorded_as(self, recording: Recording) -> Self {
+        Self::new(self.rig, vec![recording], self.control).unwrap()
+    }
+
     /// One of the `planar-…` rigs with its first recording.
     pub fn planar(name: &str) -> Self {
+        Self::planar_run(name, "run-a.csv")
+    }
+
+    /// The same with another one.
+    pub fn planar_run(name: &str, run: &str) -> Self {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
         let folder = root.join("assets/rigs-planar").join(name);
         let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
         let sensors = crate::model::parts_of(&rig).unwrap().sensors;
-        let recording = Recording::read(&folder.join("run-a.csv"), &sensors, false).unwrap();
+        let recording = Recording::read(&folder.join(run), &sensors, false).unwrap();
         Self::new(rig, vec![recording], StepControl::Tolerance(1e-5)).unwrap()
     }
 }

@@ -125,6 +125,43 @@ impl RigProblem {
         Ok(recorded)
     }
 
+    /// Finds out whether replicas of the machine with these effects differ by more than sensors see, and by how
+    /// much, in units of their noise. Where they do, means are taken of several simulations from now on.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn look_for_rattle(&mut self, effects: &[Setting]) -> Result<f64, Stopped> {
+        let logs = self.simulated(&self.let_go(effects)?, 2)?;
+        Ok(self.rattle(&logs))
+    }
+
+    /// The same by simulations of two replicas or more of each run.
+    pub fn rattle(&mut self, logs: &[Vec<Recording>]) -> f64 {
+        let largest = self.apart(logs);
+        if largest > thresholds::SEEN {
+            self.replicas = thresholds::REPLICAS;
+        }
+        largest
+    }
+
+    /// Largest difference of the first two replicas of a run, in units of the sensors' noise.
+    fn apart(&self, logs: &[Vec<Recording>]) -> f64 {
+        let sensors = &self.declared.sensors;
+        let apart = |pair: &Vec<Recording>| simulate::apart(sensors, &pair[0], &pair[1]);
+        logs.iter().map(apart).fold(0.0, f64::max)
+    }
+
+    /// Whether joints lift off with these effects that rest as declared: what one simulation leaves is no measure of a model
+    /// then. Where several are made of each model, that is known already.
+    pub fn lifts_off(&self, effects: &[Setting]) -> bool {
+        if self.replicas > 1 || effects.is_empty() {
+            return false;
+        }
+        // What cannot be simulated as it is let go tells nothing.
+        let logs = self.let_go(effects).and_then(|starts| self.simulated(&starts, 2));
+        logs.is_ok_and(|logs| self.apart(&logs) > thresholds::SEEN)
+    }
+
     /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held
     /// before they begin.
     ///
@@ -152,4 +189,22 @@ fn drawn(effects: &[Setting], deviations: &[f64], replica: u64) -> Option<Vec<Se
         (value + away).clamp(free.bounds[0], free.bounds[1])
     });
     Some(with_values(effects, &drawn.collect::<Vec<f64>>()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{Target, named};
+
+    /// What rests in its bearings as declared is thrown about with more on its piston, on the faster one of its runs.
+    #[test]
+    fn joints_that_rest_lift_off_under_a_load() {
+        let problem = RigProblem::planar_run("planar-1", "run-b.csv");
+        let payload = |mass: f64| {
+            let body = Target::Body("piston".to_owned());
+            [Setting::on(named("payload").unwrap(), body, &[("mass_kg", mass)])]
+        };
+        assert!(problem.lifts_off(&payload(0.06)));
+        assert!(!problem.lifts_off(&payload(0.001)) && !problem.lifts_off(&[]));
+    }
 }

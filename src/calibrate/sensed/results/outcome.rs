@@ -179,8 +179,14 @@ fn searched(
         if problem.replicas > 1 {
             (asked.tell)("simulating replicas: joints lift off");
             let search = asked.search(problem);
-            let best = search.settle(&effects, 2)?.unwrap_or(found.best);
-            found.best = search.simplified(best)?;
+            if found.lifts_off {
+                return search.run();
+            }
+            // What is noise in one simulation explains the recordings, whatever others are like.
+            let settled = search.settle(&effects, 2)?;
+            let settled =
+                settled.filter(|own| search.is_noise(own) || !search.is_noise(&found.best));
+            found.best = search.simplified(settled.unwrap_or(found.best))?;
             found.rest = search.rest(&found.best);
         }
     }

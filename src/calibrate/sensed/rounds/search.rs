@@ -24,6 +24,9 @@ pub struct Found {
     pub rounds: Vec<Round>,
     /// What still stands out of what the best model leaves, however little that is.
     pub rest: Option<Rest>,
+    /// Whether it stopped at a model whose joints lift off, and those of the declared one do not: several simulations
+    /// of each model go further.
+    pub lifts_off: bool,
 }
 
 /// What is searched in.
@@ -85,7 +88,7 @@ impl<'a> Search<'a> {
         // What is no larger than noise as a whole may still be an effect that stands out of it.
         let mut lacks = !self.is_noise(&best) || self.rest(&best).is_some();
         while best.fit.effects.len() < EFFECTS && !self.is_spent() && lacks {
-            let (mut round, next) = self.beside_all(&hypotheses)?;
+            let NextRound { mut round, next, lifts_off } = self.beside_all(&hypotheses)?;
             let won = next.first().is_some_and(|first| first.cost() < best.cost() - price(&best));
             if !won {
                 rounds.push(round);
@@ -102,6 +105,9 @@ impl<'a> Search<'a> {
             let as_good = hypotheses[1..].iter().filter(|model| model.cost() < enough);
             round.as_good = as_good.filter_map(|model| model.fit.effects.last().cloned()).collect();
             rounds.push(round);
+            if lifts_off {
+                return Ok(Found { best, declared, rounds, rest: None, lifts_off });
+            }
             lacks = !self.is_noise(&best);
         }
         // What is noise already is not explained any better; that recorded joints rattle less than a model's does
@@ -113,7 +119,7 @@ impl<'a> Search<'a> {
             best = calmer;
         }
         let (best, rest) = self.borne_out(best, &mut rounds)?;
-        Ok(Found { best, declared, rounds, rest })
+        Ok(Found { best, declared, rounds, rest, lifts_off: false })
     }
 
     /// Hypotheses with values from whole simulations, one after another until one leaves no more than noise; the best first.
@@ -135,8 +141,9 @@ impl<'a> Search<'a> {
 
     /// What is found beside several hypotheses, the best first, and the round of the first one. Once one effect leaves no more
     /// than noise beside one of them, it alone is tried beside the others. What residuals see beside any of them is tried before
-    /// what they hardly see beside one, and this not at all where that leaves little more than noise.
-    fn beside_all(&self, hypotheses: &[Model]) -> Result<(Round, Vec<Model>), Stopped> {
+    /// what they hardly see beside one, and this not at all where that leaves little more than noise, or where one simulation
+    /// of the best says little.
+    fn beside_all(&self, hypotheses: &[Model]) -> Result<NextRound, Stopped> {
         let mut next: Vec<Model> = Vec::new();
         let mut round = Round::default();
         let mut enough: Option<Setting> = None;
@@ -158,7 +165,10 @@ impl<'a> Search<'a> {
             sights.push(own.sight);
             next.extend(own.found);
         }
-        if !sights.contains(&SeenBeside::All) {
+        let best = next.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let lifts_off = best
+            .is_some_and(|best| !self.is_noise(best) && self.problem.lifts_off(&best.fit.effects));
+        if !lifts_off && !sights.contains(&SeenBeside::All) {
             let hidden = |&i: &usize| sights[i] == SeenBeside::Less;
             for i in (0..sights.len()).filter(hidden) {
                 if i > 0 && self.is_spent() {
@@ -171,7 +181,7 @@ impl<'a> Search<'a> {
         }
         next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         next.dedup_by(|a, b| same(&a.fit.effects, &b.fit.effects));
-        Ok((round, next))
+        Ok(NextRound { round, next, lifts_off })
     }
 
     /// A model that was found with its values settled, without what it does not need, held against its rivals; and, where it
@@ -220,6 +230,16 @@ impl<'a> Search<'a> {
         }
         Ok((best, rest))
     }
+}
+
+/// What is beside several hypotheses.
+struct NextRound {
+    /// The round of the first one.
+    round: Round,
+    /// Models with one effect more, the best first.
+    next: Vec<Model>,
+    /// Whether joints lift off in the best of those that residuals see, and as declared they do not.
+    lifts_off: bool,
 }
 
 /// Gives each effect that was kept the round in which it was tried first, where another hypothesis was the better

@@ -23,6 +23,17 @@ impl Search<'_> {
     /// # Errors
     /// A machine that cannot be simulated.
     pub fn settle(&self, effects: &[Setting], times: usize) -> Result<Option<Model>, Stopped> {
+        self.settle_within(effects, times, f64::INFINITY)
+    }
+
+    /// The same, given up where as much again as the last pass brought would leave its misfit above `enough`: each brings less
+    /// than the one before.
+    pub(in crate::calibrate::sensed) fn settle_within(
+        &self,
+        effects: &[Setting],
+        times: usize,
+        enough: f64,
+    ) -> Result<Option<Model>, Stopped> {
         let segments = [self.split.on.as_slice(), &self.split.hold].concat();
         let mut effects = effects.to_vec();
         let mut settled: Option<Model> = None;
@@ -48,6 +59,8 @@ impl Search<'_> {
             let model = Model { fit, held: held.chi2, misfit: held.chi2 + noise, baseline };
             // Two replicas of joints that lift off now and then may happen to be alike, and know nothing of it.
             let rattled = |before: &Model| before.baseline.rattles || rattles;
+            let brought = settled.as_ref().map(|before| before.misfit - model.misfit);
+            let hopeless = brought.is_some_and(|brought| model.misfit - brought > enough);
             let worse = settled
                 .as_ref()
                 .is_some_and(|before| rattled(before) && before.misfit < model.misfit);
@@ -55,7 +68,7 @@ impl Search<'_> {
                 settled = Some(model);
             }
             // Where joints rattle the second pass knows how far values may be off.
-            if change < SETTLED && (!rattles || known) {
+            if hopeless || change < SETTLED && (!rattles || known) {
                 break;
             }
         }
@@ -250,4 +263,30 @@ fn change(before: &[Setting], fit: &Fit) -> f64 {
     let sizes = jacobian.column_iter().map(|column| column.norm());
     let pairs = values(before).into_iter().zip(values(&fit.effects)).zip(sizes);
     pairs.map(|((before, after), size)| (after - before).abs() * size).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::sensed::residuals::problem::RigProblem;
+    use crate::effects::{Target, named};
+
+    /// A drag is not what is missing: four passes are made of it, and two where nothing it could bring would be enough.
+    #[test]
+    fn what_brings_too_little_is_given_up() {
+        let problem = RigProblem::planar("planar-1");
+        let split = problem.split();
+        let search = Search::new(&problem, &split, &[], &|_| {});
+        let body = Target::Body("rod".to_owned());
+        let drag =
+            Setting::on(named("drag").unwrap(), body, &[("force_Ns_m", 0.1), ("torque_Nms", 1e-3)]);
+        let simulations = |enough: f64| {
+            let before = problem.simulations();
+            let settled = search.settle_within(std::slice::from_ref(&drag), 4, enough).unwrap();
+            assert!(settled.is_some());
+            problem.simulations() - before
+        };
+        let [all, few] = [f64::INFINITY, f64::NEG_INFINITY].map(simulations);
+        assert!(all > few && all.is_multiple_of(few / 2), "{all} simulations, and {few}");
+    }
 }

@@ -32,10 +32,7 @@ const TRIED: usize = 12;
 
 /// A candidate beside the effects of a model, at its most promising values.
 pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting) -> Vec<Setting> {
-    let change = |values: &[f64]| {
-        let with = [model.effects.as_slice(), &[candidate.with(values)]].concat();
-        target.look(&with).map(|there| there.white - &model.white)
-    };
+    let change = |values: &[f64]| target.response(&candidate.with(values));
     if let Some(scan) = candidate.kind.scan {
         return scanned(target, model, candidate, scan, &change);
     }

@@ -1,5 +1,7 @@
 //! Values of effects fitted to residuals in units of noise.
 
+use crate::calibrate::measured::draws::difference;
+use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
 use crate::calibrate::values::instrument::{Replicated, Unpulled, unpulled};
@@ -75,6 +77,27 @@ impl FitTarget<'_> {
         })
     }
 
+    /// What an effect changes of the residual, as it does beside the declared model; none where there is no such machine.
+    pub fn response(&self, effect: &Setting) -> Option<DVector<f64>> {
+        let mut all = Vec::new();
+        for segment in self.on {
+            let key = |effects: &[Setting]| {
+                format!("{segment:?} {:?} {effects:?}", self.problem.rig.effects)
+            };
+            let seen = |effects: &[Setting]| {
+                let run = &self.problem.runs[segment.run];
+                let machine = machine(&self.problem.rig, effects, &run.recording).ok()?;
+                self.problem.coefficients(&run.view, &machine, segment)
+            };
+            let kept = &self.problem.responses;
+            let declared = kept.known_or(key(&[]), || seen(&[]))?;
+            let own = std::slice::from_ref(effect);
+            let response = kept.known_or(key(own), || Some(difference(&seen(own)?, &declared)))?;
+            all.extend(self.baseline.whiten(segment, &response)?.iter());
+        }
+        Some(DVector::from_vec(all))
+    }
+
     /// Derivative of the residual by each value.
     pub fn jacobian(&self, fit: &Fit) -> Option<DMatrix<f64>> {
         let look = |values: &[f64]| Some(self.look(&with_values(&fit.effects, values))?.white);
@@ -105,5 +128,29 @@ impl FitTarget<'_> {
             jacobian: best.jacobian,
             told: None,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{Target, named};
+
+    /// What a payload changes is the difference of two looks, as often as it is asked for.
+    #[test]
+    fn a_response_is_the_difference_of_two_looks() {
+        let problem = RigProblem::planar("planar-1");
+        let on = problem.split().on;
+        let baseline = Baseline::of(&problem, &[], &[], &on).unwrap();
+        let target = FitTarget { problem: &problem, baseline: &baseline, on: &on };
+        let body = Target::Body("piston".to_owned());
+        let payload = Setting::on(named("payload").unwrap(), body, &[("mass_kg", 0.1)]);
+        let look = |effects: &[Setting]| target.look(effects).unwrap().white;
+        let expected = look(std::slice::from_ref(&payload)) - look(&[]);
+        assert!(expected.norm() > 10.0, "{}", expected.norm());
+        for _ in 0..2 {
+            let off = (target.response(&payload).unwrap() - &expected).norm();
+            assert!(off < 1e-9 * expected.norm(), "{off:e}");
+        }
     }
 }
