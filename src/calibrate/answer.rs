@@ -1,8 +1,8 @@
 //! The one way in: a rig and recordings of any machine, and the folder of what it lacks.
 //!
-//! Every machine is calibrated by its sensors ([`sensed`]), instruments and noise among what may be wrong. A 3-RPR whose
-//! twelve columns are all there is tried by the method that was made for it first, which follows rattling joints and pairs of
-//! effects further, but holds its instruments for right: what it finds missing is found by both.
+//! Every machine is calibrated by its sensors ([`sensed`]), instruments and noise among what may be wrong. Where no name explains a
+//! 3-RPR whose twelve columns are all there, the method that was made for it looks for a table of forces as well; names are those
+//! of the sensors alone.
 
 use super::measured::recording;
 use super::results::outcome::Verdict;
@@ -11,7 +11,6 @@ use super::results::result::{self, CalibrateError, refuse};
 use super::sensed::ways::by_residuals;
 use super::values::errors::{ChannelError, worst};
 use super::{plausibility, sensed};
-use crate::effects::{Kind, named};
 use crate::results::Folder;
 use crate::scenario::Scenario;
 use std::path::{Path, PathBuf};
@@ -29,7 +28,7 @@ pub struct PreparedRig {
 enum Method {
     /// By the sensors that there are.
     Sensed(Box<sensed::prepare::Prepared>),
-    /// By that of a 3-RPR, and by its sensors, if these can be read so.
+    /// By its sensors, if they can be read so; where they find no name, by that of a 3-RPR as well.
     Both(Box<result::LegsPrepared>, Option<Box<sensed::prepare::Prepared>>),
 }
 
@@ -114,68 +113,34 @@ pub fn into_folder(
         }
         Method::Both(own, by_sensors) => (own, by_sensors),
     };
+    // A model that breaks down there takes nothing from what the other method finds.
+    let seen = by_sensors.and_then(|prepared| {
+        let sensed::prepare::Prepared { rig, recordings, .. } = *prepared;
+        by_residuals(rig, recordings, without, tell).ok()
+    });
+    let Some(mut seen) = seen else {
+        return Ok(result::made(*own, without, tell)?.written(folder)?.into());
+    };
+    if seen.report.verdict != Verdict::Unexplained {
+        return Ok(seen.written(folder)?.into());
+    }
     let mut own = result::made(*own, without, tell)?;
-    let complete = own.report.verdict == Verdict::NothingMissing;
-    let Some(by_sensors) = by_sensors.filter(|_| !complete) else {
-        return Ok(own.written(folder)?.into());
-    };
-    let sensed::prepare::Prepared { rig, recordings, .. } = *by_sensors;
-    // A model that breaks down there takes nothing from what was found.
-    let Ok(mut other) = by_residuals(rig, recordings, without, tell) else {
-        return Ok(own.written(folder)?.into());
-    };
     let (seconds, runs) = (own.report.wall_s, own.report.simulations);
-    own.report.wall_s += other.report.wall_s;
-    own.report.simulations += other.report.simulations;
-    other.report.wall_s += seconds;
-    other.report.simulations += runs;
-    let LegsReport { verdict, effects, errors, .. } = &own.report;
-    let first = Weighed::new(*verdict, effects, errors, 0);
-    let sensed::report::Report { verdict, effects, errors, noises, .. } = &other.report;
-    match Weighed::new(*verdict, effects, errors, noises.len()).goes_before(&first) {
-        true => Ok(other.written(folder)?.into()),
-        false => Ok(own.written(folder)?.into()),
+    own.report.wall_s += seen.report.wall_s;
+    own.report.simulations += seen.report.simulations;
+    seen.report.wall_s += seconds;
+    seen.report.simulations += runs;
+    match own.report.verdict == Verdict::Unexplained
+        && missed(&own.report.errors) < missed(&seen.report.errors)
+    {
+        true => Ok(own.written(folder)?.into()),
+        false => Ok(seen.written(folder)?.into()),
     }
 }
 
-/// What of an answer the choice between two rests on.
-struct Weighed {
-    verdict: Verdict,
-    /// How many effects it needs.
-    effects: usize,
-    /// Whether instruments alone are wrong, their noise among it.
-    instruments: bool,
-    /// Largest error on data not fitted to, in floors.
-    missed: f64,
-}
-
-impl Weighed {
-    fn new(
-        verdict: Verdict,
-        effects: &[EffectReport],
-        errors: &[ChannelError],
-        noises: usize,
-    ) -> Self {
-        let shown = |effect: &EffectReport| named(effect.kind).is_some_and(Kind::is_instrument);
-        Self {
-            verdict,
-            effects: effects.len(),
-            instruments: effects.iter().all(shown) && effects.len() + noises > 0,
-            missed: worst(errors).map_or(0.0, |error| error.after / error.floor),
-        }
-    }
-
-    /// Whether what all sensors say goes before what the method of a 3-RPR found, which holds its instruments for right: it
-    /// understands what that one does not, or with fewer effects, or blames instruments alone.
-    fn goes_before(&self, own: &Self) -> bool {
-        match (own.verdict, self.verdict) {
-            (Verdict::Unexplained, Verdict::Unexplained) => self.missed < own.missed,
-            (Verdict::Unexplained, _) => true,
-            (_, Verdict::Unexplained) => false,
-            // Less than that method sees is no simpler answer.
-            _ => self.instruments || (self.effects > 0 && self.effects < own.effects),
-        }
-    }
+/// Largest error on data not fitted to, in floors.
+fn missed(errors: &[ChannelError]) -> f64 {
+    worst(errors).map_or(0.0, |error| error.after / error.floor)
 }
 
 impl From<result::FinishedCalibration<sensed::report::Report>> for Calibrated {
@@ -207,36 +172,5 @@ impl From<result::FinishedCalibration<LegsReport>> for Calibrated {
             json,
             folder,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn answer(verdict: Verdict, effects: usize, instruments: bool, missed: f64) -> Weighed {
-        Weighed { verdict, effects, instruments, missed }
-    }
-
-    #[test]
-    fn instruments_go_before_the_machine_and_few_effects_before_many() {
-        let [wear, anchors] = [1, 3].map(|n| answer(Verdict::Explained, n, false, 1.1));
-        let nothing = answer(Verdict::Unexplained, 0, false, 9.0);
-        let camera = answer(Verdict::Explained, 1, true, 1.1);
-        let noise = answer(Verdict::NothingMissing, 0, true, 1.0);
-        for found in [&camera, &noise] {
-            for own in [&wear, &anchors, &nothing] {
-                assert!(found.goes_before(own));
-            }
-        }
-        assert!(wear.goes_before(&anchors) && wear.goes_before(&nothing));
-        // What both methods explain by one effect each, and what only the first one sees, is the first one's.
-        let blind = answer(Verdict::NothingMissing, 0, false, 1.0);
-        assert!(
-            !wear.goes_before(&wear) && !anchors.goes_before(&wear) && !blind.goes_before(&wear)
-        );
-        assert!(!nothing.goes_before(&wear));
-        let nearer = answer(Verdict::Unexplained, 1, false, 2.0);
-        assert!(nearer.goes_before(&nothing) && !nothing.goes_before(&nearer));
     }
 }

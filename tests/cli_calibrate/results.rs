@@ -50,10 +50,9 @@ fn a_calibration_writes_everything_that_was_promised() {
     }
     assert!(json["rapier_version"].is_string() && json["scenario_hash"].is_string());
     let residuals = json["residuals"].as_array().unwrap();
-    assert_eq!(residuals.len(), 3);
-    assert!(
-        residuals[2]["mean_square_before"].as_f64() > residuals[2]["mean_square_after"].as_f64()
-    );
+    assert_eq!(residuals.len(), 9, "law and dynamics of each drive, closure of each reading");
+    let of_drive = residuals.iter().find(|r| r["residual"] == "dynamics of P2").unwrap();
+    assert!(of_drive["mean_square_before"].as_f64() > of_drive["mean_square_after"].as_f64());
 
     let (predicted, log) = (place.read("c/predicted-run.csv"), table.text());
     assert_eq!(predicted.lines().count(), log.lines().count());
@@ -69,7 +68,7 @@ fn a_calibration_writes_everything_that_was_promised() {
 
 fn assert_effect(effect: &Value) {
     assert_eq!((&effect["kind"], &effect["joint"]), (&"actuator-friction".into(), &"P2".into()));
-    assert!(effect["evidence"].as_str().unwrap().starts_with("removes "));
+    assert!(effect["evidence"].as_str().unwrap().starts_with("takes "));
     for (name, fitted) in effect["params"].as_object().unwrap() {
         let [low, value, high] =
             [&fitted["ci95"][0], &fitted["value"], &fitted["ci95"][1]].map(|v| v.as_f64().unwrap());
@@ -107,8 +106,7 @@ fn assert_ranking(ranking: &Value, tried: &[&str]) {
 
 fn assert_page(page: &str, verdict: &str) {
     assert!(page.contains(&format!("Calibration of rig-2: {verdict}")) && !page.contains("NaN"));
-    for id in ["facts", "effects", "errors", "depends-on", "candidates", "residuals", "provenance"]
-    {
+    for id in ["effects", "why", "errors", "candidates", "limits", "residuals", "provenance"] {
         assert!(page.contains(&format!("id=\"{id}\"")), "{id}");
     }
 }
@@ -120,8 +118,13 @@ fn assert_model_predicts(place: &Place, errors: &[Value]) {
     let predicted = place.good("predict c/calibrated.toml --data run.csv --out p --json");
     let predicted: Value = serde_json::from_str(&predicted).unwrap();
     for (one, other) in predicted["errors"].as_array().unwrap().iter().zip(errors) {
-        for key in ["channel", "unit", "before", "after", "floor"] {
+        for key in ["channel", "unit"] {
             assert_eq!(one[key], other[key], "{key} of {}", one["channel"]);
+        }
+        // A calibration draws noise of its own for what is left to any model: a part of thirty or so.
+        for key in ["before", "after", "floor"] {
+            let [one, other] = [one, other].map(|error| error[key].as_f64().unwrap());
+            assert!((one / other - 1.0).abs() < 0.1, "{key}: {one} and {other}");
         }
     }
 }
