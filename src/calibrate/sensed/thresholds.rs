@@ -145,7 +145,7 @@ pub const MET: f64 = 1.5;
 /// is chance.
 pub const TABLE: f64 = 0.05;
 
-/// How often a table is fitted anew, its model simulated in between: what a look is wrong by depends on it.
+/// How often a table is added to, its model simulated in between: what a look is wrong by depends on it.
 pub const TABLE_PASSES: usize = 2;
 
 /// Steps of time that differ from the median by a larger share came late, or early after a late one: an

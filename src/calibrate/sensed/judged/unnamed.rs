@@ -66,40 +66,46 @@ pub fn describe(
     search: &Search,
     model: &Model,
 ) -> Result<Option<(DescribedEfforts, Model)>, Stopped> {
-    let mut last = None;
-    let mut simulated = model.clone();
+    let mut last: Option<(DescribedEfforts, Model)> = None;
     let mut others: Vec<(Over, f64)> = Vec::new();
+    let mut left = 1.0;
     for _ in 0..TABLE_PASSES {
+        let before = last.as_ref().map_or(model, |(_, tabled)| tabled);
         let classes = others.first().map_or(Over::ALL.to_vec(), |(best, _)| vec![*best]);
-        let tables = best_tables(search, model, &simulated, &classes);
+        let tables = best_tables(search, before, &classes);
         if others.is_empty() {
             others = tables.iter().map(|(share, table)| (table.depends_on, *share)).collect();
         }
-        let Some((share, table)) = tables.into_iter().next().filter(|(share, _)| *share > TABLE)
+        let least = if last.is_none() { TABLE } else { 0.0 };
+        let Some((share, mut table)) =
+            tables.into_iter().next().filter(|(share, _)| *share > least)
         else {
             break;
         };
+        if let Some(known) = last.as_ref().and_then(|(described, _)| described.effect.efforts()) {
+            let pairs =
+                table.coefficients.iter_mut().flatten().zip(known.coefficients.iter().flatten());
+            pairs.for_each(|(own, known)| *own += known);
+        }
         let effect = Setting::unnamed_efforts(table);
         let effects = [model.fit.effects.as_slice(), std::slice::from_ref(&effect)].concat();
         let Some(settled) = search.settle(&effects, 1)? else { break };
-        simulated = settled.clone();
-        let share = share.clamp(0.0, 1.0);
-        last = Some((DescribedEfforts { effect, share, others: others.clone() }, settled));
+        // What a table adds to that only fits one run's rattle is no better on others.
+        if last.as_ref().is_some_and(|(_, tabled)| tabled.misfit <= settled.misfit) {
+            break;
+        }
+        left *= (1.0 - share).clamp(0.0, 1.0);
+        last =
+            Some((DescribedEfforts { effect, share: 1.0 - left, others: others.clone() }, settled));
     }
     Ok(last)
 }
 
-/// The best table of each class with the share that it removes, the best first. Bias and noise are those of
-/// `simulated`, the effects those of `model`.
-fn best_tables(
-    search: &Search,
-    model: &Model,
-    simulated: &Model,
-    classes: &[Over],
-) -> Vec<(f64, Efforts)> {
+/// The best table of each class beside a model with the share that it removes, the best first.
+fn best_tables(search: &Search, model: &Model, classes: &[Over]) -> Vec<(f64, Efforts)> {
     let (problem, split) = (search.problem, search.split);
     let targets =
-        [&split.on, &split.hold].map(|on| FitTarget { problem, baseline: &simulated.baseline, on });
+        [&split.on, &split.hold].map(|on| FitTarget { problem, baseline: &model.baseline, on });
     let Some(joints) = joints_moved(problem, split, &search.names) else { return Vec::new() };
     let output = output_moved(problem, split, &joints);
     tables(targets, &model.fit.effects, [Some(joints), output], classes)
