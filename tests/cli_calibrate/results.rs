@@ -121,10 +121,11 @@ fn assert_model_predicts(place: &Place, errors: &[Value]) {
         for key in ["channel", "unit"] {
             assert_eq!(one[key], other[key], "{key} of {}", one["channel"]);
         }
-        // A calibration draws noise of its own for what is left to any model: a part of thirty or so.
-        for key in ["before", "after", "floor"] {
+        // A calibration draws other noise for what is left to any model, and finds the swing that machines begin with from other
+        // looks: the declared one was 1 % apart, floors 3 %, the calibrated one 0.2 %.
+        for (key, apart) in [("before", 0.015), ("after", 0.003), ("floor", 0.04)] {
             let [one, other] = [one, other].map(|error| error[key].as_f64().unwrap());
-            assert!((one / other - 1.0).abs() < 0.1, "{key}: {one} and {other}");
+            assert!((one / other - 1.0).abs() < apart, "{key}: {one} and {other}");
         }
     }
 }
