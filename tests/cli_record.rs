@@ -71,7 +71,7 @@ fn what_cannot_be_recorded_is_refused() {
     let place = Place::new();
     place.refused("record", &["sensor: is missing", "--set sensors.pose_std=4e-6"]);
     // Limits of recordings are told by the options that break them.
-    let says = ["--rate: is 100 Hz", "at least 300", "--duration: is 0.5 s", "at least 1 s"];
+    let says = ["--rate: is 100 Hz", "at least 200", "--duration: is 0.5 s", "at least 1 s"];
     place.refused(&format!("record {RIG} --rate 100 --duration 0.5"), &says);
     place.refused(&format!("record {PLANAR} --rate 100"), &["--rate: is 100 Hz", "at least 200"]);
     place.refused(&format!("record {RIG} --duration 0"), &["--duration: is 0"]);

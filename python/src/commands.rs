@@ -3,10 +3,11 @@
 use crate::error::{Failure, refuse, warn};
 use crate::scenario::Scenario;
 use crate::work::{detached, end_if};
-use freeplay::calibrate::result::{CalibrateError, REPORT_FILE};
+use freeplay::calibrate::answer;
+use freeplay::calibrate::predicted::ERRORS_FILE;
+use freeplay::calibrate::result::REPORT_FILE;
 use freeplay::calibrate::sensed::predict as along;
 use freeplay::calibrate::sensed::windows::predict::{self as windows, AskedWindows};
-use freeplay::calibrate::{self as calibration, answer, recording};
 use freeplay::cli::{compare_steps, effect_described, law_described, laws_to_compare};
 use freeplay::measure::spelling::nearest;
 use freeplay::results::Folder;
@@ -122,30 +123,14 @@ fn predict(
     detached(py, &stop, || {
         let model = &model.scenario;
         let tell = |_: &str| end_if(&stop);
-        let prepare = || Folder::prepare(&out, calibration::predict::ERRORS_FILE, force);
+        let prepare = || Folder::prepare(&out, ERRORS_FILE, force);
         let asked_of = AskedWindows { window, fit, from };
-        if model.mechanism.has_sensors()
-            && let Some(prepared) = windows::prepare(model, &data, asked_of)?
-        {
+        if let Some(prepared) = windows::prepare(model, &data, asked_of)? {
             return Ok(windows::into_folder(model, &prepared, prepare()?, &tell)?.json);
         }
         refuse_windows(asked)?;
-        if !model.mechanism.has_sensors() {
-            let read = recording::read_one(&data);
-            let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
-            calibration::predict::check(model, &recording)?;
-            if !calibration::predict::reads_by_instruments(model) {
-                return Ok(calibration::predict::into_folder(
-                    model,
-                    &recording,
-                    prepare()?,
-                    &tell,
-                )?
-                .json);
-            }
-        }
         let prepared = along::prepare(model, &data)?;
-        Ok(along::into_folder(model, &prepared, prepare()?, &tell)?.json)
+        Ok(along::into_folder(&prepared, prepare()?, &tell)?.json)
     })
 }
 

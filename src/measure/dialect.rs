@@ -130,7 +130,9 @@ impl Rows {
     /// # Errors
     /// What the system says, a table that is none, units that are not those of numbers here.
     pub fn begin(opened: Bounded) -> Result<Self, csv::Error> {
-        Self::begun(opened, ", or no row of units and a scale in the rig")
+        let scales = ", or no row of units and a `scale` of each [[sensor]] in the rig (`freeplay expand` writes those of a \
+                      template)";
+        Self::begun(opened, scales)
     }
 
     /// The same of a table whose reader knows no scales.

@@ -104,7 +104,7 @@ fn the_payload_of_rig_1(report: &Value) {
     let (kind, _, value) = only(report);
     assert_eq!((kind.as_str(), &report["effects"][0]["body"]), ("payload", &"platform".into()));
     assert!((value("mass_kg") / 0.0659 - 1.0).abs() < 0.1, "{}", value("mass_kg"));
-    // The tracker's recordings, through the method for three legs, say 12.0 and −10.3 mm, known to 0.9 mm.
+    // The tracker's recordings say 12.0 and −10.3 mm, known to 0.9 mm.
     assert!((value("com_x_m") - 0.0120).abs() < 2e-3, "{}", value("com_x_m"));
     assert!((value("com_y_m") + 0.0103).abs() < 2e-3, "{}", value("com_y_m"));
     assert!(worst(report) < 1.5, "{}", report["errors"]);
@@ -141,7 +141,7 @@ fn two_effects_are_found_beside_a_start_that_no_release_gives() {
     let of = |kind: &str| effects.iter().find(|effect| effect["kind"] == kind).unwrap();
     let value = |kind: &str, name: &str| of(kind)["params"][name]["value"].as_f64().unwrap();
     assert_eq!((effects.len(), &of("anchor-offset")["joint"]), (2, &"A2".into()));
-    // What the method for three legs says.
+    // What all columns say.
     assert!((value("anchor-offset", "dx_m") - 4.0e-4).abs() < 1e-5);
     assert!((value("anchor-offset", "dy_m") + 2.5e-4).abs() < 1e-5);
     assert!((value("gravity", "gx_m_s2") - 0.45).abs() < 0.01);

@@ -1,8 +1,8 @@
 //! The page of a prediction.
 
-use super::outcome::MET;
 use super::page::errors_table;
 use super::predicted::PredictionReport;
+use crate::calibrate::sensed::thresholds::MET;
 use crate::calibrate::values::errors::worst;
 use crate::report::{PagePart, Picture, document, number};
 

@@ -1,54 +1,9 @@
-//! `report.json`: what a calibration came to.
+//! Parts of `report.json` that all ways of calibrating share.
 
-use super::evidence::{as_good, evidence};
-use super::outcome::{LegsOutcome, Verdict};
-use super::summary::summary;
-use crate::calibrate::measured::rattle::Rattle;
-use crate::calibrate::rounds::left::LegsLeft;
-use crate::calibrate::rounds::way::name;
-use crate::calibrate::values::errors::ChannelError;
-use crate::calibrate::values::model::LegsCase;
 use crate::effects::{Over, OverTime, Setting, Target};
 use crate::measure::student::NORMAL95;
-use crate::scenario::Scenario;
-use crate::simulate::Provenance;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
-
-/// The report. Keys are promised to scripts; see the README.
-#[derive(Clone, Debug, Serialize)]
-pub struct LegsReport {
-    /// Program, versions, rig as declared.
-    #[serde(flatten)]
-    pub provenance: Provenance,
-    /// What the calibration comes to.
-    pub verdict: Verdict,
-    /// The same in a sentence or two.
-    pub summary: String,
-    /// What the model was given.
-    pub effects: Vec<EffectReport>,
-    /// Errors by run and channel.
-    pub errors: Vec<ChannelError>,
-    /// Candidates, round by round, the best first in each.
-    pub ranking: Vec<Ranked>,
-    /// Residuals on data not used for fits, under the declared and under the calibrated model.
-    pub residuals: Vec<ResidualReport>,
-    /// Whether the declared machine rattles by more than its sensors see, and what follows.
-    pub rattle: RattleReport,
-    /// Kinds of effects that were excluded by `--without`.
-    pub without: Vec<String>,
-    /// Velocity error allowed for one step of a simulation in m/s.
-    pub tolerance_m_s: f64,
-    /// Seeds.
-    pub seeds: Seeds,
-    /// Simulations that it took, searches for starts among them, in runs like the recorded ones with steps of
-    /// 0.1 ms.
-    pub simulations: usize,
-    /// Time of computing in s.
-    pub wall_s: f64,
-    /// What stands beside this file.
-    pub files: Vec<String>,
-}
 
 /// What an effect acts on, by the key that names it in a file; `joint` is null where it is no joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -209,8 +164,6 @@ pub struct RattleReport {
     pub chaotic: bool,
     /// Root mean square of their difference in units of the sensor's noise, in the worst channel.
     pub difference: f64,
-    /// That channel.
-    pub channel: String,
     /// Replicas that means and floors were taken from.
     pub replicas: usize,
 }
@@ -222,123 +175,4 @@ pub struct Seeds {
     pub scenario: u64,
     /// Those of the replicas' starts.
     pub replicas: Vec<u64>,
-}
-
-/// What a report is made of.
-#[derive(Clone, Copy, Debug)]
-pub struct Sources<'a> {
-    /// The rig and its runs.
-    pub case: &'a LegsCase,
-    /// What became of them.
-    pub outcome: &'a LegsOutcome,
-    /// What two replicas said.
-    pub rattle: &'a Rattle,
-    /// Kinds that were excluded.
-    pub without: &'a [&'a str],
-}
-
-impl LegsReport {
-    /// The report, but for the time it took and the files beside it.
-    pub fn new(from: Sources) -> Self {
-        let Sources { case, outcome, rattle, without } = from;
-        let rig = &case.rig;
-        Self {
-            provenance: Provenance::of(rig),
-            verdict: outcome.verdict,
-            summary: summary(outcome),
-            effects: outcome
-                .effects
-                .iter()
-                .map(|(effect, _)| effect_report(outcome, effect))
-                .collect(),
-            errors: outcome.errors.clone(),
-            ranking: ranking(outcome),
-            residuals: residuals(&outcome.before, &outcome.after),
-            rattle: RattleReport {
-                chaotic: rattle.chaotic,
-                difference: rattle.difference,
-                channel: rattle.channel.to_string(),
-                replicas: case.replicas(),
-            },
-            without: without.iter().map(|kind| (*kind).to_owned()).collect(),
-            tolerance_m_s: case.simulator.control.tolerance().unwrap_or(f64::NAN),
-            seeds: Seeds { scenario: rig.seed, replicas: (0..case.replicas() as u64).collect() },
-            simulations: outcome.simulations + rattle.logs.len(),
-            wall_s: 0.0,
-            files: Vec::new(),
-        }
-    }
-}
-
-/// The rig with what was found: a scenario like any other.
-pub fn calibrated(rig: &Scenario, outcome: &LegsOutcome) -> Scenario {
-    let mut scenario = rig.clone();
-    scenario.effects = outcome.effects.iter().map(|(effect, _)| effect.clone()).collect();
-    scenario
-}
-
-fn effect_report(outcome: &LegsOutcome, effect: &Setting) -> EffectReport {
-    let estimates = outcome.effects.iter().find(|(e, _)| e == effect).map(|(_, e)| e.as_slice());
-    let params = estimates.unwrap_or_default().iter().map(|estimate| {
-        let fitted = Fitted { value: estimate.value, std: estimate.std, ci95: estimate.ci95() };
-        (estimate.name, fitted)
-    });
-    EffectReport {
-        kind: effect.kind.name,
-        on: ActsOn::of(effect),
-        depends_on: Depends::of(effect),
-        params: params.collect(),
-        evidence: evidence(outcome, effect),
-        as_good: as_good(outcome, effect).into_iter().map(name).collect(),
-        equation: effect.kind.equation,
-    }
-}
-
-/// Every candidate of every round once: of several variants at one joint the best.
-fn ranking(outcome: &LegsOutcome) -> Vec<Ranked> {
-    let mut all = Vec::new();
-    for (i, round) in outcome.rounds.iter().enumerate() {
-        let mut seen: Vec<&Setting> = Vec::new();
-        for scored in &round.ranking {
-            if seen.iter().any(|other| other.is(&scored.effect)) {
-                continue;
-            }
-            seen.push(&scored.effect);
-            let in_model = outcome.effects.iter().any(|(effect, _)| effect.is(&scored.effect));
-            let added = round.added.as_ref().is_some_and(|added| added.is(&scored.effect));
-            all.push(Ranked {
-                kind: scored.effect.kind.name,
-                on: ActsOn::of(&scored.effect),
-                validation_score: scored.share,
-                kept: in_model && added,
-                round: i + 1,
-                simulated: scored.simulated,
-                gain: scored.gain,
-            });
-        }
-    }
-    if let Some(described) = &outcome.described {
-        all.push(Ranked {
-            kind: described.effect.kind.name,
-            on: ActsOn::of(&described.effect),
-            validation_score: described.share,
-            kept: true,
-            round: outcome.rounds.len() + 1,
-            simulated: true,
-            gain: f64::NAN,
-        });
-    }
-    all
-}
-
-fn residuals(before: &[LegsLeft], after: &[LegsLeft]) -> Vec<ResidualReport> {
-    let join = |(before, after): (&LegsLeft, &LegsLeft)| ResidualReport {
-        residual: before.residual.to_owned(),
-        mean_square_before: before.mean_square,
-        mean_square_after: after.mean_square,
-        noise_up_to: after.limit,
-        largest_before: before.largest,
-        largest_after: after.largest,
-    };
-    before.iter().zip(after).map(join).collect()
 }

@@ -4,7 +4,7 @@ use super::self_test::SelfTest;
 use crate::calibrate::answer::{Calibrated, into_folder, prepare};
 use crate::calibrate::quantity;
 use crate::calibrate::result::{CalibrateError, REPORT_FILE};
-use crate::cli::shared::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_doubts};
+use crate::cli::shared::failure::{Failure, say_how_written, say_remarks, warn_of_doubts};
 use crate::cli::shared::options::{FolderOptions, PrintOptions, Sets};
 use crate::cli::shared::parts::PartOptions;
 use crate::cli::shared::progress::Spinner;
@@ -127,9 +127,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     say_how_written(paths.iter().copied());
     let name = rig.name.clone();
     let prepared = prepare(rig, &paths, arguments.data.len())?;
-    for (file, columns) in &prepared.ignored {
-        say_what_is_ignored(file, columns);
-    }
+    say_remarks(prepared.remarks());
     let folder = arguments.folder.prepare("calibrate", &name, REPORT_FILE)?;
     let calibrated = Spinner::during(arguments.print.quiet, |tell| {
         into_folder(prepared, &without, folder, tell)

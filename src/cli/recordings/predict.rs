@@ -1,12 +1,11 @@
 //! `freeplay predict`: hold a model against a recording.
 
 use crate::calibrate::errors::ChannelError;
-use crate::calibrate::predict::{ERRORS_FILE, Predicted, check, into_folder, reads_by_instruments};
-use crate::calibrate::result::CalibrateError;
-use crate::calibrate::sensed::predict as sensed;
+use crate::calibrate::predicted::ERRORS_FILE;
+use crate::calibrate::quantity;
+use crate::calibrate::sensed::predict::{into_folder, prepare};
 use crate::calibrate::sensed::windows::predict::{self as windows, AskedWindows};
-use crate::calibrate::{quantity, recording};
-use crate::cli::shared::failure::{Failure, say_how_written, say_what_is_ignored, warn_of_doubts};
+use crate::cli::shared::failure::{Failure, say_how_written, say_remarks, warn_of_doubts};
 use crate::cli::shared::options::{FolderOptions, PrintOptions, Sets};
 use crate::cli::shared::progress::Spinner;
 use crate::cli::shared::table::{paragraph, table};
@@ -66,38 +65,20 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     let model = Scenario::load(Some(&arguments.model), &arguments.sets.all())?;
     warn_of_doubts(&model);
     say_how_written([arguments.data.as_path()]);
-    if model.mechanism.has_sensors() {
-        let asked =
-            AskedWindows { window: arguments.window, fit: arguments.fit, from: arguments.from };
-        if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {
-            return by_windows(arguments, &model, &prepared);
-        }
-        return along_commands(arguments, &model);
+    let asked = AskedWindows { window: arguments.window, fit: arguments.fit, from: arguments.from };
+    if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {
+        return by_windows(arguments, &model, &prepared);
     }
     refuse_windows(arguments)?;
-    let read = recording::read_one(&arguments.data);
-    let recording = read.map_err(|error| CalibrateError::from(vec![error]))?;
-    check(&model, &recording)?;
-    if reads_by_instruments(&model) {
-        return along_commands(arguments, &model);
-    }
-    say_what_is_ignored(&recording.path, recording.log.ignored());
+    let prepared = prepare(&model, &arguments.data)?;
+    say_remarks(prepared.remarks());
     let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
-    let predicted = Spinner::during(arguments.print.quiet, |tell| {
-        into_folder(&model, &recording, folder, tell)
-    })?;
-    shown(arguments, &predicted, &[])
-}
-
-/// The same of a mechanism that its file describes and that drives hold, or joints with play.
-fn along_commands(arguments: &Arguments, model: &Scenario) -> Result<(), Failure> {
-    refuse_windows(arguments)?;
-    let prepared = sensed::prepare(model, &arguments.data)?;
-    let folder = arguments.folder.prepare("predict", &model.name, ERRORS_FILE)?;
-    let predicted = Spinner::during(arguments.print.quiet, |tell| {
-        sensed::into_folder(model, &prepared, folder, tell)
-    })?;
-    shown(arguments, &predicted, &prepared.remarks())
+    let predicted =
+        Spinner::during(arguments.print.quiet, |tell| into_folder(&prepared, folder, tell))?;
+    let p = &predicted.prediction;
+    Ok(arguments.print.result(&predicted.json, || {
+        text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder)
+    })?)
 }
 
 /// Windows belong to machines that nothing holds.
@@ -115,16 +96,7 @@ fn refuse_windows(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The result of a prediction, and what is to be known of the recording.
-fn shown(arguments: &Arguments, predicted: &Predicted, remarks: &[String]) -> Result<(), Failure> {
-    let p = &predicted.prediction;
-    Ok(arguments.print.result(&predicted.json, || {
-        let text = text(&p.provenance, &p.run, &p.effects, &p.errors, &predicted.folder);
-        remarks.iter().fold(text, |text, remark| text + &paragraph("", "", remark))
-    })?)
-}
-
-/// The same of a machine that nothing holds, which is predicted over windows.
+/// A machine that nothing holds, predicted over windows.
 fn by_windows(
     arguments: &Arguments,
     model: &Scenario,

@@ -1,6 +1,5 @@
 //! `freeplay record`: what the sensors of a scenario would record.
 
-use crate::calibrate::plausibility::CALIBRATE;
 use crate::calibrate::quantity;
 use crate::calibrate::record::{
     FinishedRecordings, RECORD_FILE, RIG_FILE, RowCount, into_folder, prepare,
@@ -10,7 +9,7 @@ use crate::cli::shared::failure::{Failure, refuse_errors};
 use crate::cli::shared::options::{FolderOptions, PrintOptions, Sets};
 use crate::cli::shared::progress::Spinner;
 use crate::cli::shared::table::{paragraph, table};
-use crate::scenario::{Mechanism, Scenario};
+use crate::scenario::Scenario;
 use crate::simulate::{assemble, findings};
 use clap::Args;
 use std::path::PathBuf;
@@ -79,7 +78,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     // What is looked at beforehand is the motion up to the recordings' end.
     sets.push(format!("simulation.duration={:?}", rows.duration));
     let scenario = Scenario::load(arguments.file.as_deref(), &sets)?;
-    refuse_short(rows, &scenario)?;
+    refuse_short(rows)?;
     let mut machine = assemble(&scenario)?;
     refuse_errors(findings(&scenario, &mut machine))?;
     let prepared = prepare(&scenario, &machine, rows)?;
@@ -99,7 +98,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Recordings that no calibration would take are not made.
-fn refuse_short(rows: RowCount, scenario: &Scenario) -> Result<(), Failure> {
+fn refuse_short(rows: RowCount) -> Result<(), Failure> {
     let mut wrong = Vec::new();
     if rows.duration < SHORTEST {
         wrong.push(format!(
@@ -107,14 +106,9 @@ fn refuse_short(rows: RowCount, scenario: &Scenario) -> Result<(), Failure> {
             rows.duration
         ));
     }
-    // A 3-RPR is recorded with every column that it has instruments for.
-    let lowest = match scenario.mechanism {
-        Mechanism::ThreeRpr(_) => CALIBRATE.rate,
-        _ => LOWEST_RATE,
-    };
-    if rows.rate < lowest {
+    if rows.rate < LOWEST_RATE {
         wrong.push(format!(
-            "--rate: is {} Hz; expected at least {lowest} Hz, the least that calibrate takes of this machine",
+            "--rate: is {} Hz; expected at least {LOWEST_RATE} Hz, the least that calibrate takes",
             rows.rate
         ));
     }

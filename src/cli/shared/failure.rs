@@ -120,11 +120,10 @@ pub(in crate::cli) fn say_how_written<'a>(paths: impl IntoIterator<Item = &'a Pa
     }
 }
 
-/// Says which columns of a recording are left alone.
-pub(in crate::cli) fn say_what_is_ignored(file: &str, columns: &[String]) {
-    if !columns.is_empty() {
-        let columns = columns.join(", ");
-        output::complain(&format!("note: {file}: columns that no sensor has: {columns}"));
+/// Says what is to be known of recordings.
+pub(in crate::cli) fn say_remarks(remarks: Vec<String>) {
+    for remark in remarks {
+        output::complain(&format!("note: {remark}"));
     }
 }
 

@@ -76,11 +76,12 @@ pub struct Efforts {
 /// Gaussians along each of two coordinates: what varies over a third of a working space is held.
 const GRID: usize = 7;
 
-/// Gaussians along one coordinate, half as far apart.
-const PLACES: usize = 13;
-
 /// Harmonics of a joint that turns over.
 const HARMONICS: usize = 6;
+
+/// Gaussians along one coordinate, about half as far apart as on a grid: as many as numbers of harmonics, so that joints that
+/// turn over and joints that do not stand in one table.
+const PLACES: usize = 2 * HARMONICS;
 
 /// Share of the largest rate below which a direction is no direction.
 const REST: f64 = 0.01;
@@ -286,6 +287,18 @@ mod tests {
         assert!(wrong.is_err_and(|wrong| wrong.message.contains("names joints")));
         let good = "reach = [1.0]\ncoefficients = [[1.0, 0.0, 0.0, 0.0]]";
         assert!(Efforts::from_table(&table(&format!("{head}{good}"))).is_ok());
+    }
+
+    /// Joints that turn over and joints that do not stand in one table.
+    #[test]
+    fn every_joint_has_as_many_features() {
+        let ranges = [[0.0, 1.0, 1.0], [0.0, 10.0, 1.0], [0.0, 1.0, 1.0]];
+        for depends_on in Over::ALL {
+            let joints = ["A", "B", "C"].map(str::to_owned).to_vec();
+            let table = Efforts::empty(depends_on, joints, &ranges);
+            let count = |own: usize| table.features(own, &[0.0; 3], &[0.0; 3]).len();
+            assert!([count(1), count(2)] == [count(0); 2], "{depends_on:?}");
+        }
     }
 
     /// Harmonics repeat after a turn.

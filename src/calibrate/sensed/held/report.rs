@@ -2,10 +2,10 @@
 
 use super::bench::{Broken, HeldBench};
 use super::search::{Failed, HeldEffect, HeldOutcome, search};
-use crate::calibrate::measured::recording::stem_of;
-use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::results::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
+use crate::calibrate::results::result::stem_of;
 use crate::calibrate::results::result::{CalibrateError, control};
+use crate::calibrate::results::verdict::Verdict;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::results::charts::{DrawnRun, of_run};
 use crate::calibrate::sensed::results::report::Report;
@@ -93,7 +93,6 @@ pub fn into_folder(
         rattle: RattleReport {
             chaotic: false,
             difference: 0.0,
-            channel: String::new(),
             replicas: 1,
         },
         without: without.iter().map(|kind| (*kind).to_owned()).collect(),

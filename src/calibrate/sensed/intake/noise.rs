@@ -4,7 +4,6 @@
 //! in a band in short blocks, less that of a simulated recording without noise, beside what the declared noise has there
 //! (Welch, *IEEE Trans. Audio Electroacoust.* 15 (1967) 70–73, averages a spectrum over a band alike).
 
-use crate::calibrate::measured::spectrum::{Signal, fast_length, transform};
 use crate::calibrate::quantity;
 use crate::calibrate::sensed::motion::simulate::{deviation, with_noise};
 use crate::calibrate::sensed::recorded::recording::Recording;
@@ -12,6 +11,7 @@ use crate::calibrate::sensed::residuals::problem::RigProblem;
 use crate::calibrate::sensed::thresholds::{
     MEDIAN, NOISE_BAND, NOISE_DRAWS, OTHER_NOISE, SURE, SURE_NOISE,
 };
+use crate::calibrate::values::spectrum::{Signal, fast_length, transform};
 use crate::mechanism::{Mechanism, Reads, Sensor};
 use crate::scenario::Scenario;
 

@@ -10,13 +10,13 @@ use crate::calibrate::sensed::windows::bench::{Bench, suits};
 use crate::calibrate::sensed::windows::plausible;
 use crate::measure::log::LogError;
 use crate::mechanism::{Mechanism, Reads};
-use crate::scenario::Scenario;
+use crate::scenario::{Law, Problem, Scenario};
 use std::path::Path;
 
 /// A rig and recordings that nothing speaks against.
 #[derive(Debug)]
 pub struct Prepared {
-    pub(in crate::calibrate) rig: Scenario,
+    pub(in crate::calibrate::sensed) rig: Scenario,
     pub(in crate::calibrate) recordings: Vec<Recording>,
     /// How many of them, the first ones, values are fitted to.
     pub(in crate::calibrate::sensed) fits: usize,
@@ -35,6 +35,13 @@ pub(in crate::calibrate) enum CalibratedAs {
     Residuals,
 }
 
+impl Prepared {
+    /// What is to be known of the recordings.
+    pub fn remarks(&self) -> Vec<String> {
+        self.recordings.iter().flat_map(Recording::remarks).collect()
+    }
+}
+
 impl CalibratedAs {
     /// The way of a machine.
     pub(in crate::calibrate) fn of(machine: &Mechanism) -> Self {
@@ -50,6 +57,20 @@ impl CalibratedAs {
 
 /// Reads recordings of a rig whose sensors its file describes, the first `fits` to calibrate on, the others to
 /// validate on.
+///
+/// ```
+/// use freeplay::calibrate::answer::prepare;
+/// use freeplay::scenario::Scenario;
+/// use std::path::Path;
+///
+/// // Two recordings of a four-bar: one to calibrate on, one to validate on.
+/// let folder = Path::new("assets/rigs-planar/planar-2");
+/// let rig = Scenario::load(Some(&folder.join("rig.toml")), &[])?;
+/// let [a, b] = ["run-a.csv", "run-b.csv"].map(|name| folder.join(name));
+/// assert!(prepare(rig.clone(), &[&a, &b], 1)?.remarks().is_empty(), "each column is of a sensor");
+/// assert!(prepare(rig, &[&a, &a], 1).is_err(), "no model is validated on what it was fitted to");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// Everything that is wrong with them.
@@ -82,14 +103,15 @@ pub(in crate::calibrate) fn against_rig(
 ) -> Vec<String> {
     let mut wrong: Vec<String> = Vec::new();
     if built.sensors.is_empty() {
-        let help = "describe each column of the recordings by a [[sensor]]";
-        let message = "is missing: nobody knows what the columns of the recordings are".to_owned();
-        return vec![rig.problem("sensor", message, help).to_string()];
+        return vec![without_sensors(rig).to_string()];
+    }
+    if way == CalibratedAs::Residuals {
+        wrong.extend(native(rig, "calibrate"));
     }
     if way == CalibratedAs::Residuals && !rig.effects.is_empty() {
         let message = format!("holds {} effect(s)", rig.effects.len());
-        let help =
-            "calibrate starts from what a rig's maker declares: give it the rig without [[effect]]";
+        let help = "calibrate starts from what a rig's maker declares: give it the rig without [[effect]] (`freeplay predict` \
+             judges a model with effects)";
         wrong.push(rig.problem("effect", message, help).to_string());
     }
     if way != CalibratedAs::Windows && fits > 1 {
@@ -98,6 +120,28 @@ pub(in crate::calibrate) fn against_rig(
         wrong.push(format!("{message}; give this one a --data and the others as --validate"));
     }
     wrong
+}
+
+/// What is wrong with a rig whose file does not say what recordings of it hold.
+pub(in crate::calibrate::sensed) fn without_sensors(rig: &Scenario) -> Problem {
+    if rig.mechanism.uses("sensors") {
+        let message = "is missing: nobody knows what instruments its recordings are of, and how exact they are";
+        let help = "write [sensors] with pose_std, angle_std, force_std, length_resolution and force_lowpass, as in \
+                    assets/rigs/rig-1/rig.toml; an instrument whose noise is 0 is given that of the recordings";
+        return rig.problem("sensors", message, help);
+    }
+    let message = "is missing: nobody knows what the columns of a recording are";
+    let help = "add a [[sensor]] for each column (a drive stage or a pendulum with a kind takes [columns], too); \
+                `freeplay init four-bar --rig` prints a rig that has them";
+    rig.problem("sensor", message, help)
+}
+
+/// What is wrong with a rig whose contacts are the engine's own, for a command that compares simulations.
+pub(in crate::calibrate::sensed) fn native(rig: &Scenario, command: &str) -> Option<String> {
+    let help =
+        format!("write law = \"hertz-step\": {command} needs a contact law whose error is known");
+    (rig.contact.law == Law::Native)
+        .then(|| rig.problem("contact.law", "is \"native\"", &help).to_string())
 }
 
 /// The recordings, if each can be right by itself and beside the others.

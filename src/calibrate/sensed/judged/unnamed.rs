@@ -113,7 +113,7 @@ fn best_tables(search: &Search, model: &Model, classes: &[Over]) -> Vec<(f64, Ef
 
 /// The best table of each class over what moved, joints or the output, with the share that it removes of what stands above
 /// noise in the second target when fitted to the first, the best first.
-pub(in crate::calibrate) fn tables(
+fn tables(
     [on, hold]: [impl Replicated; 2],
     effects: &[Setting],
     moved: [Option<MovedParts>; 2],
@@ -147,7 +147,7 @@ pub(in crate::calibrate) fn tables(
 }
 
 /// What moved in the data that is fitted to.
-pub(in crate::calibrate) struct MovedParts {
+struct MovedParts {
     /// Joints whose coordinates these are; none of the output's.
     pub joints: Vec<String>,
     /// Middle, half range and largest rate of each coordinate.
@@ -221,7 +221,7 @@ fn range(problem: &RigProblem, on: &[Segment], joint: JointIndex) -> Option<[f64
 }
 
 /// Middle, half range and largest rate of a coordinate with its rates.
-pub(in crate::calibrate) fn spanned(motion: impl Iterator<Item = [f64; 2]>) -> [f64; 3] {
+fn spanned(motion: impl Iterator<Item = [f64; 2]>) -> [f64; 3] {
     let (mut low, mut high, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
     for [value, rate] in motion {
         (low, high) = (low.min(value), high.max(value));

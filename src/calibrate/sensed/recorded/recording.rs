@@ -37,10 +37,14 @@ pub struct Recording {
     /// Number of rows.
     pub samples: usize,
     columns: Vec<Option<Vec<f64>>>,
+    /// Sensors in the order of the file's columns; none of one that was not read.
+    order: Vec<usize>,
     /// Where its time stands.
     time: ColumnSource,
     /// Columns of the file that no sensor has.
     pub ignored: Vec<String>,
+    /// Columns of sensors that the file does not have.
+    absent: Vec<String>,
     /// Their cells, column by column; nothing where rows were put on a grid.
     carried: Vec<Cells>,
     /// Share of the rows that came early or late and were put on a grid by splines.
@@ -78,7 +82,12 @@ impl Recording {
             .map_or_else(|| choose(&heads, sensors, efforts, asked), Err)
             .map_err(|(message, help)| wrong(&file, Some(1), message, help))?;
         let time = time.unwrap_or_else(|| ColumnSource::new(&heads[places.time], 1.0));
+        let lacking = places.places.iter().zip(sensors).filter(|(place, _)| place.is_none());
+        let absent = lacking.map(|(_, sensor)| sensor.column.clone()).collect();
         let ignored = places.others.iter().map(|place| heads[*place].to_owned()).collect();
+        let mut order: Vec<usize> =
+            (0..sensors.len()).filter(|&i| places.places[i].is_some()).collect();
+        order.sort_by_key(|&i| places.places[i]);
         let mut samples = Samples::none(&places);
         let mut record = csv::StringRecord::new();
         while rows.next(&mut record).map_err(|error| unread(&file, &error))? {
@@ -98,8 +107,10 @@ impl Recording {
             interval,
             samples: times.len(),
             columns,
+            order,
             time,
             ignored,
+            absent,
             carried,
             jitter,
         })
@@ -114,8 +125,10 @@ impl Recording {
             interval,
             samples,
             columns,
+            order: Vec::new(),
             time: ColumnSource::new(TIME[0], 1.0),
             ignored: Vec::new(),
+            absent: Vec::new(),
             carried: Vec::new(),
             jitter: 0.0,
         }
@@ -213,9 +226,34 @@ impl Recording {
         (self.samples - 1) as f64 * self.interval
     }
 
-    /// The recording as CSV, in the columns and units of its file; columns that no sensor has as they were.
+    /// What is to be known of it: rows that came early or late, columns that no sensor has.
+    pub fn remarks(&self) -> Vec<String> {
+        let jitter = (self.jitter > 0.0).then(|| {
+            format!(
+                "{}: {:.1} % of the rows came early or late; all are put on a grid of {:.6} s by splines",
+                self.name,
+                100.0 * self.jitter,
+                self.interval
+            )
+        });
+        let ignored = (!self.ignored.is_empty()).then(|| {
+            // What a sensor lacks may stand in one of them.
+            let absent = match self.absent.as_slice() {
+                [] => String::new(),
+                absent => format!("; sensors that no column has: {}", absent.join(", ")),
+            };
+            let ignored = self.ignored.join(", ");
+            format!("{}: columns that no sensor has: {ignored}{absent}", self.name)
+        });
+        jitter.into_iter().chain(ignored).collect()
+    }
+
+    /// The recording as CSV, in the columns and units of its file, what was not there after them; columns that no sensor has
+    /// as they were.
     pub fn to_csv(&self, sensors: &[Sensor]) -> String {
-        let present: Vec<usize> = (0..sensors.len()).filter(|&i| self.get(i).is_some()).collect();
+        let added = (0..sensors.len()).filter(|i| !self.order.contains(i));
+        let ordered = self.order.iter().copied().chain(added);
+        let present: Vec<usize> = ordered.filter(|&i| self.get(i).is_some()).collect();
         let heads = present.iter().map(|&i| sensors[i].column.as_str());
         let others = self.ignored.iter().zip(&self.carried).map(|(head, _)| head.as_str());
         let mut text = csv::Writer::from_writer(Vec::new());

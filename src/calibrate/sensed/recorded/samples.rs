@@ -18,7 +18,13 @@ pub fn wrong(file: &str, line: Option<u64>, message: String, help: String) -> Lo
 pub fn unread(file: &str, error: &csv::Error) -> LogError {
     let line = error.position().map(csv::Position::line);
     let message = format!("cannot be read: {error}");
-    wrong(file, line, message, "expected a CSV file with a header and numbers".to_owned())
+    wrong(
+        file,
+        line,
+        message,
+        "expected a CSV file with a header, and in each row as many values as it has names"
+            .to_owned(),
+    )
 }
 
 /// A row of a file.

@@ -1,8 +1,8 @@
 //! Recordings prepared for looking at: every sensor's samples, smoothed as they are needed.
 
 use super::recording::Recording;
-use crate::calibrate::measured::spectrum::fast_length;
 use crate::calibrate::sensed::thresholds::{CORNER, LEAN_CORNER, PREFILTER, RATE, TRIM};
+use crate::calibrate::values::spectrum::fast_length;
 use crate::measure::filter::ZeroPhase;
 use crate::mechanism::{JointIndex, Mechanism, Reads, Sensor};
 use std::ops::Range;

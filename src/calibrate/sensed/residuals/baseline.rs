@@ -3,13 +3,13 @@
 
 use super::problem::{RigProblem, Segment, Start, Stopped};
 use super::swing::{Likeliest, swing};
-use crate::calibrate::measured::draws::{Coefficients, difference, mean, without};
-use crate::calibrate::measured::spectrum::{Covariances, Noise};
 use crate::calibrate::sensed::motion::simulate::{apart, with_noise};
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
 use crate::calibrate::sensed::thresholds::{DRAWS, NEARLY_SEEN, SEEN};
+use crate::calibrate::values::draws::{Coefficients, difference, mean, without};
+use crate::calibrate::values::spectrum::{Covariances, Noise};
 use crate::effects::Setting;
 use crate::mechanism::Mechanism;
 use crate::scenario::Problem as Wrong;

@@ -2,11 +2,11 @@
 
 use super::problem::{RigProblem, Segment};
 use super::residual::ResidualKind;
-use crate::calibrate::measured::draws::{Coefficients, difference};
 use crate::calibrate::sensed::motion::simulate::with_noise;
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
+use crate::calibrate::values::draws::{Coefficients, difference};
 
 /// Draws of noise of each run that its power is taken from: each has hundreds of frequencies.
 const NOISY: u64 = 4;

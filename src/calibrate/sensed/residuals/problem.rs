@@ -2,7 +2,6 @@
 
 use super::residual::{Residuals, residuals};
 use super::responses::Responses;
-use crate::calibrate::measured::spectrum::transform;
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::motion::motions::{Motions, Poses};
 use crate::calibrate::sensed::motion::released::{
@@ -13,8 +12,10 @@ use crate::calibrate::sensed::motion::swinging::{OutputKicks, kicks_as_seen};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
 use crate::calibrate::sensed::thresholds;
+use crate::calibrate::values::spectrum::transform;
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
+use crate::measure::log::LogError;
 use crate::mechanism::Mechanism;
 use crate::scenario::{Problem as Wrong, Scenario};
 use lru::LruCache;
@@ -118,6 +119,9 @@ pub enum Stopped {
     /// A simulation broke down.
     #[error("{0}")]
     Halted(#[from] Halt),
+    /// Columns are not what their heads say.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Mistaken(Vec<LogError>),
 }
 
 impl From<StartError> for Stopped {

@@ -7,13 +7,13 @@
 //!   noise allows;
 //! * **acceleration**: each measured one less that of the measured motion.
 
-use crate::calibrate::measured::spectrum::Signal;
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::motion::motions::Motions;
 use crate::calibrate::sensed::recorded::view::{
     View, effort_sensor, output_sensor, position_sensor,
 };
 use crate::calibrate::sensed::thresholds::{DYNAMICS_BAND, PLAIN_BAND};
+use crate::calibrate::values::spectrum::Signal;
 use crate::measure::filter::derivative;
 use crate::mechanism::{
     BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, Posed, Reads, Sensor, Taken,

@@ -1,7 +1,7 @@
 //! What candidates change of residuals beside the declared model, kept: every search for where a candidate starts asks for the
 //! same ones, and beside another model they are the same but for what its effects change of the machine.
 
-use crate::calibrate::measured::draws::Coefficients;
+use crate::calibrate::values::draws::Coefficients;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 

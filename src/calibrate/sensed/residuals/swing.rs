@@ -1,8 +1,8 @@
 //! How likely it is that a recording swings otherwise than its model.
 
-use crate::calibrate::measured::draws::{Coefficients, difference};
-use crate::calibrate::measured::spectrum::{Covariances, Noise};
 use crate::calibrate::sensed::thresholds::MISSED;
+use crate::calibrate::values::draws::{Coefficients, difference};
+use crate::calibrate::values::spectrum::{Covariances, Noise};
 use std::f64::consts::SQRT_2;
 
 /// What of the residual is a swing. Where loads keep joints in contact, bodies swing in their play, and nobody knows how they

@@ -1,14 +1,15 @@
 //! The whole way: from a rig and its recordings to a verdict, values with intervals, and errors.
 
-use crate::calibrate::results::outcome::Verdict;
+use crate::calibrate::results::verdict::Verdict;
 use crate::calibrate::sensed::events::Event;
 use crate::calibrate::sensed::events::search::beside;
+use crate::calibrate::sensed::intake::followed::unlike;
 use crate::calibrate::sensed::intake::noise::{self, OtherNoise};
 use crate::calibrate::sensed::judged::left::{Left, is_noise};
 use crate::calibrate::sensed::judged::limits::{DetectionLimit, limits};
 use crate::calibrate::sensed::judged::unnamed::{DescribedEfforts, describe};
 use crate::calibrate::sensed::recorded::recording::Recording;
-use crate::calibrate::sensed::residuals::problem::{RigProblem, Split, Start, Stopped};
+use crate::calibrate::sensed::residuals::problem::{RigProblem, Run, Split, Start, Stopped};
 use crate::calibrate::sensed::rounds::rest::Rest;
 use crate::calibrate::sensed::rounds::round::Round;
 use crate::calibrate::sensed::rounds::search::{Found, Search};
@@ -19,6 +20,7 @@ use crate::calibrate::sensed::values::errors::{are_met, mean, of_run};
 use crate::calibrate::sensed::values::model::Model;
 use crate::calibrate::values::errors::{ChannelError, is_worse};
 use crate::effects::{Setting, UNNAMED};
+use crate::measure::log::LogError;
 
 /// A calibration.
 #[derive(Debug)]
@@ -67,7 +69,7 @@ pub fn calibrate(
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<SensedOutcome, Stopped> {
     tell("finding out whether joints rattle");
-    let logs = problem.simulated(&problem.let_go(&[])?, 2)?;
+    let logs = as_declared(problem)?;
     let noises = noise::correct(problem, &logs);
     let mut rattle = problem.rattle(&logs);
     problem.lean_as_noise_allows(&logs);
@@ -126,6 +128,16 @@ pub fn calibrate(
         predicted,
         rattle,
     })
+}
+
+/// Two simulations of each run as declared, by which efforts and accelerations are what their heads say.
+fn as_declared(problem: &RigProblem) -> Result<Vec<Vec<Recording>>, Stopped> {
+    let simulated = problem.simulated(&problem.let_go(&[])?, 2)?;
+    let unlike = |(run, logs): (&Run, &Vec<Recording>)| {
+        unlike(&problem.rig, &problem.declared, &run.recording, logs)
+    };
+    let mistaken: Vec<LogError> = problem.runs.iter().zip(&simulated).flat_map(unlike).collect();
+    if mistaken.is_empty() { Ok(simulated) } else { Err(Stopped::Mistaken(mistaken)) }
 }
 
 /// What a model comes to that predicts the recordings or does not, and adds nothing to the declared one or something.

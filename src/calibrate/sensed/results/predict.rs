@@ -11,18 +11,18 @@ use crate::calibrate::results::result::{CalibrateError, control, publish, refuse
 use crate::calibrate::sensed::held;
 use crate::calibrate::sensed::intake::followed;
 use crate::calibrate::sensed::intake::noise;
+use crate::calibrate::sensed::intake::prepare::{native, without_sensors};
 use crate::calibrate::sensed::motion::released::{StartError, released};
 use crate::calibrate::sensed::motion::simulate::{apart, record};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::thresholds::ERROR_CORNER;
 use crate::calibrate::sensed::thresholds::{PREDICTING, SEEN};
 use crate::calibrate::sensed::values::errors::{self, mean};
-use crate::calibrate::sensed::windows::report::remarks;
 use crate::engine::StepControl;
 use crate::mechanism::{Bearing, Mechanism};
 use crate::report::Style;
 use crate::results::{Folder, PAGE_FILE, RunError};
-use crate::scenario::{Law, Scenario};
+use crate::scenario::{Scenario, Sensors};
 use crate::simulate::Provenance;
 use rayon::prelude::*;
 use std::path::Path;
@@ -34,6 +34,8 @@ const CAPTION: &str =
 /// A model and a recording that nothing speaks against.
 #[derive(Debug)]
 pub struct PreparedPrediction {
+    provenance: Provenance,
+    model: Scenario,
     machine: Mechanism,
     recording: Recording,
 }
@@ -41,7 +43,7 @@ pub struct PreparedPrediction {
 impl PreparedPrediction {
     /// What is to be known of the recording: late rows, columns that nobody asks for.
     pub fn remarks(&self) -> Vec<String> {
-        remarks(std::slice::from_ref(&self.recording))
+        self.recording.remarks()
     }
 }
 
@@ -50,32 +52,26 @@ impl PreparedPrediction {
 /// # Errors
 /// What is wrong with the model or the recording.
 pub fn prepare(model: &Scenario, path: &Path) -> Result<PreparedPrediction, CalibrateError> {
-    let machine = crate::model::parts_of(model)?;
-    let mut wrong = Vec::new();
-    if machine.sensors.is_empty() {
-        let help = "describe each column of the recording by a [[sensor]]";
-        let message = "is missing: nobody knows what the columns of the recording are".to_owned();
-        wrong.push(model.problem("sensor", message, help).to_string());
+    let provenance = Provenance::of(model);
+    let mut model = model.clone();
+    // A template's columns are known without its instruments' noise.
+    if model.sensors.is_none() && model.mechanism.uses("sensors") {
+        model.sensors = Some(Sensors::default());
     }
-    if model.contact.law == Law::Native {
-        let help = "write law = \"hertz-step\": predict needs a contact law whose error is known";
-        wrong.push(model.problem("contact.law", "is \"native\"", help).to_string());
-    }
-    refuse(wrong)?;
+    let mut machine = crate::model::parts_of(&model)?;
+    let unknown = machine.sensors.is_empty().then(|| without_sensors(&model).to_string());
+    refuse(unknown.into_iter().chain(native(&model, "predict")).collect())?;
     let recording = Recording::read_with_time(path, &machine.sensors, false, model.time_column());
     let recording = recording.map_err(|error| CalibrateError::Input(vec![error.to_string()]))?;
     let columns = model.columns.as_ref();
     let lacking = columns.and_then(|named| recording.lacks(&machine.sensors, named));
     refuse(lacking.into_iter().collect())?;
-    refuse(held::plausible::wrong(model, &machine, &recording))?;
+    refuse(held::plausible::wrong(&model, &machine, &recording))?;
     refuse(recording.too_slow("predict", errors::LOWEST_RATE, ERROR_CORNER).into_iter().collect())?;
-    refuse(followed::wrong(model, &machine, &recording))?;
-    let mut machine = machine;
-    if held::bench::suits(&machine) {
-        noise::measured(&mut machine.sensors, &recording);
-    }
-    crate::calibrate::sensed::motion::start::machine(model, &[], &recording)?;
-    Ok(PreparedPrediction { machine, recording })
+    refuse(followed::wrong(&model, &machine, &recording))?;
+    noise::measured(&mut machine.sensors, &recording);
+    crate::calibrate::sensed::motion::start::machine(&model, &[], &recording)?;
+    Ok(PreparedPrediction { provenance, model, machine, recording })
 }
 
 impl From<StartError> for CalibrateError {
@@ -89,16 +85,16 @@ impl From<StartError> for CalibrateError {
 /// # Errors
 /// A model that cannot be simulated, files that cannot be written.
 pub fn into_folder(
-    model: &Scenario,
     prepared: &PreparedPrediction,
     folder: Folder,
     tell: &(dyn Fn(&str) + Sync),
 ) -> Result<Predicted, CalibrateError> {
     let started = Clock::now();
-    let PreparedPrediction { machine, recording } = prepared;
+    let PreparedPrediction { provenance, model, machine, recording } = prepared;
     tell("simulating two replicas: does it rattle?");
     let along = Along { model, recording, like: &complete(machine, recording) };
     let (after, difference) = along.predicted(machine)?;
+    refuse(followed::unlike(model, machine, recording, &after))?;
     let before = match model.effects.is_empty() {
         true => None,
         false => {
@@ -124,14 +120,13 @@ pub fn into_folder(
     let pictures = of_run(machine, recording, drawn, &models).map_err(RunError::from)?;
     let texts = [ERRORS_FILE, PREDICTED_FILE, PAGE_FILE].map(str::to_owned).into_iter();
     let prediction = PredictionReport {
-        provenance: Provenance::of(model),
+        provenance: provenance.clone(),
         run: recording.name.clone(),
         effects: model.effects.iter().map(ToString::to_string).collect(),
         errors,
         rattle: RattleReport {
             chaotic: after.len() > 1,
             difference,
-            channel: String::new(),
             replicas: after.len(),
         },
         wall_s: started.elapsed().as_secs_f64(),

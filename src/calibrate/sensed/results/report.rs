@@ -2,10 +2,10 @@
 
 use super::outcome::SensedOutcome;
 use crate::calibrate::quantity;
-use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::results::report::{
     ActsOn, Depends, EffectReport, Ranked, RattleReport, ResidualReport, Seeds,
 };
+use crate::calibrate::results::verdict::Verdict;
 use crate::calibrate::sensed::intake::noise::OtherNoise;
 use crate::calibrate::sensed::judged::left::Left;
 use crate::calibrate::sensed::judged::limits::DetectionLimit;

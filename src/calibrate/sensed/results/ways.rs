@@ -4,11 +4,11 @@ use super::outcome::calibrate;
 use super::page;
 use super::report::{Report, effects, limit, noises, ranking, residuals, summary};
 use super::written::{Made, SensedCalibration, names_of_files};
-use crate::calibrate::measured::recording::stem_of;
-use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::results::report::{RattleReport, Seeds};
+use crate::calibrate::results::result::stem_of;
 use crate::calibrate::results::result::{CalibrateError, control};
 use crate::calibrate::results::unnamed_picture;
+use crate::calibrate::results::verdict::Verdict;
 use crate::calibrate::sensed::events::found::sentence;
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::held;
@@ -43,7 +43,7 @@ pub fn into_folder(
 ///
 /// # Errors
 /// A rig that cannot be simulated.
-pub(in crate::calibrate) fn by_residuals(
+fn by_residuals(
     rig: Scenario,
     recordings: Vec<Recording>,
     without: &[&str],
@@ -83,7 +83,6 @@ pub(in crate::calibrate) fn by_residuals(
         rattle: RattleReport {
             chaotic: problem.replicas > 1,
             difference: outcome.rattle,
-            channel: String::new(),
             replicas: problem.replicas,
         },
         without: without.iter().map(|kind| (*kind).to_owned()).collect(),
@@ -118,6 +117,9 @@ impl From<Stopped> for CalibrateError {
         match stopped {
             Stopped::Model(problem) => problem.into(),
             Stopped::Halted(halt) => halt.into(),
+            Stopped::Mistaken(errors) => {
+                Self::Input(errors.iter().map(ToString::to_string).collect())
+            }
         }
     }
 }

@@ -65,7 +65,7 @@ pub(super) const FAMILIES: &[Family] = &[
     },
     Family {
         name: "3-rpr",
-        text: &[include_str!("../../self_test/rig.toml")],
+        text: &[include_str!("three-rpr.toml")],
         // Legs that all grow by 25 mm turn the platform by 45°, past a pose in which they meet in a point.
         moves: MovedBy::Waves(0.01),
         floats: true,

@@ -1,9 +1,9 @@
 //! Whether an answer is right.
 
 use super::hidden::Hidden;
+use super::trial::HiddenValue;
 use super::{Case, Trial, TrialAnswer};
-use crate::calibrate::results::outcome::Verdict;
-use crate::calibrate::self_test::HiddenValue;
+use crate::calibrate::results::verdict::Verdict;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Stopped};
 use crate::calibrate::sensed::results::outcome::SensedOutcome;
 use crate::calibrate::sensed::values::certainty::Estimated;

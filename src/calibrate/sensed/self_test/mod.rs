@@ -20,7 +20,7 @@ mod trial;
 pub use draw::trials;
 pub use families::machines;
 pub use rates::rates;
-pub use trial::{Case, NOISE, Trial, TrialAnswer, TriedTrial};
+pub use trial::{Case, HiddenValue, NOISE, Trial, TrialAnswer, TriedTrial};
 
 use super::residuals::problem::{RigProblem, Stopped};
 use super::results::outcome::calibrate;

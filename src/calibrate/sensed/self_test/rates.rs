@@ -1,8 +1,9 @@
 //! What trials come to: rates by requirement and by machine, each with what chance leaves open.
 
+use super::trial::HiddenValue;
 use super::{Case, TrialAnswer, TriedTrial};
-use crate::calibrate::results::outcome::Verdict;
-use crate::calibrate::self_test::{covered, is_phase, near, share};
+use crate::calibrate::results::verdict::Verdict;
+use crate::measure::student::NORMAL95;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
@@ -160,6 +161,48 @@ fn wrong(all: &[TriedTrial]) -> String {
         return rows;
     }
     format!("\n| seed | machine | hidden | floors | answer |\n|---|---|---|---|---|\n{rows}")
+}
+
+/// The largest relative error of a value that counts as near.
+const NEAR: f64 = 0.1;
+
+/// Whether a value is a phase, which near another one says nothing of its effect's size.
+fn is_phase(value: &HiddenValue) -> bool {
+    value.name.ends_with("phase_rad")
+}
+
+/// Whether a value was found within 10 %.
+fn near(value: &HiddenValue) -> bool {
+    (value.value - value.truth).abs() < NEAR * value.truth.abs()
+}
+
+/// Whether the true value lies in the 95 % interval of the one that was found.
+fn covered(value: &HiddenValue) -> bool {
+    value.std.is_some_and(|std| (value.value - value.truth).abs() < NORMAL95 * std)
+}
+
+/// `9 of 10 (90 %, 60–98)`.
+fn share(of: &[bool]) -> String {
+    let right = of.iter().filter(|right| **right).count();
+    let Some([low, high]) = wilson(right, of.len()) else { return "–".to_owned() };
+    // No minus before a zero.
+    let percent = |share: f64| (100.0 * share).round() + 0.0;
+    let share = percent(right as f64 / of.len() as f64);
+    format!("{right} of {} ({share} %, {}–{})", of.len(), percent(low), percent(high))
+}
+
+/// The 95 % interval of a share of `of` independent trials of which `right` were right (Wilson, J. Am.
+/// Stat. Assoc. 22 (1927) 209–212); none without trials.
+fn wilson(right: usize, of: usize) -> Option<[f64; 2]> {
+    if of == 0 {
+        return None;
+    }
+    let n = of as f64;
+    let share = right as f64 / n;
+    let middle = (share + NORMAL95 * NORMAL95 / (2.0 * n)) / (1.0 + NORMAL95 * NORMAL95 / n);
+    let half = NORMAL95 / (1.0 + NORMAL95 * NORMAL95 / n)
+        * (share * (1.0 - share) / n + NORMAL95 * NORMAL95 / (4.0 * n * n)).sqrt();
+    Some([middle - half, middle + half])
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! A trial, and what became of it.
 
-use crate::calibrate::results::outcome::Verdict;
-use crate::calibrate::self_test::HiddenValue;
+use crate::calibrate::results::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 
 /// What is hidden.
@@ -103,4 +102,17 @@ pub struct TrialAnswer {
     pub simulations: usize,
     /// Time in s that it took, beside whatever else the computer did.
     pub seconds: f64,
+}
+
+/// A hidden value and its estimate, in SI units.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct HiddenValue {
+    /// `effect.parameter`.
+    pub name: String,
+    /// As hidden.
+    pub truth: f64,
+    /// As found.
+    pub value: f64,
+    /// Its standard deviation, if the fit says one.
+    pub std: Option<f64>,
 }

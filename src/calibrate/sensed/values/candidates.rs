@@ -2,11 +2,10 @@
 
 use super::fit::{Fit, FitTarget};
 use super::periodic::frequencies;
-use crate::calibrate::values::candidates::{of_one_phase, step};
 use crate::calibrate::values::least_squares::{REDUCED, REDUCTIONS, too_far};
 use crate::effects::{ALL, CONTAINS, Kind, Scan, ScanRange, Setting};
 use crate::mechanism::Mechanism;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use std::f64::consts::FRAC_PI_2;
 
 /// Every effect that lasts on everything that it can act on, at its neutral values, under one of its names; none
@@ -149,4 +148,26 @@ fn scanned(
         Some((removed, candidate.with(&values)))
     });
     best(scored.collect())
+}
+
+/// Amplitudes that repeat with one phase, fitted to a residual by least squares: `columns` hold what a unit of each changes
+/// of it at the phases 0 and π/2. What they remove, the phase (rad) of the largest, and of each its part in that phase.
+pub(super) fn of_one_phase(
+    columns: &[DVector<f64>],
+    residual: &DVector<f64>,
+) -> Option<(f64, f64, Vec<f64>)> {
+    let matrix = DMatrix::from_columns(columns);
+    let normal = matrix.transpose() * &matrix;
+    let rhs = -(matrix.transpose() * residual);
+    let weights = normal.cholesky()?.solve(&rhs);
+    let pairs = weights.as_slice().chunks(2);
+    let largest = pairs.clone().max_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])))?;
+    let angle = largest[1].atan2(largest[0]);
+    let along = pairs.map(|pair| pair[0] * angle.cos() + pair[1] * angle.sin()).collect();
+    Some((weights.dot(&rhs), angle, along))
+}
+
+/// The size of a unit of a parameter.
+fn step(kind: &Kind, name: &str) -> f64 {
+    kind.parameter(name).map_or(1.0, |parameter| parameter.step)
 }

@@ -1,9 +1,9 @@
 //! Values of effects fitted to residuals in units of noise.
 
-use crate::calibrate::measured::draws::difference;
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
+use crate::calibrate::values::draws::difference;
 use crate::calibrate::values::instrument::{Replicated, Unpulled, unpulled};
 use crate::calibrate::values::least_squares::{self, FitEffort, least_squares};
 use crate::calibrate::values::least_squares::{free, values, with_values};

@@ -5,11 +5,11 @@
 //! lie beside it. Two looks at one frequency tell a and b, and these what any other one would show.
 
 use super::fit::{Fit, FitTarget};
-use crate::calibrate::measured::spectrum::{Signal, transform};
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
 use crate::calibrate::sensed::residuals::residual::Residuals;
 use crate::calibrate::sensed::thresholds::DYNAMICS_BAND;
+use crate::calibrate::values::spectrum::{Signal, transform};
 use crate::effects::{Scan, Setting};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{FRAC_PI_2, TAU};

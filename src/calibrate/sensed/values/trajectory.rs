@@ -139,7 +139,7 @@ pub fn shorter(problem: &RigProblem, segment: &Segment, length: Option<f64>) -> 
     let view = &problem.runs[segment.run].view;
     let Some(length) = length else { return segment.clone() };
     let rows = (length / (view.interval * view.stride as f64)) as usize;
-    let rows = crate::calibrate::measured::spectrum::fast_length(rows.max(1)) * view.stride;
+    let rows = crate::calibrate::values::spectrum::fast_length(rows.max(1)) * view.stride;
     let end = segment.rows.end.min(segment.rows.start + rows);
     Segment { run: segment.run, rows: segment.rows.start..end }
 }

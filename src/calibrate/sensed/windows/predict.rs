@@ -4,7 +4,7 @@ use super::fitting::bench::{Bench, suits};
 use super::horizons::{HorizonErrors, RunZero};
 use super::outcome::{horizons, with};
 use super::plausible;
-use super::report::{channel_errors, input_columns, pictures, predicted, remarks, run_zeros};
+use super::report::{channel_errors, input_columns, pictures, predicted, run_zeros};
 use super::score::{Horizon, score};
 use crate::calibrate::results::predicted::{ERRORS_FILE, PREDICTED_FILE, Predicted};
 use crate::calibrate::results::report::EffectReport;
@@ -163,13 +163,13 @@ pub fn into_folder(
     let prediction = WindowsPrediction {
         provenance: Provenance::of(model),
         run: bench.runs[0].name.clone(),
-        effects: model.effects.iter().map(crate::calibrate::rounds::way::name).collect(),
+        effects: model.effects.iter().map(ToString::to_string).collect(),
         errors: windows[0].errors.clone(),
         windows,
         events: events.iter().map(Event::report).collect(),
         run_zeros: run_zeros(bench, &zeros),
         inputs: input_columns(bench),
-        remarks: remarks(&bench.runs),
+        remarks: bench.runs.iter().flat_map(Recording::remarks).collect(),
         wall_s: started.elapsed().as_secs_f64(),
         files: texts.chain(drawn.iter().map(|picture| picture.file.clone())).collect(),
     };

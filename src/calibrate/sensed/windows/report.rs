@@ -4,11 +4,11 @@ use super::fitting::bench::Bench;
 use super::horizons::{HorizonErrors, RunZero, Windows};
 use super::outcome::{Certain, JudgedRun, LeftOut, WindowsOutcome, calibrate, with};
 use super::score::Score;
-use crate::calibrate::measured::recording::stem_of;
 use crate::calibrate::results::charts::{POINTS, panel, thinned};
-use crate::calibrate::results::outcome::Verdict;
 use crate::calibrate::results::report::{ActsOn, EffectReport, Ranked, RattleReport, Seeds};
 use crate::calibrate::results::result::CalibrateError;
+use crate::calibrate::results::result::stem_of;
+use crate::calibrate::results::verdict::Verdict;
 use crate::calibrate::sensed::events::picture::pictures as events_drawn;
 use crate::calibrate::sensed::events::{self, Event};
 use crate::calibrate::sensed::recorded::recording::Recording;
@@ -59,26 +59,6 @@ pub(super) fn run_zeros(bench: &Bench, zeros: &[Vec<[f64; 2]>]) -> Vec<RunZero> 
         }
     }
     listed
-}
-
-/// What is to be known of recordings: late rows, columns that nobody asks for.
-pub(in crate::calibrate::sensed) fn remarks(runs: &[Recording]) -> Vec<String> {
-    let mut remarks = Vec::new();
-    for run in runs {
-        if run.jitter > 0.0 {
-            remarks.push(format!(
-                "{}: {:.1} % of the rows came early or late; all are put on a grid of {:.6} s by splines",
-                run.name,
-                100.0 * run.jitter,
-                run.interval
-            ));
-        }
-        if !run.ignored.is_empty() {
-            let columns = run.ignored.join(", ");
-            remarks.push(format!("{}: columns that no [[sensor]] has: {columns}", run.name));
-        }
-    }
-    remarks
 }
 
 /// Columns that said what drives gave.
@@ -197,7 +177,6 @@ pub fn into_folder(
         rattle: RattleReport {
             chaotic: false,
             difference: 0.0,
-            channel: String::new(),
             replicas: 1,
         },
         without: without.iter().map(|kind| (*kind).to_owned()).collect(),
@@ -212,7 +191,7 @@ pub fn into_folder(
             horizons,
             run_zeros: run_zeros(&bench, &outcome.zeros),
             inputs: input_columns(&bench),
-            remarks: remarks(&bench.runs),
+            remarks: bench.runs.iter().flat_map(Recording::remarks).collect(),
             left_out: outcome.left_out.iter().map(|left| name(&left.effect)).collect(),
         }),
     };

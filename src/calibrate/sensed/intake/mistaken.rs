@@ -18,6 +18,26 @@ pub enum Mistake {
     Unit(usize, f64),
 }
 
+/// Columns beside what they should be like, drive by drive or sensor by sensor.
+pub(super) struct FollowedColumns {
+    pub sensors: Vec<Option<usize>>,
+    pub series: Vec<Option<[Vec<f64>; 2]>>,
+}
+
+impl FollowedColumns {
+    pub fn of(drives: impl Iterator<Item = Option<(usize, [Vec<f64>; 2])>>) -> Self {
+        let (sensors, series) =
+            drives.map(|found| (found.as_ref().map(|(s, _)| *s), found.map(|(_, s)| s))).unzip();
+        Self { sensors, series }
+    }
+}
+
+/// Values about their mean.
+pub(super) fn about(values: &[f64]) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().map(|value| value - mean).collect()
+}
+
 /// Mistakes of series, each with what it should be like, in another unit by one of these `factors` at most; a series that is
 /// not there, or of which nobody knows what it should be like, is none.
 pub fn mistakes(series: &[Option<[Vec<f64>; 2]>], factors: &[f64]) -> Vec<Mistake> {
