@@ -118,8 +118,8 @@ fn a_stage_is_predicted_in_the_recordings_own_columns_and_units() {
         let _ = writeln!(text, "{t:.3},{reference:.9},{:.7},{:.5},{pulse},x", 1e3 * q, 1e3 * u);
     }
     place.write("run.csv", &text);
-    let said = place.good("predict model.toml --data run.csv --out out");
-    assert!(said.contains("no [[sensor]] has: note"), "{said}");
+    let done = place.noted("predict model.toml --data run.csv --out out");
+    assert_eq!(done.err, "note: run.csv: columns that no sensor has: note\n");
     let predicted = place.read("out/predicted.csv");
     let (before, after): (Vec<_>, Vec<_>) = (text.lines().collect(), predicted.lines().collect());
     assert_eq!((before[0], before.len()), (after[0], after.len()));
@@ -167,8 +167,8 @@ fn a_pendulum_that_comes_to_rest_is_predicted_in_the_recordings_own_columns_and_
     let model = ARM.replace("[columns]\nt = \"t_s\"\nphi = \"theta1_rad\"\n", columns);
     place.write("model.toml", &scenario(&model, &[FRICTION]).to_toml());
     let line = "predict model.toml --data run.csv --window 39.9 --fit 0.25 --out out";
-    let said = place.good(line);
-    assert!(said.contains("no [[sensor]] has: split"), "{said}");
+    let done = place.noted(line);
+    assert!(done.err.contains("columns that no sensor has: split"), "{}", done.err);
     let result = json(&place, "out/errors.json");
     let [without, with, floor] = error(&result, "run.csv", "winkel_deg");
     assert!(with < 0.01 * without && with < 1e-3, "{without} {with} {floor}");

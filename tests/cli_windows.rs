@@ -94,7 +94,7 @@ fn friction_and_zeros_of_runs_are_found_in_windows() {
     place.write("a.csv", &run(0.03, [0.4, 2.0], 7.0));
     place.write("b.csv", &run(-0.05, [-0.8, 0.0], 4.0));
     place.write("c.csv", &run(0.08, [0.2, -1.0], 5.0));
-    place.good(
+    place.noted(
         "calibrate --rig rig.toml --data a.csv --data b.csv --validate c.csv --out out --quiet",
     );
     let report = json(&place, "out/report.json");
@@ -112,7 +112,7 @@ fn friction_and_zeros_of_runs_are_found_in_windows() {
     let remarks = report["windows"]["remarks"].to_string();
     assert!(remarks.contains("early or late") && remarks.contains("temperature"), "{remarks}");
 
-    place.good("predict out/calibrated.toml --data c.csv --window 0.4 --fit 0.1 --out p --quiet");
+    place.noted("predict out/calibrated.toml --data c.csv --window 0.4 --fit 0.1 --out p --quiet");
     let errors = json(&place, "p/errors.json");
     // The run sticks now and then; 0.1 s of rest say little of a start.
     let missed = over(&errors["windows"], "c.csv", 0.4, "q");
@@ -143,11 +143,11 @@ fn a_measured_arm_is_predicted() {
     let place = Place::new();
     place.write("rig.toml", include_str!("../assets/two-link-arm-declared.toml"));
     let data = [a, b, c].map(|file| format!("--data {} ", file.display())).concat();
-    println!("{}", place.good(&format!("calibrate --rig rig.toml {data}--out out")));
+    println!("{}", place.noted(&format!("calibrate --rig rig.toml {data}--out out")).out);
     let mut squares = [0.0; 4];
     for (i, file) in [v, w].iter().enumerate() {
         let line = format!("predict out/calibrated.toml --data {} --out p{i}", file.display());
-        println!("{}", place.good(&line));
+        println!("{}", place.noted(&line).out);
         let windows = &json(&place, &format!("p{i}/errors.json"))["windows"];
         let run = file.file_name().expect("a name").to_string_lossy().into_owned();
         for (k, (length, column)) in

@@ -63,6 +63,19 @@ impl Place {
         done.out
     }
 
+    /// The same with notes on standard error, of what is to be known of recordings, and no other word.
+    pub fn noted(&self, line: &str) -> Done {
+        let done = self.freeplay(line);
+        let notes = done.err.lines().all(|line| line.starts_with("note: "));
+        assert!(
+            done.code == 0 && notes && !done.err.is_empty(),
+            "{line}\n{}\n{}",
+            done.err,
+            done.out
+        );
+        done
+    }
+
     /// The same, which must fail with exit code 2, say all `fragments` and write nothing.
     pub fn refused(&self, line: &str, fragments: &[&str]) {
         let before = self.entries();

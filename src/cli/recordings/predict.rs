@@ -67,6 +67,7 @@ pub(in crate::cli) fn main(arguments: &Arguments) -> Result<(), Failure> {
     say_how_written([arguments.data.as_path()]);
     let asked = AskedWindows { window: arguments.window, fit: arguments.fit, from: arguments.from };
     if let Some(prepared) = windows::prepare(&model, &arguments.data, asked)? {
+        say_remarks(prepared.remarks());
         return by_windows(arguments, &model, &prepared);
     }
     refuse_windows(arguments)?;
@@ -118,9 +119,6 @@ fn by_windows(
                 of.windows, horizon.window_s, horizon.from_s, horizon.fit_s
             );
             text += &errors_table(&of.errors);
-        }
-        for remark in &p.remarks {
-            text += &paragraph("", "", remark);
         }
         let page = predicted.folder.join("index.html");
         let name = &p.provenance.scenario_name;

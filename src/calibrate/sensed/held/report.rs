@@ -90,11 +90,7 @@ pub fn into_folder(
         noises: Vec::new(),
         limits: Vec::new(),
         residuals: Vec::new(),
-        rattle: RattleReport {
-            chaotic: false,
-            difference: 0.0,
-            replicas: 1,
-        },
+        rattle: RattleReport { chaotic: false, difference: 0.0, replicas: 1 },
         without: without.iter().map(|kind| (*kind).to_owned()).collect(),
         tolerance_m_s: control.tolerance().unwrap_or(f64::NAN),
         seeds: Seeds { scenario: rig.seed, replicas: vec![0] },

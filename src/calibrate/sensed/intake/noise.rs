@@ -26,6 +26,9 @@ pub struct OtherNoise {
     pub measured: f64,
     /// Its unit.
     pub unit: &'static str,
+    /// The white part of what is declared, in the same.
+    #[serde(skip)]
+    white: f64,
 }
 
 /// Sensors whose noise differs from what is declared by more than chance and by more than it matters; `simulated`
@@ -37,23 +40,46 @@ pub fn correct(problem: &mut RigProblem, simulated: &[Vec<Recording>]) -> Vec<Ot
     if let Some(run) = problem.runs.first() {
         measured(&mut problem.declared.sensors, &run.recording);
     }
-    let mut found = beside(problem, simulated);
+    let mut found = beside(problem, simulated, &|_| true);
     let silent = before.iter().map(is_silent).zip(&problem.declared.sensors);
     for (_, sensor) in silent.filter(|(silent, sensor)| *silent && !is_silent(sensor)) {
         found.retain(|other| other.column != sensor.column);
         let (measured, unit) = (deviation(sensor, &[]), sensor.unit(&problem.declared));
-        found.push(OtherNoise { column: sensor.column.clone(), declared: 0.0, measured, unit });
+        let (column, declared) = (sensor.column.clone(), 0.0);
+        found.push(OtherNoise { column, declared, measured, unit, white: 0.0 });
     }
     found
 }
 
-/// Sensors whose noise differs from what they have by now.
-fn beside(problem: &mut RigProblem, simulated: &[Vec<Recording>]) -> Vec<OtherNoise> {
+/// Which of `noises`, found beside the declared machine, are other than declared beside noiseless recordings of the calibrated
+/// one, too: what shakes that was no sensor's noise. Other sensors have the noise again that they declare.
+pub fn borne_out(
+    problem: &mut RigProblem,
+    noises: Vec<OtherNoise>,
+    simulated: &[Vec<Recording>],
+) -> Vec<OtherNoise> {
+    let (other, silent): (Vec<_>, Vec<_>) =
+        noises.into_iter().partition(|noise| noise.declared > 0.0);
+    let of = |sensor: &Sensor| other.iter().find(|noise| noise.column == sensor.column);
+    for sensor in &mut problem.declared.sensors {
+        sensor.std = of(sensor).map_or(sensor.std, |noise| noise.white);
+    }
+    let mut found = beside(problem, simulated, &|sensor| of(sensor).is_some());
+    found.extend(silent);
+    found
+}
+
+/// Of `asked` sensors those whose noise differs from what they have by now.
+fn beside(
+    problem: &mut RigProblem,
+    simulated: &[Vec<Recording>],
+    asked: &dyn Fn(&Sensor) -> bool,
+) -> Vec<OtherNoise> {
     let mut found = Vec::new();
     for i in 0..problem.declared.sensors.len() {
         let sensor = problem.declared.sensors[i].clone();
         let noisy = sensor.std > 0.0 || sensor.resolution > 0.0;
-        if sensor.tells() || !noisy {
+        if sensor.tells() || !noisy || !asked(&sensor) {
             continue;
         }
         // Of each quiet block the ratio of its power to what noise as declared has there, for the recording and for draws
@@ -96,7 +122,13 @@ fn beside(problem: &mut RigProblem, simulated: &[Vec<Recording>]) -> Vec<OtherNo
         let unit = sensor.unit(&problem.declared);
         problem.declared.sensors[i].std = std;
         let measured = deviation(&problem.declared.sensors[i], &[]);
-        found.push(OtherNoise { column: sensor.column, declared, measured, unit });
+        found.push(OtherNoise {
+            column: sensor.column,
+            declared,
+            measured,
+            unit,
+            white: sensor.std,
+        });
     }
     found
 }
@@ -236,6 +268,47 @@ fn power(values: &[f64]) -> (f64, usize) {
 
 #[cfg(test)]
 mod tests {
+    /// White noise beside the declared machine that the calibrated one makes by itself is told no longer, and what a sensor adds
+    /// still is.
+    #[test]
+    fn what_shakes_the_calibrated_machine_is_no_noise() {
+        use super::*;
+        use rand_chacha::ChaCha8Rng;
+        use rand_chacha::rand_core::SeedableRng;
+        use rand_distr::{Distribution, StandardNormal};
+        let mut random = ChaCha8Rng::seed_from_u64(4);
+        let mut problem = RigProblem::planar("planar-2");
+        problem.runs.truncate(1);
+        let sensors = problem.declared.sensors.clone();
+        let torque = sensors.iter().position(|sensor| sensor.std > 0.0).unwrap();
+        let recording = problem.runs[0].recording.clone();
+        let mut shaken = |from: &Recording, times: f64| {
+            let std = times * sensors[torque].std;
+            let own = from.get(torque).unwrap().iter();
+            let shaken = own.map(|value| {
+                let noise: f64 = StandardNormal.sample(&mut random);
+                value + std * noise
+            });
+            let shaken: Vec<f64> = shaken.collect();
+            let column = |i| {
+                if i == torque { Some(shaken.clone()) } else { from.get(i).map(<[f64]>::to_vec) }
+            };
+            from.with((0..sensors.len()).map(column).collect())
+        };
+        let still = recording
+            .with((0..sensors.len()).map(|_| Some(vec![0.0; recording.samples])).collect());
+        let rattling = shaken(&still, 5.0);
+        problem.runs[0].recording = shaken(&rattling, 1.0);
+        let found = beside(&mut problem, &[vec![still.clone()]], &|sensor| sensor.std > 0.0);
+        let columns: Vec<&str> = found.iter().map(|noise| noise.column.as_str()).collect();
+        assert_eq!(columns, [&sensors[torque].column], "{found:?}");
+        assert!((found[0].measured / found[0].declared - 26f64.sqrt()).abs() < 0.5, "{found:?}");
+        let kept = borne_out(&mut problem, found.clone(), &[vec![still]]);
+        assert_eq!(kept.len(), 1);
+        assert!(borne_out(&mut problem, found, &[vec![rattling]]).is_empty());
+        assert_eq!(problem.declared.sensors[torque].std, sensors[torque].std);
+    }
+
     /// What rattles now and then is no noise of the sensor; noise that is twice as large everywhere is.
     #[test]
     fn what_comes_now_and_then_is_no_noise() {

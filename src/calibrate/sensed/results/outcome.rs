@@ -95,6 +95,7 @@ pub fn calibrate(
     let deviations = if noise { best.fit.deviations() } else { Vec::new() };
     tell("predicting");
     let mut predicting = Predicting::of(problem, &effects, &deviations)?;
+    let noises = noise::borne_out(problem, noises, &predicting.calibrated);
     let mut errors = of_all(problem, &predicting);
     if !noise && described.is_some() && is_worse(&errors) {
         described = None;
@@ -109,10 +110,9 @@ pub fn calibrate(
         (_, described) => described.iter().map(|(d, _)| (d.effect.clone(), Vec::new())).collect(),
     };
     let acting = events.iter().map(|event| (event.setting(), event.params()));
-    let effects = found.into_iter().chain(acting).collect();
     let [declared, predicted] = predicting.means(problem);
     Ok(SensedOutcome {
-        effects,
+        effects: found.into_iter().chain(acting).collect(),
         events,
         described: described.map(|(described, _)| described),
         verdict,

@@ -124,11 +124,7 @@ pub fn into_folder(
         run: recording.name.clone(),
         effects: model.effects.iter().map(ToString::to_string).collect(),
         errors,
-        rattle: RattleReport {
-            chaotic: after.len() > 1,
-            difference,
-            replicas: after.len(),
-        },
+        rattle: RattleReport { chaotic: after.len() > 1, difference, replicas: after.len() },
         wall_s: started.elapsed().as_secs_f64(),
         files: texts.chain(pictures.iter().map(|picture| picture.file.clone())).collect(),
     };

@@ -68,6 +68,13 @@ pub struct PreparedWindows {
     horizons: Vec<Horizon>,
 }
 
+impl PreparedWindows {
+    /// What is to be known of the recording.
+    pub fn remarks(&self) -> Vec<String> {
+        self.bench.runs.iter().flat_map(Recording::remarks).collect()
+    }
+}
+
 /// Reads a recording of a described machine; none where the model is no machine for windows.
 ///
 /// # Errors
@@ -169,7 +176,7 @@ pub fn into_folder(
         events: events.iter().map(Event::report).collect(),
         run_zeros: run_zeros(bench, &zeros),
         inputs: input_columns(bench),
-        remarks: bench.runs.iter().flat_map(Recording::remarks).collect(),
+        remarks: prepared.remarks(),
         wall_s: started.elapsed().as_secs_f64(),
         files: texts.chain(drawn.iter().map(|picture| picture.file.clone())).collect(),
     };
