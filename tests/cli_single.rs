@@ -374,7 +374,7 @@ fn measured_machines_are_calibrated_and_predicted() {
     }
     // The whole decay, from its first quarter second.
     let line = format!("predict arm.toml --data {} --window 54.9 --fit 0.25", swings.display());
-    println!("{}", place.good(&format!("{line} --out arm")));
+    println!("{}", place.noted(&format!("{line} --out arm")).out);
     let [before, after, _] =
         error(&json(&place, "arm/errors.json"), "single_pendulum_1kHz.csv", "theta1_rad");
     assert!(after < 0.02 && before > 1.0, "{before} {after}");

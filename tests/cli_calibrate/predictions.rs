@@ -86,6 +86,26 @@ fn a_column_that_nobody_asks_for_is_told_and_carried_along() {
     assert_eq!(done.err, said);
 }
 
+/// Without `[sensors]` nobody says how exact its instruments are, and the recording is asked.
+#[test]
+fn a_machine_without_declared_instruments_is_predicted() {
+    let place = Place::new();
+    let toml = std::fs::read_to_string(rig("rig.toml")).unwrap();
+    place.write("rig.toml", &toml[..toml.find("[sensors]").unwrap()]);
+    let mut table = Table::of_rig("run-b.csv");
+    table.rows.truncate(1200);
+    place.write("run.csv", &table.text());
+    let json: Value =
+        serde_json::from_str(&place.good("predict rig.toml --data run.csv --json --quiet"))
+            .unwrap();
+    let errors = json["errors"].as_array().unwrap();
+    assert_eq!(errors.len(), 9);
+    for error in errors {
+        assert_number(&error["after"], "after");
+        assert_number(&error["floor"], "floor");
+    }
+}
+
 #[test]
 fn predictions_refuse_what_cannot_be_right() {
     let place = Place::new();
@@ -125,6 +145,15 @@ fn predictions_refuse_what_cannot_be_right() {
     place.refused(
         &format!("predict {rig_file} --data bad.csv --set mechanism.base_side=2"),
         &["bad.csv: no pose of the machine has its first commands: `q1_cmd` starts with 0.368"],
+    );
+    // Drives that have no law of their own are asked what the machine takes.
+    let mut forces = good.clone();
+    forces.rows.truncate(1200);
+    forces.scale(&["F1", "F2", "F3"], 1e-3);
+    place.write("bad.csv", &forces.text());
+    place.refused(
+        &format!("predict {rig_file} --data bad.csv --set drive.mode=prescribed"),
+        &["column `F1` is what the simulated machine says in another unit", "`F1` times 1000"],
     );
     place.refused("predict none.toml --data bad.csv", &["none.toml: cannot be read"]);
 }

@@ -125,6 +125,48 @@ fn five_bar(change: &dyn Fn(&mut Vec<f64>)) -> String {
     changed
 }
 
+/// A crank-rocker's rocker, which no drive moves, is where the crank's commands lead it; and one that does not move is dead, if
+/// its noise does not show either.
+#[test]
+fn places_that_commands_do_not_lead_to_are_told() {
+    let place = Place::new();
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/rigs-planar/planar-2");
+    let text = std::fs::read_to_string(format!("{folder}/run-a.csv")).unwrap();
+    let changed = |column: usize, change: &dyn Fn(f64) -> f64| {
+        let mut lines = text.lines();
+        let mut changed = format!("{}\n", lines.next().unwrap());
+        for line in lines {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            cells[column] = change(cells[column].parse().unwrap()).to_string();
+            changed += &format!("{}\n", cells.join(","));
+        }
+        changed
+    };
+    let heads: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let column = |head: &str| heads.iter().position(|known| *known == head).unwrap();
+    let degrees = 180.0 / std::f64::consts::PI;
+    for (bad, fragment) in [
+        (
+            changed(column("q_D"), &|q| degrees * q),
+            "`q_D` is what the commands' own motion says in another unit",
+        ),
+        (
+            changed(column("q_D"), &|q| -q),
+            "`q_D` has the opposite sign of what the commands' own motion",
+        ),
+        (
+            changed(column("T_O"), &|_| 0.25),
+            "`T_O` never changes while the commands do, not even by its noise",
+        ),
+    ] {
+        place.write("bad.csv", &bad);
+        for command in ["calibrate --rig", "predict"] {
+            let line = format!("{command} {folder}/rig.toml --data bad.csv --quiet");
+            place.refused(&line, &["bad.csv: ", fragment]);
+        }
+    }
+}
+
 /// Columns t, q_O1_cmd, q_O1, T_O1, q_O2_cmd, q_O2, T_O2: what a command and a servo's law say shows which are mistaken.
 #[test]
 fn columns_that_are_mistaken_are_told_by_commands_and_laws() {
