@@ -121,11 +121,11 @@ fn assert_model_predicts(place: &Place, errors: &[Value]) {
         for key in ["channel", "unit"] {
             assert_eq!(one[key], other[key], "{key} of {}", one["channel"]);
         }
-        // A calibration draws other noise for what is left to any model, and finds the swing that machines begin with from other
-        // looks: the declared one was 1 % apart, floors 3 %, the calibrated one 0.2 %.
-        for (key, apart) in [("before", 0.015), ("after", 0.003), ("floor", 0.04)] {
-            let [one, other] = [one, other].map(|error| error[key].as_f64().unwrap());
-            assert!((one / other - 1.0).abs() < apart, "{key}: {one} and {other}");
+        for key in ["after", "floor"] {
+            assert_eq!(one[key], other[key], "{key} of {}", one["channel"]);
         }
+        // The swing that the declared machine begins with is found from other looks: 0.6 % apart.
+        let [one, other] = [one, other].map(|error| error["before"].as_f64().unwrap());
+        assert!((one / other - 1.0).abs() < 0.01, "{one} and {other}");
     }
 }
