@@ -69,7 +69,7 @@ def test_calibrate_refuses_what_the_program_refuses(repository: Path) -> None:
     rig = repository / "assets/rigs/rig-2"
     with pytest.raises(fp.InputError, match="`payloat` is not an effect; did you mean `payload`"):
         fp.calibrate(rig / "rig.toml", rig / "run-a.csv", without=["payloat"])
-    with pytest.raises(fp.InputError, match="takes one run to calibrate on"):
+    with pytest.raises(fp.InputError, match="several runs are fitted together"):
         fp.calibrate(rig / "rig.toml", [rig / "run-a.csv", rig / "run-b.csv"])
     with pytest.raises(fp.InputError, match="data: expected names of files"):
         fp.calibrate(rig / "rig.toml", [3])  # type: ignore[list-item]
