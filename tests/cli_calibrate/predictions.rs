@@ -86,6 +86,19 @@ fn a_column_that_nobody_asks_for_is_told_and_carried_along() {
     assert_eq!(done.err, said);
 }
 
+/// A tracker may stand anyhow: a quarter of a turn makes its recording no other rig's.
+#[test]
+fn a_tracker_that_is_turned_is_no_other_rig() {
+    let place = Place::new();
+    let mut table = Table::of_rig("run-b.csv");
+    table.rows.truncate(1200);
+    table.exchange("x", "y");
+    table.scale(&["x"], -1.0);
+    place.write("run.csv", &table.text());
+    let rig_file = rig("rig.toml").display().to_string();
+    place.good(&format!("predict {rig_file} --data run.csv --quiet"));
+}
+
 /// Without `[sensors]` nobody says how exact its instruments are, and the recording is asked.
 #[test]
 fn a_machine_without_declared_instruments_is_predicted() {

@@ -159,9 +159,14 @@ fn mistaken(
         let (message, help) = match mistake {
             Mistake::Sign(i) => (
                 format!("column `{}` has the opposite sign of what {against} says", head(i)),
-                "turn its sign: it counts in the direction of its joint's coordinate; a command and an encoder that \
-                 are exchanged look alike"
-                    .to_owned(),
+                match machine.sensors[sensor(i)].reads {
+                    Reads::Position(_) | Reads::Effort(_) => {
+                        "turn its sign: it counts in the direction of its joint's coordinate; a command and an encoder \
+                         that are exchanged look alike"
+                    }
+                    _ => "turn its sign: it counts along the axes of the world, angles counterclockwise",
+                }
+                .to_owned(),
             ),
             Mistake::Unit(i, factor) => {
                 let (_, scale) = scaled_by(rig, machine, sensor(i), factor);

@@ -12,7 +12,8 @@ use crate::scenario::Scenario;
 /// Rows at which places are held against each other: a motion of seconds has some turning points.
 const LOOKS: usize = 200;
 
-/// Share of a machine's size by which places are where nothing undeclared leads: offsets and clearances are thousandths of it.
+/// Angle in rad by which a body is turned otherwise than anything undeclared turns it: offsets and clearances are thousandths of a
+/// machine's size.
 const OFF: f64 = 0.015;
 
 /// What speaks against the commands of the first row: another unit than the machine can be in, or no pose that has them.
@@ -95,25 +96,22 @@ pub(super) fn places(
     Some(FollowedColumns::of(sensors.into_iter().zip(series).map(pair)))
 }
 
-/// Places that move otherwise than commands lead the machine, by more than most of their motion and than anything undeclared
-/// could be: they are of another machine.
+/// Angles that move otherwise than commands lead the machine, by more than half their motion and than anything undeclared could be:
+/// they are of another machine. Where points are shown hangs on how their tracker stands as well, which may be anyhow.
 pub(super) fn astray(
     machine: &Mechanism,
     recording: &Recording,
     places: &FollowedColumns,
 ) -> Vec<LogError> {
-    let size = machine.size();
     let one = |(sensor, series): (&Option<usize>, &Option<[Vec<f64>; 2]>)| {
         let (sensor, [read, like]) = (&machine.sensors[(*sensor)?], series.as_ref()?);
         let missed = rms(read.iter().zip(like).map(|(read, like)| read - like));
-        let long = if sensor.unit(machine) == "m" { size } else { 1.0 };
-        let own = rms(like.iter().copied());
-        (missed > OFF * long && missed > ASTRAY * own).then(|| LogError {
+        let turns = sensor.unit(machine) == "rad";
+        (turns && missed > OFF && missed > ASTRAY * rms(like.iter().copied())).then(|| LogError {
             place: recording.path.clone(),
             message: format!(
-                "column `{}` is {missed:.2e} {} (rms) from where the commands lead the declared machine",
-                sensor.column,
-                sensor.unit(machine)
+                "column `{}` is {missed:.2e} rad (rms) from where the commands lead the declared machine",
+                sensor.column
             ),
             help: "is this the rig of that recording, are columns exchanged?".to_owned(),
         })
