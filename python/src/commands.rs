@@ -3,9 +3,9 @@
 use crate::error::{Failure, refuse, warn};
 use crate::scenario::Scenario;
 use crate::work::{detached, end_if};
-use freeplay::calibrate::answer;
 use freeplay::calibrate::predicted::ERRORS_FILE;
 use freeplay::calibrate::result::REPORT_FILE;
+use freeplay::calibrate::sensed;
 use freeplay::calibrate::sensed::predict as along;
 use freeplay::calibrate::sensed::windows::predict::{self as windows, AskedWindows};
 use freeplay::cli::{compare_steps, effect_described, law_described, laws_to_compare};
@@ -102,9 +102,9 @@ fn calibrate(
         let left_out = without(&left_out)?;
         let rig = rig.scenario.clone();
         let paths: Vec<&Path> = data.iter().chain(&validate).map(PathBuf::as_path).collect();
-        let prepared = answer::prepare(rig, &paths, data.len())?;
+        let prepared = sensed::prepare(rig, &paths, data.len())?;
         let folder = Folder::prepare(&out, REPORT_FILE, force)?;
-        Ok(answer::into_folder(prepared, &left_out, folder, &|_: &str| end_if(&stop))?.json)
+        Ok(sensed::into_folder(prepared, &left_out, folder, &|_: &str| end_if(&stop))?.json)
     })
 }
 

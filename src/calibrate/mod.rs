@@ -1,11 +1,9 @@
 //! From recordings of a machine to the effects that its declared model lacks.
 //!
-//! * [`answer`]: the one way in, for any machine.
-//! * [`sensed`]: any mechanism with the sensors that it has; [`record`]: the recordings that a rig would show;
+//! * [`sensed`]: any mechanism with the sensors that it has, from [`sensed::prepare()`] to [`sensed::into_folder`]; [`record`]: the recordings that a rig would show;
 //!   [`plan`]: what to record next; [`hardware`]: the studies of measured machines.
 //! * `values` and `results`: the numbers and the files that all of them share.
 
-pub mod answer;
 pub mod hardware;
 pub mod plan;
 pub mod record;

@@ -21,6 +21,7 @@ pub use kind::{JointKinds, Kind, Parameter, Scan, ScanRange, Senses, Targets};
 pub use setting::{Setting, Wrong};
 pub use target::Target;
 pub use unnamed::UNNAMED;
+pub use unnamed::central::{Central, OverDistance};
 pub use unnamed::efforts::{Efforts, Over};
 pub use unnamed::history::{History, OverTime};
 

@@ -1,6 +1,6 @@
 //! An effect as a scenario's `[[effect]]` has it.
 
-use super::{Efforts, History, Kind, Setting, Target, Targets, Wrong, named};
+use super::{Central, Efforts, History, Kind, Setting, Target, Targets, Wrong, named};
 use crate::measure::spelling::nearest;
 
 fn wrong(key: &str, message: String, help: String) -> Wrong {
@@ -43,12 +43,13 @@ impl Setting {
         Ok(setting)
     }
 
-    /// The effect without a name: a history, or a table of efforts or forces.
+    /// The effect without a name: a history, a central force, or a table of efforts or forces.
     fn unnamed_from_table(table: &toml::Table) -> Result<Self, Wrong> {
-        if table.get("depends_on").and_then(toml::Value::as_str) == Some("time") {
-            return Ok(Self::unnamed_history(History::from_table(table)?));
-        }
-        Ok(Self::unnamed_efforts(Efforts::from_table(table)?))
+        Ok(match table.get("depends_on").and_then(toml::Value::as_str) {
+            Some("time") => Self::unnamed_history(History::from_table(table)?),
+            Some("distance") => Self::unnamed_central(Central::from_table(table)?),
+            _ => Self::unnamed_efforts(Efforts::from_table(table)?),
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! An effect with its numbers.
 
-use super::{Efforts, History, Kind, Parameter, Target, Targets};
+use super::unnamed::Table;
+use super::{Central, Efforts, History, Kind, Parameter, Target, Targets};
 use crate::measure::spelling::nearest;
 use crate::mechanism::{Axes, JointIndex, Mark, Mechanism};
 use nalgebra::Vector2;
@@ -45,17 +46,12 @@ pub struct Setting {
     pub target: Target,
     pub(super) values: Vec<(&'static str, f64)>,
     /// What an effect without a name does.
-    pub(super) efforts: Option<Arc<Efforts>>,
-    /// The same over time.
-    pub(super) history: Option<Arc<History>>,
+    pub(super) table: Option<Table>,
 }
 
 impl PartialEq for Setting {
     fn eq(&self, other: &Self) -> bool {
-        self.is(other)
-            && self.values == other.values
-            && self.efforts == other.efforts
-            && self.history == other.history
+        self.is(other) && self.values == other.values && self.table == other.table
     }
 }
 
@@ -78,7 +74,7 @@ impl Setting {
 
     /// The effect `kind` of a target, with these values of its parameters.
     pub fn on(kind: &'static Kind, target: Target, values: &[(&'static str, f64)]) -> Self {
-        Self { kind, target, values: values.to_vec(), efforts: None, history: None }
+        Self { kind, target, values: values.to_vec(), table: None }
     }
 
     /// The effect `kind` of a target of `mechanism`, where a variant's values change nothing; none where none do.
@@ -110,20 +106,38 @@ impl Setting {
 
     /// A fitted table of efforts or forces that have no name.
     pub fn unnamed_efforts(table: Efforts) -> Self {
-        let kind = &super::unnamed::KIND;
-        Self { efforts: Some(Arc::new(table)), ..Self::on(kind, Target::Machine, &[]) }
+        Self::unnamed(Table::Efforts(Arc::new(table)), Target::Machine)
+    }
+
+    /// A fitted central force that has no name.
+    pub fn unnamed_central(table: Central) -> Self {
+        Self::unnamed(Table::Central(Arc::new(table)), Target::Machine)
     }
 
     /// A history of efforts in joints that has no name.
     pub fn unnamed_history(history: History) -> Self {
         let target = Target::Joints(vec![history.joint.clone()]);
-        let kind = &super::unnamed::KIND;
-        Self { history: Some(Arc::new(history)), ..Self::on(kind, target, &[]) }
+        Self::unnamed(Table::History(Arc::new(history)), target)
+    }
+
+    fn unnamed(table: Table, target: Target) -> Self {
+        Self { table: Some(table), ..Self::on(&super::unnamed::KIND, target, &[]) }
     }
 
     /// The history of an effect without a name that does not last.
     pub fn history(&self) -> Option<&History> {
-        self.history.as_deref()
+        match &self.table {
+            Some(Table::History(history)) => Some(history),
+            _ => None,
+        }
+    }
+
+    /// The central force of an effect without a name.
+    pub fn central(&self) -> Option<&Central> {
+        match &self.table {
+            Some(Table::Central(table)) => Some(table),
+            _ => None,
+        }
     }
 
     /// Whether the effect acts in the recording of this name: a history belongs to the one that it was found in.
@@ -134,7 +148,10 @@ impl Setting {
 
     /// The table of efforts of an effect without a name.
     pub fn efforts(&self) -> Option<&Efforts> {
-        self.efforts.as_deref()
+        match &self.table {
+            Some(Table::Efforts(table)) => Some(table),
+            _ => None,
+        }
     }
 
     /// The value of a parameter: as given, or its default.
@@ -299,7 +316,7 @@ impl Serialize for Setting {
         for (name, value) in &self.values {
             map.serialize_entry(name, value)?;
         }
-        if let Some(table) = &self.efforts {
+        if let Some(table) = self.efforts() {
             map.serialize_entry("depends_on", &table.depends_on)?;
             if !table.depends_on.acts_on_output() {
                 map.serialize_entry("joints", &table.joints)?;
@@ -309,7 +326,16 @@ impl Serialize for Setting {
             map.serialize_entry("rates", &table.rates)?;
             map.serialize_entry("coefficients", &table.coefficients)?;
         }
-        if let Some(history) = &self.history {
+        if let Some(table) = self.central() {
+            map.serialize_entry("depends_on", &table.depends_on)?;
+            if let Some(point) = &table.point {
+                map.serialize_entry("point", point)?;
+            }
+            map.serialize_entry("place", &table.place)?;
+            map.serialize_entry("reach", &table.reach)?;
+            map.serialize_entry("coefficients", &table.coefficients)?;
+        }
+        if let Some(history) = self.history() {
             map.serialize_entry("depends_on", &history.depends_on)?;
             if let Some(run) = &history.run {
                 map.serialize_entry("run", run)?;

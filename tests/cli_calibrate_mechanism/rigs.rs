@@ -245,12 +245,8 @@ fn a_five_bar_in_a_field_of_forces_gets_no_name_but_a_table() {
     let report = report("planar-5");
     assert_eq!(report["verdict"], "unexplained", "{}", report["summary"]);
     assert_eq!(report["effects"][0]["kind"], "unnamed");
-    assert_eq!(report["effects"][0]["depends_on"], "position");
-    let errors = report["errors"].as_array().unwrap();
-    for error in errors.iter().filter(|error| error["role"] == "validation") {
-        let left = error["after"].as_f64().unwrap() / error["before"].as_f64().unwrap();
-        assert!(left < 0.1, "{error}");
-    }
+    assert_eq!(report["effects"][0]["depends_on"], "distance");
+    assert!(worst(&report) < 1.5, "{}", report["errors"]);
 }
 
 /// A 3-RPR of `assets/rigs` that is written out as any mechanism, so that it is calibrated by its sensors alone.
@@ -264,15 +260,15 @@ fn by_sensors_alone(place: &Place, name: &str) -> (String, Value) {
     (rig, serde_json::from_str(&text).unwrap())
 }
 
-/// Joints rattle in a field of forces that has no name: it is a table over where the platform is.
+/// Joints rattle in a field of forces that has no name: it is a table over how far the platform is from a fixed place.
 #[test]
 #[ignore = "three minutes"]
-fn what_has_no_name_may_vary_with_the_place_of_a_platform() {
+fn what_has_no_name_may_come_from_a_fixed_place() {
     let (_, report) = by_sensors_alone(&Place::new(), "rig-6");
     assert_eq!(report["verdict"], "unexplained", "{}", report["summary"]);
     assert_eq!(report["effects"][0]["kind"], "unnamed");
-    assert_eq!(report["effects"][0]["depends_on"], "output-position");
-    assert!(worst(&report) < 2.0, "{}", report["errors"]);
+    assert_eq!(report["effects"][0]["depends_on"], "distance");
+    assert!(worst(&report) < 1.3, "{}", report["errors"]);
 }
 
 /// Two things are missing, and its recordings begin with a swing that no release gives.

@@ -1,6 +1,6 @@
 //! Parts of `report.json` that all ways of calibrating share.
 
-use crate::effects::{Over, OverTime, Setting, Target};
+use crate::effects::{Over, OverDistance, OverTime, Setting, Target};
 use crate::measure::student::NORMAL95;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
@@ -58,6 +58,8 @@ impl Serialize for ActsOn {
 pub enum Depends {
     /// A table of efforts or forces.
     Efforts(Over),
+    /// A central force.
+    Central(OverDistance),
     /// A history of efforts.
     History(OverTime),
 }
@@ -66,7 +68,10 @@ impl Depends {
     /// Of an effect, if it has no name.
     pub fn of(effect: &Setting) -> Option<Self> {
         let table = effect.efforts().map(|table| Self::Efforts(table.depends_on));
-        table.or_else(|| effect.history().map(|history| Self::History(history.depends_on)))
+        let central = || effect.central().map(|table| Self::Central(table.depends_on));
+        table
+            .or_else(central)
+            .or_else(|| effect.history().map(|history| Self::History(history.depends_on)))
     }
 }
 

@@ -1,7 +1,7 @@
 //! What an effect without a name does: its force over the plane, or over what it depends on.
 
-use crate::effects::{Efforts, Over, Setting};
-use crate::report::{Curve, Panel, Picture, ReportError, Style, panels_svg, path_svg};
+use crate::effects::{Central, Efforts, Over, Setting};
+use crate::report::{Curve, Panel, Picture, ReportError, Style, number, panels_svg, path_svg};
 
 /// Points of a curve.
 const POINTS: usize = 121;
@@ -24,10 +24,13 @@ pub fn pictures<'a>(
 ) -> Result<Vec<Picture>, ReportError> {
     let mut pictures = Vec::new();
     for effect in effects {
-        let Some(table) = effect.efforts() else { continue };
-        let (svg, over) = match table.depends_on {
-            Over::OutputPosition => (plane(table)?, "the plane"),
-            depends_on => (panels_svg(&of_table(table))?, depends_on.words()),
+        let (svg, over) = match (effect.efforts(), effect.central()) {
+            (Some(table), _) if table.depends_on == Over::OutputPosition => {
+                (plane(table)?, "the plane")
+            }
+            (Some(table), _) => (panels_svg(&of_table(table))?, table.depends_on.words()),
+            (_, Some(table)) => (panels_svg(&[of_distance(table)])?, "the distance"),
+            _ => continue,
         };
         let file = match pictures.len() {
             0 => "unnamed.svg".to_owned(),
@@ -71,10 +74,25 @@ fn plane(table: &Efforts) -> Result<String, ReportError> {
             |side: f64| (tip.0 - 0.3 * dx - side * 0.2 * dy, tip.1 - 0.3 * dy + side * 0.2 * dx);
         [(*x, *y), tip, barb(1.0), barb(-1.0), tip, (f64::NAN, f64::NAN)]
     });
-    let strongest = crate::report::number(strongest);
+    let strongest = number(strongest);
     let name = format!("force, at most {strongest} N");
     let arrows = [Curve { name, points: drawn.collect(), style: Style::Solid }];
     path_svg(&format!("Force on the output, at most {strongest} N"), &arrows)
+}
+
+/// The force towards a fixed place over the distance from there.
+fn of_distance(table: &Central) -> Panel {
+    let [near, far] = table.reach;
+    let distances = from_end_to_end(POINTS).map(|u| near + 0.5 * (u + 1.0) * (far - near));
+    let [x, y] = table.place.map(number);
+    let points = distances.map(|distance| (distance, table.force(distance))).collect();
+    let name = table.point.as_deref().unwrap_or("the output").to_owned();
+    Panel {
+        title: format!("Force on {name} towards ({x}, {y}) m"),
+        x_label: "distance (m)".into(),
+        y_label: "force (N)".into(),
+        curves: vec![Curve { name, points, style: Style::Solid }],
+    }
 }
 
 /// The effort at each joint, or the force along each coordinate of the output, over what it depends on, the other coordinates
@@ -131,6 +149,10 @@ mod tests {
             assert_eq!(drawn.len(), 1, "{depends_on:?}");
             assert!(drawn[0].svg.contains("<polyline") && !drawn[0].svg.contains("no data"));
         }
+        let mut central = Central::empty(None, [0.1, 0.2], [0.01, 0.1], 4);
+        central.coefficients = vec![0.5; 4];
+        let drawn = pictures([&Setting::unnamed_central(central)]).expect("a picture");
+        assert!(drawn[0].svg.contains("<polyline") && drawn[0].svg.contains("(0.1, 0.2)"));
         let kind = named("payload").expect("an effect");
         assert!(pictures([&Setting::new(kind, None, &[])]).expect("none").is_empty());
     }

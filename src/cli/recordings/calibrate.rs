@@ -1,9 +1,11 @@
 //! `freeplay calibrate`: close the loop with measured data.
 
 use super::self_test::SelfTest;
-use crate::calibrate::answer::{Calibrated, into_folder, prepare};
 use crate::calibrate::quantity;
+use crate::calibrate::result::FinishedCalibration;
 use crate::calibrate::result::{CalibrateError, REPORT_FILE};
+use crate::calibrate::sensed::report::Report;
+use crate::calibrate::sensed::{into_folder, prepare};
 use crate::cli::shared::failure::{Failure, say_how_written, say_remarks, warn_of_doubts};
 use crate::cli::shared::options::{FolderOptions, PrintOptions, Sets};
 use crate::cli::shared::parts::PartOptions;
@@ -165,8 +167,9 @@ fn without(names: &[String]) -> Result<Vec<&'static str>, Failure> {
 }
 
 /// The result for people.
-fn text(report: &Calibrated) -> String {
-    let summary = format!("{}: {}", report.name, report.summary);
+fn text(done: &FinishedCalibration<Report>) -> String {
+    let FinishedCalibration { report, folder, .. } = done;
+    let summary = format!("{}: {}", report.provenance.scenario_name, report.summary);
     let mut text = paragraph("", "", &summary);
     // Writing to a string cannot fail, here and below.
     for effect in &report.effects {
@@ -187,13 +190,17 @@ fn text(report: &Calibrated) -> String {
         [e.run.clone(), e.role.to_owned(), e.channel.clone(), before, after, floor]
     });
     let _ = write!(text, "\n{}", table("lllrrr", heads, rows));
-    let page = report.folder.join("index.html");
+    let page = folder.join("index.html");
+    // A machine that is calibrated by windows is not simulated along a whole run.
+    let simulations = match report.windows {
+        Some(_) => String::new(),
+        None => format!("{} simulations in ", report.simulations),
+    };
     let _ = writeln!(
         text,
-        "\n{}{} s\nWritten to {}; open {}",
-        report.simulations.map_or_else(String::new, |count| format!("{count} simulations in ")),
+        "\n{simulations}{} s\nWritten to {}; open {}",
         number(report.wall_s),
-        report.folder.display(),
+        folder.display(),
         page.display()
     );
     text

@@ -1,7 +1,7 @@
 //! What a mechanism lacks and nobody can name: efforts in its joints, or forces on its output, as a fitted table of what
 //! they depend on.
 
-use crate::effects::{Setting, Wrong};
+use crate::effects::Wrong;
 use crate::mechanism::{JointIndex, Load, Mechanism, Situation, angle_near};
 use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
@@ -87,7 +87,7 @@ const PLACES: usize = 2 * HARMONICS;
 const REST: f64 = 0.01;
 
 /// Places between −1 and 1, evenly, and a Gaussian as wide as they are apart around each.
-fn gaussians(relative: f64, count: usize) -> impl Iterator<Item = f64> {
+pub(super) fn gaussians(relative: f64, count: usize) -> impl Iterator<Item = f64> {
     let width = 2.0 / (count - 1) as f64;
     (0..count).map(move |k| (-0.5 * ((relative + 1.0) / width - k as f64).powi(2)).exp())
 }
@@ -213,8 +213,7 @@ impl Load for AppliedEfforts {
     }
 }
 
-pub(super) fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    let Some(table) = &setting.efforts else { return Ok(()) };
+pub(super) fn apply(table: &Arc<Efforts>, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let find = |name: &String| {
         mechanism.joints().find(|(known, _)| known == name).map(|(_, joint)| joint).ok_or_else(
             || Wrong {

@@ -1,11 +1,16 @@
 //! What a model lacks and nobody can name: efforts and forces as a fitted table of what they depend on.
 
+pub(super) mod central;
 pub(super) mod efforts;
 pub(super) mod history;
 
 use super::kind::{defaults, linear};
 use super::{Kind, Setting, Targets, Wrong};
 use crate::mechanism::Mechanism;
+use central::Central;
+use efforts::Efforts;
+use history::History;
+use std::sync::Arc;
 
 /// Its name.
 pub const UNNAMED: &str = "unnamed";
@@ -14,7 +19,7 @@ pub(super) const KIND: Kind = Kind {
     name: UNNAMED,
     summary: "efforts or forces as a table of what they depend on, fitted to data: what has no name here",
     equation: "f_i = sum_k coefficients[i][k] feature_k(depends_on); i: the effort of each joint, or force along x, \
-               along y and torque at the output's reference point",
+               along y and torque at the output's reference point; or the force along the line from a point to a place",
     source: "none: a description, not an explanation",
     trace: "wherever it was found",
     targets: Targets::Machine,
@@ -27,9 +32,19 @@ pub(super) const KIND: Kind = Kind {
     apply,
 };
 
+/// What an effect without a name does.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Table {
+    Efforts(Arc<Efforts>),
+    Central(Arc<Central>),
+    History(Arc<History>),
+}
+
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    match &setting.history {
-        Some(history) => history::apply(history, setting, mechanism),
-        None => efforts::apply(setting, mechanism),
+    match &setting.table {
+        Some(Table::Efforts(table)) => efforts::apply(table, mechanism),
+        Some(Table::Central(table)) => central::apply(table, setting, mechanism),
+        Some(Table::History(history)) => history::apply(history, setting, mechanism),
+        None => Ok(()),
     }
 }

@@ -59,7 +59,7 @@ impl CalibratedAs {
 /// validate on.
 ///
 /// ```
-/// use freeplay::calibrate::answer::prepare;
+/// use freeplay::calibrate::sensed::prepare;
 /// use freeplay::scenario::Scenario;
 /// use std::path::Path;
 ///

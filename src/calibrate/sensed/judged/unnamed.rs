@@ -1,6 +1,8 @@
 //! What remains when no effect explains it: efforts in the measured joints, or forces on the output, as a table of what they
 //! depend on.
 
+use super::central;
+use super::table_fits::TableFits;
 use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Split, Stopped};
 use crate::calibrate::sensed::residuals::residual::{Name, ResidualKind};
@@ -9,11 +11,9 @@ use crate::calibrate::sensed::thresholds::{TABLE, TABLE_PASSES};
 use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::model::Model;
 use crate::calibrate::values::instrument::Replicated;
-use crate::calibrate::values::normal::{Regressed, ridged};
 use crate::effects::{Efforts, Over, Setting};
 use crate::mechanism::JointIndex;
-use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
+use crate::report::number;
 
 /// Coordinates of a body: its place and angle.
 const PLANAR: usize = 3;
@@ -25,31 +25,46 @@ pub struct DescribedEfforts {
     pub effect: Setting,
     /// Share of what was above noise on data that it was not fitted to that it removes, 0…1.
     pub share: f64,
-    /// The same of every class, the best first.
-    pub others: Vec<(Over, f64)>,
+    /// The same of every class, in words, the best first.
+    pub others: Vec<(&'static str, f64)>,
+}
+
+/// What an effect that is a table depends on, in words.
+fn words(effect: &Setting) -> &'static str {
+    let central = effect.central().map(|_| "the distance from a fixed place");
+    let efforts = effect.efforts().map(|table| table.depends_on.words());
+    central.or(efforts).unwrap_or("something unknown")
 }
 
 impl DescribedEfforts {
     /// What it depends on, in words.
     pub fn words(&self) -> &'static str {
-        self.effect.efforts().map_or("something unknown", |table| table.depends_on.words())
+        words(&self.effect)
     }
 
-    /// Whether it acts on the output, rather than on each joint.
-    pub fn acts_on_output(&self) -> bool {
-        self.effect.efforts().is_some_and(|table| table.depends_on.acts_on_output())
+    /// What acts, in words.
+    fn acts(&self) -> String {
+        if let Some(central) = self.effect.central() {
+            let point = central.point.as_deref().unwrap_or("the output");
+            let [x, y] = central.place.map(number);
+            return format!("forces on {point} along the line to ({x}, {y}) m");
+        }
+        let on_output = |table: &Efforts| table.depends_on.acts_on_output();
+        if self.effect.efforts().is_some_and(on_output) { "forces" } else { "efforts" }.to_owned()
     }
 
     /// What speaks for it.
     pub fn evidence(&self) -> String {
-        let others = self.others.iter().skip(1).map(|(over, share)| {
-            format!("{} {:.0} %", over.words(), 100.0 * share.clamp(0.0, 1.0))
-        });
+        let others = self
+            .others
+            .iter()
+            .skip(1)
+            .map(|(words, share)| format!("{words} {:.0} %", 100.0 * share.clamp(0.0, 1.0)));
         let others: Vec<String> = others.collect();
         format!(
             "{} that vary with {} remove {:.0} % of what stands above noise on data that they were not \
              fitted to ({})",
-            if self.acts_on_output() { "forces" } else { "efforts" },
+            self.acts(),
             self.words(),
             100.0 * self.share,
             others.join(", ")
@@ -67,82 +82,77 @@ pub fn describe(
     model: &Model,
 ) -> Result<Option<(DescribedEfforts, Model)>, Stopped> {
     let mut last: Option<(DescribedEfforts, Model)> = None;
-    let mut others: Vec<(Over, f64)> = Vec::new();
-    let mut left = 1.0;
+    let mut others: Vec<(&'static str, f64)> = Vec::new();
     for _ in 0..TABLE_PASSES {
         let before = last.as_ref().map_or(model, |(_, tabled)| tabled);
-        let classes = others.first().map_or(Over::ALL.to_vec(), |(best, _)| vec![*best]);
-        let tables = best_tables(search, before, &classes);
+        let known = last.as_ref().map(|(described, _)| &described.effect);
+        let tables = best_tables(search, &model.fit.effects, before, known);
         if others.is_empty() {
-            others = tables.iter().map(|(share, table)| (table.depends_on, *share)).collect();
+            others = tables.iter().map(|(share, table)| (words(table), *share)).collect();
         }
         let least = if last.is_none() { TABLE } else { 0.0 };
-        let Some((share, mut table)) =
-            tables.into_iter().next().filter(|(share, _)| *share > least)
-        else {
-            break;
-        };
-        if let Some(known) = last.as_ref().and_then(|(described, _)| described.effect.efforts()) {
-            let pairs =
-                table.coefficients.iter_mut().flatten().zip(known.coefficients.iter().flatten());
-            pairs.for_each(|(own, known)| *own += known);
-        }
-        let effect = Setting::unnamed_efforts(table);
+        let best = tables.into_iter().next();
+        let Some((share, effect)) = best.filter(|(share, _)| *share > least) else { break };
         let effects = [model.fit.effects.as_slice(), std::slice::from_ref(&effect)].concat();
         let Some(settled) = search.settle(&effects, 1)? else { break };
-        // What a table adds to that only fits one run's rattle is no better on others.
+        // A table that only fits one run's rattle better is no better on others.
         if last.as_ref().is_some_and(|(_, tabled)| tabled.misfit <= settled.misfit) {
             break;
         }
-        left *= (1.0 - share).clamp(0.0, 1.0);
-        last =
-            Some((DescribedEfforts { effect, share: 1.0 - left, others: others.clone() }, settled));
+        last = Some((DescribedEfforts { effect, share, others: others.clone() }, settled));
     }
     Ok(last)
 }
 
-/// The best table of each class beside a model with the share that it removes, the best first.
-fn best_tables(search: &Search, model: &Model, classes: &[Over]) -> Vec<(f64, Efforts)> {
+/// The best table of each class beside effects, or of that of a known one, with the share that it removes, the best first; what
+/// a look is wrong by as a model shows it.
+fn best_tables(
+    search: &Search,
+    effects: &[Setting],
+    model: &Model,
+    known: Option<&Setting>,
+) -> Vec<(f64, Setting)> {
     let (problem, split) = (search.problem, search.split);
-    let targets =
-        [&split.on, &split.hold].map(|on| FitTarget { problem, baseline: &model.baseline, on });
     let Some(joints) = joints_moved(problem, split, &search.names) else { return Vec::new() };
     let output = output_moved(problem, split, &joints);
-    tables(targets, &model.fit.effects, [Some(joints), output], classes)
+    let one_freedom = joints.joints.len() < 2;
+    let targets =
+        [&split.on, &split.hold].map(|on| FitTarget { problem, baseline: &model.baseline, on });
+    let Some(fits) = TableFits::of(targets, effects) else { return Vec::new() };
+    let classes = match known.map(|known| known.efforts()) {
+        Some(table) => table.map_or(Vec::new(), |table| vec![table.depends_on]),
+        None => Over::ALL.to_vec(),
+    };
+    let mut found = tables(&fits, [Some(joints), output], &classes);
+    // Of one freedom every place is passed again at the same distance: a table over its coordinate says as much.
+    let central = known.and_then(|known| known.central());
+    if (known.is_none() || central.is_some()) && !one_freedom {
+        found.extend(central::pull(&fits, problem, split, central));
+    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found
 }
 
 /// The best table of each class over what moved, joints or the output, with the share that it removes of what stands above
-/// noise in the second target when fitted to the first, the best first.
+/// noise in the data that is held back.
 fn tables(
-    [on, hold]: [impl Replicated; 2],
-    effects: &[Setting],
+    fits: &TableFits<impl Replicated>,
     moved: [Option<MovedParts>; 2],
     classes: &[Over],
-) -> Vec<(f64, Efforts)> {
-    let (Some(fitted), Some(held)) = (on.white(effects), hold.white(effects)) else {
-        return Vec::new();
-    };
-    let mut found: Vec<(f64, Efforts)> = Vec::new();
+) -> Vec<(f64, Setting)> {
+    let mut found = Vec::new();
     for depends_on in classes {
         let Some(moved) = &moved[usize::from(depends_on.acts_on_output())] else { continue };
         let MovedParts { joints, ranges, sizes } = moved;
         let empty = Efforts::empty(*depends_on, joints.clone(), ranges);
-        let [Some(columns), Some(held_columns)] = [
-            columns(&on, effects, &fitted, &empty, sizes),
-            columns(&hold, effects, &held, &empty, sizes),
-        ] else {
-            continue;
-        };
-        let features = columns.ncols() / sizes.len();
-        let fits = Regressed { columns: &columns, white: &fitted };
-        let holds = Regressed { columns: &held_columns, white: &held };
-        if let Some((share, weights)) = ridged(fits, holds, sizes.len()) {
+        let units = units(&empty, sizes);
+        let features = units.len() / sizes.len();
+        if let Some((share, weights)) = fits.regressed(&units, sizes.len()) {
             let part = |(weights, size): (&[f64], &f64)| weights.iter().map(|w| w * size).collect();
             let coefficients = weights.as_slice().chunks(features).zip(sizes).map(part).collect();
-            found.push((share, Efforts { coefficients, ..empty }));
+            found.push((share, Setting::unnamed_efforts(Efforts { coefficients, ..empty })));
         }
     }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found
 }
 
@@ -230,23 +240,15 @@ fn spanned(motion: impl Iterator<Item = [f64; 2]>) -> [f64; 3] {
     [0.5 * (low + high), 0.5 * (high - low), fastest]
 }
 
-/// Change of a target's residual by each coefficient of a table in units of `sizes`, joint by joint: it is
-/// linear in them.
-fn columns(
-    target: &impl Replicated,
-    effects: &[Setting],
-    white: &DVector<f64>,
-    table: &Efforts,
-    sizes: &[f64],
-) -> Option<DMatrix<f64>> {
+/// A table with each coefficient alone, in units of `sizes`, joint by joint.
+fn units(table: &Efforts, sizes: &[f64]) -> Vec<Setting> {
     let coordinates = table.coordinates();
     let still = vec![0.0; coordinates];
     let features = table.features(0, &table.middle, &still).len();
-    let columns = (0..coordinates * features).into_par_iter().map(|i| {
+    let unit = |i: usize| {
         let mut coefficients = vec![vec![0.0; features]; coordinates];
         coefficients[i / features][i % features] = sizes[i / features];
-        let unit = Setting::unnamed_efforts(Efforts { coefficients, ..table.clone() });
-        Some(target.white(&[effects, &[unit]].concat())? - white)
-    });
-    Some(DMatrix::from_columns(&columns.collect::<Option<Vec<_>>>()?))
+        Setting::unnamed_efforts(Efforts { coefficients, ..table.clone() })
+    };
+    (0..coordinates * features).map(unit).collect()
 }
