@@ -16,14 +16,16 @@ mod setting;
 mod target;
 mod twins;
 mod unnamed;
+mod wrong;
 
 pub use kind::{JointKinds, Kind, Parameter, Scan, ScanRange, Senses, Targets};
-pub use setting::{Setting, Wrong};
+pub use setting::Setting;
 pub use target::Target;
 pub use unnamed::UNNAMED;
 pub use unnamed::central::{Central, OverDistance};
 pub use unnamed::efforts::{Efforts, Over};
 pub use unnamed::history::{History, OverTime};
+pub use wrong::Wrong;
 
 /// Every effect there is, in the order in which they are listed.
 pub const ALL: &[&Kind] = &[

@@ -1,26 +1,13 @@
 //! An effect with its numbers.
 
-use super::unnamed::Table;
-use super::{Central, Efforts, History, Kind, Parameter, Target, Targets};
+use super::unnamed::FittedTable;
+use super::{Central, Efforts, History, Kind, Parameter, Target, Targets, Wrong};
 use crate::measure::spelling::nearest;
 use crate::mechanism::{Axes, JointIndex, Mark, Mechanism};
 use nalgebra::Vector2;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
 use std::sync::Arc;
-
-/// What is wrong with a [`Setting`]: the key, what it is, what would be right.
-///
-/// [`Setting`] has an example.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Wrong {
-    /// `kind`, `joint` or a parameter.
-    pub key: String,
-    /// What is wrong.
-    pub message: String,
-    /// What would be right.
-    pub help: String,
-}
 
 /// An effect, what it acts on, and its numbers: one `[[effect]]` of a scenario.
 ///
@@ -46,7 +33,7 @@ pub struct Setting {
     pub target: Target,
     pub(super) values: Vec<(&'static str, f64)>,
     /// What an effect without a name does.
-    pub(super) table: Option<Table>,
+    pub(super) table: Option<FittedTable>,
 }
 
 impl PartialEq for Setting {
@@ -106,28 +93,28 @@ impl Setting {
 
     /// A fitted table of efforts or forces that have no name.
     pub fn unnamed_efforts(table: Efforts) -> Self {
-        Self::unnamed(Table::Efforts(Arc::new(table)), Target::Machine)
+        Self::unnamed(FittedTable::Efforts(Arc::new(table)), Target::Machine)
     }
 
     /// A fitted central force that has no name.
     pub fn unnamed_central(table: Central) -> Self {
-        Self::unnamed(Table::Central(Arc::new(table)), Target::Machine)
+        Self::unnamed(FittedTable::Central(Arc::new(table)), Target::Machine)
     }
 
     /// A history of efforts in joints that has no name.
     pub fn unnamed_history(history: History) -> Self {
         let target = Target::Joints(vec![history.joint.clone()]);
-        Self::unnamed(Table::History(Arc::new(history)), target)
+        Self::unnamed(FittedTable::History(Arc::new(history)), target)
     }
 
-    fn unnamed(table: Table, target: Target) -> Self {
+    fn unnamed(table: FittedTable, target: Target) -> Self {
         Self { table: Some(table), ..Self::on(&super::unnamed::KIND, target, &[]) }
     }
 
     /// The history of an effect without a name that does not last.
     pub fn history(&self) -> Option<&History> {
         match &self.table {
-            Some(Table::History(history)) => Some(history),
+            Some(FittedTable::History(history)) => Some(history),
             _ => None,
         }
     }
@@ -135,7 +122,7 @@ impl Setting {
     /// The central force of an effect without a name.
     pub fn central(&self) -> Option<&Central> {
         match &self.table {
-            Some(Table::Central(table)) => Some(table),
+            Some(FittedTable::Central(table)) => Some(table),
             _ => None,
         }
     }
@@ -149,7 +136,7 @@ impl Setting {
     /// The table of efforts of an effect without a name.
     pub fn efforts(&self) -> Option<&Efforts> {
         match &self.table {
-            Some(Table::Efforts(table)) => Some(table),
+            Some(FittedTable::Efforts(table)) => Some(table),
             _ => None,
         }
     }

@@ -15,14 +15,8 @@ const FLAT: [&str; 1] = ["contact/laws"];
 const DOZEN: usize = 12;
 
 /// A kind of effect says how its settings act, a setting says of which kind it is, and tables of what has no name are values of
-/// a setting: one concept in five files.
-const ONE_CONCEPT: [&str; 5] = [
-    "effects/kind.rs",
-    "effects/setting.rs",
-    "effects/unnamed/efforts.rs",
-    "effects/unnamed/history.rs",
-    "effects/unnamed/mod.rs",
-];
+/// a setting: one concept in three files.
+const ONE_CONCEPT: [&str; 3] = ["effects/kind.rs", "effects/setting.rs", "effects/unnamed/mod.rs"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -2,7 +2,7 @@
 //! band, a stop with a soft face.
 
 use super::efforts::gaussians;
-use crate::effects::{Setting, Wrong};
+use crate::effects::Wrong;
 use crate::mechanism::{Load, Mark, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
@@ -63,11 +63,7 @@ impl Central {
 
     /// Reads the keys of an `[[effect]]` of this kind.
     pub(in crate::effects) fn from_table(table: &toml::Table) -> Result<Self, Wrong> {
-        let wrong = |message: &str| Wrong {
-            key: "coefficients".to_owned(),
-            message: message.to_owned(),
-            help: "this effect is written by `freeplay calibrate`: copy it whole".to_owned(),
-        };
+        let wrong = |message: &str| Wrong::torn("coefficients", message);
         let read = Self::deserialize(table.clone()).map_err(|error| wrong(error.message()))?;
         let [near, far] = read.reach;
         if !(0.0 <= near && near < far) {
@@ -98,14 +94,10 @@ impl Load for AppliedCentral {
     }
 }
 
-pub(super) fn apply(
-    table: &Arc<Central>,
-    setting: &Setting,
-    mechanism: &mut Mechanism,
-) -> Result<(), Wrong> {
+pub(super) fn apply(table: &Arc<Central>, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let Some(mark) = table.mark(mechanism) else {
-        let known: Vec<&str> = mechanism.names.points.keys().map(String::as_str).collect();
-        return Err(setting.stranger(table.point.as_deref().unwrap_or(""), "point", &known));
+        let name = table.point.as_deref().unwrap_or("");
+        return Err(Wrong::of_another_machine("point", "point", name));
     };
     mechanism.loads.push(Arc::new(AppliedCentral { table: Arc::clone(table), mark }));
     Ok(())

@@ -152,11 +152,7 @@ impl Efforts {
 
     /// Reads the keys of an `[[effect]]` of this kind.
     pub(in crate::effects) fn from_table(table: &toml::Table) -> Result<Self, Wrong> {
-        let wrong = |message: &str| Wrong {
-            key: "coefficients".to_owned(),
-            message: message.to_owned(),
-            help: "this effect is written by `freeplay calibrate`: copy it whole".to_owned(),
-        };
+        let wrong = |message: &str| Wrong::torn("coefficients", message);
         let read = Self::deserialize(table.clone()).map_err(|error| wrong(error.message()))?;
         let coordinates = read.coordinates();
         let lists = [&read.middle, &read.reach, &read.rates].map(Vec::len);
@@ -215,13 +211,10 @@ impl Load for AppliedEfforts {
 
 pub(super) fn apply(table: &Arc<Efforts>, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let find = |name: &String| {
-        mechanism.joints().find(|(known, _)| known == name).map(|(_, joint)| joint).ok_or_else(
-            || Wrong {
-                key: "joints".to_owned(),
-                message: format!("\"{name}\" is not a joint of this machine"),
-                help: "this effect belongs to the machine that it was fitted to".to_owned(),
-            },
-        )
+        let joint = mechanism.joints().find(|(known, _)| known == name);
+        joint
+            .map(|(_, joint)| joint)
+            .ok_or_else(|| Wrong::of_another_machine("joints", "joint", name))
     };
     let joints = table.joints.iter().map(find).collect::<Result<Vec<JointIndex>, Wrong>>()?;
     mechanism.loads.push(Arc::new(AppliedEfforts { table: Arc::clone(table), joints }));

@@ -1,6 +1,6 @@
 //! What a mechanism lacks for a while and nobody can name: efforts in joints over time.
 
-use crate::effects::{Setting, Wrong};
+use crate::effects::Wrong;
 use crate::mechanism::{JointIndex, Load, Mechanism, Situation};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -54,11 +54,7 @@ impl History {
 
     /// Reads the keys of an `[[effect]]` of this kind.
     pub(in crate::effects) fn from_table(table: &toml::Table) -> Result<Self, Wrong> {
-        let wrong = |message: &str| Wrong {
-            key: "efforts".to_owned(),
-            message: message.to_owned(),
-            help: "this effect is written by `freeplay calibrate`: copy it whole".to_owned(),
-        };
+        let wrong = |message: &str| Wrong::torn("efforts", message);
         let read = Self::deserialize(table.clone()).map_err(|error| wrong(error.message()))?;
         let fits = |list: &Vec<f64>| list.len() == read.t.len();
         if read.efforts.len() != read.joints.len() || !read.efforts.iter().all(fits) {
@@ -103,15 +99,12 @@ impl Load for AppliedHistory {
     }
 }
 
-pub(super) fn apply(
-    history: &Arc<History>,
-    setting: &Setting,
-    mechanism: &mut Mechanism,
-) -> Result<(), Wrong> {
-    let known: Vec<&str> = mechanism.joints().map(|(name, _)| name).collect();
+pub(super) fn apply(history: &Arc<History>, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let find = |name: &String| {
         let joint = mechanism.joints().find(|(known, _)| known == name);
-        joint.map(|(_, joint)| joint).ok_or_else(|| setting.stranger(name, "joint", &known))
+        joint
+            .map(|(_, joint)| joint)
+            .ok_or_else(|| Wrong::of_another_machine("joints", "joint", name))
     };
     let joints = history.joints.iter().map(find).collect::<Result<Vec<JointIndex>, Wrong>>()?;
     mechanism.loads.push(Arc::new(AppliedHistory { history: Arc::clone(history), joints }));
@@ -120,7 +113,7 @@ pub(super) fn apply(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::effects::Setting;
     use crate::effects::rigs::{WHEEL_AND_SLIDE, ended};
 
     const PUSH: &str = "kind = \"unnamed\"\ndepends_on = \"time\"\njoint = \"O\"\nat_s = 0.02\n\

@@ -34,7 +34,7 @@ pub(super) const KIND: Kind = Kind {
 
 /// What an effect without a name does.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Table {
+pub(super) enum FittedTable {
     Efforts(Arc<Efforts>),
     Central(Arc<Central>),
     History(Arc<History>),
@@ -42,9 +42,9 @@ pub(super) enum Table {
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     match &setting.table {
-        Some(Table::Efforts(table)) => efforts::apply(table, mechanism),
-        Some(Table::Central(table)) => central::apply(table, setting, mechanism),
-        Some(Table::History(history)) => history::apply(history, setting, mechanism),
+        Some(FittedTable::Efforts(table)) => efforts::apply(table, mechanism),
+        Some(FittedTable::Central(table)) => central::apply(table, mechanism),
+        Some(FittedTable::History(history)) => history::apply(history, mechanism),
         None => Ok(()),
     }
 }
