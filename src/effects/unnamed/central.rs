@@ -67,7 +67,7 @@ impl Central {
         let read = Self::deserialize(table.clone()).map_err(|error| wrong(error.message()))?;
         let [near, far] = read.reach;
         if !(0.0 <= near && near < far) {
-            return Err(wrong("has a reach that is not from one distance to a larger one"));
+            return Err(Wrong::torn("reach", "is not from one distance to a larger one"));
         }
         if read.coefficients.len() < 2 {
             return Err(wrong("has fewer than two numbers"));

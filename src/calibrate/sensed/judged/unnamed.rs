@@ -99,6 +99,8 @@ pub fn describe(
         if last.as_ref().is_some_and(|(_, tabled)| tabled.misfit <= settled.misfit) {
             break;
         }
+        // What chance adds to all of it is not more than all.
+        let share = share.clamp(0.0, 1.0);
         last = Some((DescribedEfforts { effect, share, others: others.clone() }, settled));
     }
     Ok(last)
