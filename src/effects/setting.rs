@@ -5,7 +5,8 @@ use super::{Central, Efforts, History, Kind, Parameter, Target, Targets, Wrong};
 use crate::measure::spelling::nearest;
 use crate::mechanism::{Axes, JointIndex, Mark, Mechanism};
 use nalgebra::Vector2;
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
 use std::fmt;
 use std::sync::Arc;
 
@@ -290,50 +291,39 @@ impl Setting {
     }
 }
 
-impl Serialize for Setting {
+/// The keys of a setting that are no table.
+struct OwnKeys<'a>(&'a Setting);
+
+impl Serialize for OwnKeys<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Setting { kind, target, values, table } = self.0;
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("kind", self.kind.name)?;
-        if let Some(key) = self.target.key() {
-            match self.target.names() {
+        map.serialize_entry("kind", kind.name)?;
+        // A table says itself what it acts on.
+        if let Some(key) = target.key()
+            && table.is_none()
+        {
+            match target.names() {
                 [name] => map.serialize_entry(key, name)?,
                 names => map.serialize_entry(key, names)?,
             }
         }
-        for (name, value) in &self.values {
+        for (name, value) in values {
             map.serialize_entry(name, value)?;
         }
-        if let Some(table) = self.efforts() {
-            map.serialize_entry("depends_on", &table.depends_on)?;
-            if !table.depends_on.acts_on_output() {
-                map.serialize_entry("joints", &table.joints)?;
-            }
-            map.serialize_entry("middle", &table.middle)?;
-            map.serialize_entry("reach", &table.reach)?;
-            map.serialize_entry("rates", &table.rates)?;
-            map.serialize_entry("coefficients", &table.coefficients)?;
-        }
-        if let Some(table) = self.central() {
-            map.serialize_entry("depends_on", &table.depends_on)?;
-            if let Some(point) = &table.point {
-                map.serialize_entry("point", point)?;
-            }
-            map.serialize_entry("place", &table.place)?;
-            map.serialize_entry("reach", &table.reach)?;
-            map.serialize_entry("coefficients", &table.coefficients)?;
-        }
-        if let Some(history) = self.history() {
-            map.serialize_entry("depends_on", &history.depends_on)?;
-            if let Some(run) = &history.run {
-                map.serialize_entry("run", run)?;
-            }
-            map.serialize_entry("at_s", &history.at_s)?;
-            map.serialize_entry("until_s", &history.until_s)?;
-            map.serialize_entry("impulse", &history.impulse)?;
-            map.serialize_entry("joints", &history.joints)?;
-            map.serialize_entry("t", &history.t)?;
-            map.serialize_entry("efforts", &history.efforts)?;
-        }
         map.end()
+    }
+}
+
+impl Serialize for Setting {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct WrittenSetting<'a> {
+            #[serde(flatten)]
+            keys: OwnKeys<'a>,
+            #[serde(flatten)]
+            table: &'a Option<FittedTable>,
+        }
+        WrittenSetting { keys: OwnKeys(self), table: &self.table }.serialize(serializer)
     }
 }

@@ -14,12 +14,21 @@ pub struct Wrong {
 }
 
 impl Wrong {
-    /// A fitted table that names a `thing` which this machine does not have.
-    pub(super) fn of_another_machine(key: &str, thing: &str, name: &str) -> Self {
+    /// A fitted table that names a `thing` which this machine does not have; it has those that are `known`.
+    pub(super) fn of_another_machine<'a>(
+        key: &str,
+        thing: &str,
+        name: &str,
+        known: impl Iterator<Item = &'a str>,
+    ) -> Self {
+        let known: Vec<&str> = known.collect();
         Self {
             key: key.to_owned(),
             message: format!("\"{name}\" is not a {thing} of this machine"),
-            help: "this effect belongs to the machine that it was fitted to".to_owned(),
+            help: format!(
+                "this effect belongs to the machine that it was fitted to; this one has {}",
+                if known.is_empty() { "none".to_owned() } else { known.join(", ") }
+            ),
         }
     }
 

@@ -151,9 +151,10 @@ mod tests {
         }
         let mut central = Central::empty(None, [0.1, 0.2], [0.01, 0.1], 4);
         central.coefficients = vec![0.5; 4];
-        let drawn = pictures([&Setting::unnamed_central(central)]).expect("a picture");
-        assert!(drawn[0].svg.contains("<polyline") && drawn[0].svg.contains("(0.1, 0.2)"));
         let kind = named("payload").expect("an effect");
-        assert!(pictures([&Setting::new(kind, None, &[])]).expect("none").is_empty());
+        let effects = [Setting::new(kind, None, &[]), Setting::unnamed_central(central)];
+        let drawn = pictures(&effects).expect("a picture");
+        assert_eq!(drawn.len(), 1, "a payload has a name");
+        assert!(drawn[0].svg.contains("<polyline") && drawn[0].svg.contains("(0.1, 0.2)"));
     }
 }

@@ -42,7 +42,7 @@ impl Central {
     }
 
     /// A distance (m) as a share of the range where it was fitted, 0 to 1.
-    pub fn share(&self, distance: f64) -> f64 {
+    fn share(&self, distance: f64) -> f64 {
         let [near, far] = self.reach;
         ((distance - near) / (far - near)).clamp(0.0, 1.0)
     }
@@ -97,7 +97,8 @@ impl Load for AppliedCentral {
 pub(super) fn apply(table: &Arc<Central>, mechanism: &mut Mechanism) -> Result<(), Wrong> {
     let Some(mark) = table.mark(mechanism) else {
         let name = table.point.as_deref().unwrap_or("");
-        return Err(Wrong::of_another_machine("point", "point", name));
+        let known = mechanism.names.points.keys().map(String::as_str);
+        return Err(Wrong::of_another_machine("point", "point", name, known));
     };
     mechanism.loads.push(Arc::new(AppliedCentral { table: Arc::clone(table), mark }));
     Ok(())

@@ -61,7 +61,7 @@ pub struct Efforts {
     /// What it is a function of.
     pub depends_on: Over,
     /// The joints; none where it acts on the output.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joints: Vec<String>,
     /// Middle of each coordinate (m or rad) where it was fitted.
     pub middle: Vec<f64>,
@@ -209,14 +209,22 @@ impl Load for AppliedEfforts {
     }
 }
 
-pub(super) fn apply(table: &Arc<Efforts>, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+/// The joints that a table names.
+pub(super) fn named_joints(
+    names: &[String],
+    mechanism: &Mechanism,
+) -> Result<Vec<JointIndex>, Wrong> {
+    let known = || mechanism.joints().map(|(name, _)| name);
     let find = |name: &String| {
         let joint = mechanism.joints().find(|(known, _)| known == name);
-        joint
-            .map(|(_, joint)| joint)
-            .ok_or_else(|| Wrong::of_another_machine("joints", "joint", name))
+        let wrong = || Wrong::of_another_machine("joints", "joint", name, known());
+        joint.map(|(_, joint)| joint).ok_or_else(wrong)
     };
-    let joints = table.joints.iter().map(find).collect::<Result<Vec<JointIndex>, Wrong>>()?;
+    names.iter().map(find).collect()
+}
+
+pub(super) fn apply(table: &Arc<Efforts>, mechanism: &mut Mechanism) -> Result<(), Wrong> {
+    let joints = named_joints(&table.joints, mechanism)?;
     mechanism.loads.push(Arc::new(AppliedEfforts { table: Arc::clone(table), joints }));
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! What a mechanism lacks for a while and nobody can name: efforts in joints over time.
 
+use super::efforts::named_joints;
 use crate::effects::Wrong;
 use crate::mechanism::{JointIndex, Load, Mechanism, Situation};
 use nalgebra::Vector3;
@@ -100,13 +101,7 @@ impl Load for AppliedHistory {
 }
 
 pub(super) fn apply(history: &Arc<History>, mechanism: &mut Mechanism) -> Result<(), Wrong> {
-    let find = |name: &String| {
-        let joint = mechanism.joints().find(|(known, _)| known == name);
-        joint
-            .map(|(_, joint)| joint)
-            .ok_or_else(|| Wrong::of_another_machine("joints", "joint", name))
-    };
-    let joints = history.joints.iter().map(find).collect::<Result<Vec<JointIndex>, Wrong>>()?;
+    let joints = named_joints(&history.joints, mechanism)?;
     mechanism.loads.push(Arc::new(AppliedHistory { history: Arc::clone(history), joints }));
     Ok(())
 }

@@ -10,6 +10,7 @@ use crate::mechanism::Mechanism;
 use central::Central;
 use efforts::Efforts;
 use history::History;
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// Its name.
@@ -38,6 +39,16 @@ pub(super) enum FittedTable {
     Efforts(Arc<Efforts>),
     Central(Arc<Central>),
     History(Arc<History>),
+}
+
+impl Serialize for FittedTable {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Efforts(table) => table.as_ref().serialize(serializer),
+            Self::Central(table) => table.as_ref().serialize(serializer),
+            Self::History(table) => table.as_ref().serialize(serializer),
+        }
+    }
 }
 
 fn apply(setting: &Setting, mechanism: &mut Mechanism) -> Result<(), Wrong> {

@@ -14,7 +14,7 @@ const BEYOND: f64 = 1.5;
 
 /// Gaussians along the distance, few at first: many follow what is left near a wrong place, and no step leads on from there.
 /// With the last what varies over a tenth of the way is held.
-const RINGS: [usize; 3] = [4, 8, 16];
+const RINGS: &[usize] = &[4, 8, 16];
 
 /// Looks around a place: as many as halve the distance to a hundredth of where the search began, and some on the way.
 const INWARDS: usize = 10;
@@ -97,7 +97,7 @@ fn surrounded(fits: &TableFits<impl Replicated>, passed: &Passed, mut best: Pull
         let around = (0..8).map(|k| f64::from(k) * FRAC_PI_4).filter_map(|angle| {
             let by = Vector2::new(extent[0] * angle.cos(), extent[1] * angle.sin()) * away;
             let place = Vector2::from(best.table.place) + by;
-            pulled(fits, passed.from(place, best.table.coefficients.len()))
+            pulled(fits, passed.towards(place, best.table.coefficients.len()))
         });
         match around.min_by(|a, b| a.squares().total_cmp(&b.squares())) {
             Some(next) if next.squares() < best.squares() => best = next,
@@ -114,7 +114,7 @@ fn settled(
     place: Vector2<f64>,
     rings: usize,
 ) -> Option<Pulled> {
-    let mut best = pulled(fits, passed.from(place, rings))?;
+    let mut best = pulled(fits, passed.towards(place, rings))?;
     for _ in 0..STEPS {
         let before = best.squares();
         let Some(next) = stepped(fits, passed, &best) else { break };
@@ -174,8 +174,8 @@ fn half_range(places: &[Vector2<f64>], k: usize) -> [f64; 2] {
 }
 
 impl Passed {
-    /// A force of nothing from a place.
-    fn from(&self, place: Vector2<f64>, rings: usize) -> Central {
+    /// A table over the distance from a place that is no force yet.
+    fn towards(&self, place: Vector2<f64>, rings: usize) -> Central {
         let distances = self.places.iter().map(|passed| (passed - place).norm());
         let (near, far) =
             distances.fold((f64::INFINITY, 0.0f64), |(near, far), d| (near.min(d), far.max(d)));
@@ -191,7 +191,7 @@ fn begun(fits: &TableFits<impl Replicated>, passed: &Passed) -> Option<Vector2<f
     };
     let squares = (0..PLACES * PLACES).filter_map(|i| {
         let place = Vector2::new(along(x, i / PLACES), along(y, i % PLACES));
-        Some((place, pulled(fits, passed.from(place, RINGS[0]))?.squares()))
+        Some((place, pulled(fits, passed.towards(place, RINGS[0]))?.squares()))
     });
     squares.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
 }
@@ -246,7 +246,7 @@ fn stepped(fits: &TableFits<impl Replicated>, passed: &Passed, from: &Pulled) ->
         step *= longest / step.norm();
     }
     for _ in 0..=HALVINGS {
-        let next = pulled(fits, passed.from(place + step, count))?;
+        let next = pulled(fits, passed.towards(place + step, count))?;
         if next.squares() < from.squares() {
             return Some(next);
         }
