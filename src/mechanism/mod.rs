@@ -42,6 +42,7 @@ pub use parts::mark::Mark;
 pub use parts::names::{Axes, NamedPoint, Names, Use};
 pub use parts::oil::OilFilm;
 pub use parts::spring::{JointSpring, PointSpring, Stop};
+pub(crate) use reading::LAST_STEP;
 pub use rotor::Rotor;
 pub use sensor::{Reads, Sensor, TrackerFrame};
 

@@ -2,6 +2,10 @@
 
 use super::{Actuator, Command, Evaluation, Mechanism};
 
+/// Newton's method ends after a step of this size, in m or rad: what is left is half its square times the curvature of the
+/// errors, which is less than rounding up to 1e3 per m.
+pub(crate) const LAST_STEP: f64 = 1e-10;
+
 impl Actuator {
     /// True length in m at a read length, and its first and second derivative by it.
     fn true_length(&self, read: f64) -> [f64; 3] {
@@ -19,13 +23,13 @@ impl Actuator {
         }
         let mut read = length;
         let mut slope = 1.0;
-        // Errors are small against what they vary over: two or three steps reach the last digit.
+        // Errors are small against what they vary over: three or four steps reach the last digit.
         for _ in 0..8 {
             let [value, first, _] = self.true_length(read);
             slope = first;
             let step = (value - length) / slope;
             read -= step;
-            if step.abs() < 1e-16 {
+            if step.abs() < LAST_STEP {
                 break;
             }
         }

@@ -3,7 +3,7 @@
 use super::encoder::give;
 use crate::effects::kind::defaults;
 use crate::effects::{Kind, Parameter, Senses, Setting, Targets, Wrong};
-use crate::mechanism::{Mechanism, ReadingError};
+use crate::mechanism::{LAST_STEP, Mechanism, ReadingError};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -56,7 +56,7 @@ impl ReadingError for Eccentric {
             let (sin, cos) = (q + self.phase).sin_cos();
             let step = (q + self.amplitude * sin - read) / (1.0 + self.amplitude * cos);
             q -= step;
-            if step.abs() < 1e-15 {
+            if step.abs() < LAST_STEP {
                 break;
             }
         }

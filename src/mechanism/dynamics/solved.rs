@@ -57,7 +57,7 @@ impl Dynamics {
                 Rigid::Revolute(i) => {
                     let force = Vector2::new(next(), next());
                     out.reactions[i] = force;
-                    out.contacts[i].normal_force = force.x.hypot(force.y);
+                    out.contacts[i].normal_force = force.norm();
                 }
                 Rigid::Rotor(_) => {
                     let _torque = next();
