@@ -9,7 +9,7 @@ use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::calibrate::values::least_squares::{Best, FitEffort, Free, least_squares};
 use crate::calibrate::values::normal::inverse_normal;
 use crate::effects::Setting;
-use crate::engine::{Halt, Schedule, StepControl, run};
+use crate::engine::{Halt, Schedule, StepControl, run_while};
 use crate::mechanism::{Actuator, Drive, JointIndex, Mechanism};
 use crate::scenario::{Problem, Scenario};
 use nalgebra::{DMatrix, DVector};
@@ -17,10 +17,16 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 
-/// Time in s for which a free machine is held by the angles of its joints before it is let go: journals settle
+/// Time in s for which a free machine is held by the angles of its joints before it is let go, at most: journals settle
 /// in some hundredths of a second.
 const HELD: f64 = 0.1;
+
+/// It is let go as soon as no body moves farther (m) between two looks (s): a thousandth of what the finest sensors see, and
+/// more than steps at the default tolerance make of a journal at rest.
+const AT_REST: (f64, f64) = (5e-9, 5e-3);
 
 /// Natural frequency in Hz of what holds it: the weight of a machine of some decimetres bends it by
 /// `g/(l ω²)`, a hundred-thousandth of a radian, and contacts take shorter steps.
@@ -291,12 +297,18 @@ fn held_there(
     for body in &mut holding.bodies {
         body.start.twist.fill(0.0);
     }
-    let schedule = Schedule { duration: HELD, interval: HELD };
-    run(&holding, control, schedule, &mut |instant| {
+    let (moved, interval) = AT_REST;
+    let schedule = Schedule { duration: HELD, interval };
+    let mut began = false;
+    run_while(&holding, control, schedule, &AtomicBool::new(false), &mut |instant| {
+        let mut rests = std::mem::replace(&mut began, true);
         for (i, body) in mechanism.bodies.iter_mut().enumerate() {
-            (body.start, body.angle) = (instant.states[i], instant.angles[i]);
+            let state = instant.states[i];
+            rests &= (state.position - body.start.position).norm() < moved;
+            (body.start, body.angle) = (state, instant.angles[i]);
             body.start.twist.fill(0.0);
         }
+        if rests { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     release(&mut mechanism, held);
     mechanism.epoch = 0.0;
