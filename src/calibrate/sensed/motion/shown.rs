@@ -1,5 +1,6 @@
 //! Coordinates and poses as sensors and commands show them, as commands and motions of a machine.
 
+use super::law::ServoLaw;
 use super::simulate::deviation;
 use crate::calibrate::sensed::recorded::view::{View, effort_sensor};
 use crate::measure::filter::derivative;
@@ -48,13 +49,28 @@ pub fn commanded(view: &View, mechanism: &Mechanism, drive: usize) -> [Vec<f64>;
 }
 
 /// Takes from the coordinate of a drive's end what lies between it and its joint: the encoder sits at the drive's end of
-/// what gives way. Where nobody measured the effort, that is unknown.
+/// what gives way. Where the effort is unknown, that is, too.
 fn behind(view: &View, mechanism: &Mechanism, drive: usize, position: &mut [f64]) {
     let Some(link) = mechanism.actuators[drive].transmission else { return };
-    let Some(sensor) = effort_sensor(mechanism, drive) else { return };
-    let Some(effort) = view.smooth(sensor) else { return };
-    let noise = deviation(&mechanism.sensors[sensor], effort);
-    position.iter_mut().zip(effort).for_each(|(q, force)| *q -= link.pressed(*force, noise));
+    let Some((effort, noise)) = effort(view, mechanism, drive) else { return };
+    position.iter_mut().zip(effort).for_each(|(q, force)| *q -= link.pressed(force, noise));
+}
+
+/// Effort of a drive at each row in N or N·m, and its noise: as it was measured, or as a servo makes it of what its encoder shows.
+fn effort(view: &View, mechanism: &Mechanism, drive: usize) -> Option<(Vec<f64>, f64)> {
+    if let Some(sensor) = effort_sensor(mechanism, drive)
+        && let Some(measured) = view.smooth(sensor)
+    {
+        return Some((measured.to_vec(), deviation(&mechanism.sensors[sensor], measured)));
+    }
+    let law = ServoLaw::of(view, mechanism, drive, |sensor| view.smooth(sensor))?;
+    let mut commands = vec![Command::default(); mechanism.actuators.len()];
+    let mut asked = |row: usize| {
+        mechanism.commands.at(row as f64 * view.interval, &mut commands);
+        law.effort(commands[drive], row)
+    };
+    let effort = (0..view.samples()).map(&mut asked).collect();
+    Some((effort, law.noise))
 }
 
 /// What a sensor looked at, smoothed, at each row.

@@ -8,13 +8,11 @@
 //! * **acceleration**: each measured one less that of the measured motion.
 
 use crate::calibrate::sensed::motion::basis::Basis;
+use crate::calibrate::sensed::motion::law::ServoLaw;
 use crate::calibrate::sensed::motion::motions::Motions;
-use crate::calibrate::sensed::recorded::view::{
-    View, effort_sensor, output_sensor, position_sensor,
-};
+use crate::calibrate::sensed::recorded::view::{View, effort_sensor, output_sensor};
 use crate::calibrate::sensed::thresholds::{DYNAMICS_BAND, PLAIN_BAND};
 use crate::calibrate::values::spectrum::Signal;
-use crate::measure::filter::derivative;
 use crate::mechanism::{
     BodyState, Command, Drive, Evaluation, JointIndex, Mechanism, Posed, Reads, Sensor, Taken,
     angle_near,
@@ -84,8 +82,8 @@ struct Look<'a> {
     view: &'a View,
     mechanism: &'a Mechanism,
     basis: &'a Basis,
-    /// What the encoder of each drive shows, where its rate can be had.
-    encoders: Vec<Option<Encoder>>,
+    /// What each drive makes of its command, if it is a servo with a recorded encoder.
+    servos: Vec<Option<ServoLaw<'a>>>,
     /// What each drive with a sampled controller gives by its recorded outputs.
     asked: Vec<Option<Vec<f64>>>,
     /// Drives whose law can be held against their measured effort, with the sensor of that.
@@ -97,15 +95,6 @@ struct Look<'a> {
     /// Measured positions that the basis does not need, and accelerations: the sensor, and how late and how large it shows
     /// what it reads, its waves among that.
     others: Vec<(usize, Sensor)>,
-}
-
-/// What an encoder shows its drive.
-struct Encoder {
-    sensor: usize,
-    /// How late that is: what else an encoder gets wrong its drive gets wrong, too.
-    late: Sensor,
-    /// Rate of its reading.
-    rate: Vec<f64>,
 }
 
 /// The residuals of a view under a mechanism on some rows; none where the measured motion leads it where it
@@ -128,17 +117,6 @@ pub fn residuals(
     Some(found)
 }
 
-fn encoders(view: &View, mechanism: &Mechanism) -> Vec<Option<Encoder>> {
-    let of = |drive: &crate::mechanism::Actuator| {
-        let sensor = position_sensor(mechanism, drive.joint)?;
-        let rate = derivative(view.plain(sensor)?, view.interval);
-        let shows = mechanism.sensors[sensor].clone();
-        let late = Sensor { scale: 1.0, offset: 0.0, waves: Vec::new(), ..shows };
-        Some(Encoder { sensor, late, rate })
-    };
-    mechanism.actuators.iter().map(of).collect()
-}
-
 /// Efforts of drives with sampled controllers, out of what these were recorded to ask for.
 fn asked(view: &View, mechanism: &Mechanism) -> Vec<Option<Vec<f64>>> {
     let of = |(index, drive): (usize, &crate::mechanism::Actuator)| {
@@ -153,11 +131,12 @@ fn asked(view: &View, mechanism: &Mechanism) -> Vec<Option<Vec<f64>>> {
 
 impl<'a> Look<'a> {
     fn new(view: &'a View, mechanism: &'a Mechanism, basis: &'a Basis) -> Self {
-        let (encoders, asked) = (encoders(view, mechanism), asked(view, mechanism));
+        let drives = 0..mechanism.actuators.len();
+        let servo = |drive| ServoLaw::of(view, mechanism, drive, |sensor| view.plain(sensor));
+        let (servos, asked) = (drives.clone().map(servo).collect(), asked(view, mechanism));
         let (laws, efforts, outside, others) = Default::default();
         let mut look =
-            Self { view, mechanism, basis, encoders, asked, laws, efforts, outside, others };
-        let drives = 0..mechanism.actuators.len();
+            Self { view, mechanism, basis, servos, asked, laws, efforts, outside, others };
         look.laws = drives.clone().filter_map(|drive| Some((drive, look.law_of(drive)?))).collect();
         look.efforts = basis.joints.iter().map(|&joint| look.effort(joint)).collect();
         let joints = drives.map(|drive| mechanism.actuators[drive].joint);
@@ -172,7 +151,7 @@ impl<'a> Look<'a> {
     /// The sensor of a drive's effort, if its law can be held against that.
     fn law_of(&self, drive: usize) -> Option<usize> {
         let known = match self.mechanism.actuators[drive].drive {
-            Drive::Servo { .. } => self.encoders[drive].is_some(),
+            Drive::Servo { .. } => self.servos[drive].is_some(),
             Drive::Effort => true,
             Drive::Prescribed | Drive::Sampled(_) => false,
         };
@@ -201,7 +180,7 @@ impl<'a> Look<'a> {
             return Some(EffortSource::Measured(sensor, smooth, slow));
         }
         match self.mechanism.actuators[drive].drive {
-            Drive::Servo { .. } if self.encoders[drive].is_some() => Some(EffortSource::Law(drive)),
+            Drive::Servo { .. } if self.servos[drive].is_some() => Some(EffortSource::Law(drive)),
             Drive::Effort => Some(EffortSource::Law(drive)),
             Drive::Sampled(_) if self.asked[drive].is_some() => Some(EffortSource::Asked(drive)),
             // What holds a prescribed coordinate is anything, a servo's effort is unknown without its error, and a
@@ -240,18 +219,9 @@ impl<'a> Look<'a> {
 
     /// Effort of a drive by its own law in N or N·m, from its command and what its encoder shows.
     fn law(&self, drive: usize, command: Command, row: usize) -> f64 {
-        let actuator = &self.mechanism.actuators[drive];
-        let read = || {
-            let Encoder { sensor, late, rate } = self.encoders[drive].as_ref()?;
-            let rate = self.view.shown(late, rate, row);
-            Some([self.view.shown(late, self.view.plain(*sensor)?, row), rate])
-        };
-        match actuator.drive {
+        match self.mechanism.actuators[drive].drive {
             Drive::Effort => command.position,
-            Drive::Servo { stiffness, damping } => read().map_or(0.0, |[position, rate]| {
-                stiffness * (command.position - position) + damping * (command.rate - rate)
-            }),
-            Drive::Prescribed | Drive::Sampled(_) => 0.0,
+            _ => self.servos[drive].as_ref().map_or(0.0, |servo| servo.effort(command, row)),
         }
     }
 
@@ -315,7 +285,11 @@ impl<'a> Look<'a> {
         let turned = leaning.iter().zip(pose.angles());
         let angles: Vec<f64> =
             turned.map(|(state, near)| angle_near(state.rotation, *near)).collect();
-        self.fill(pose, &leaning, &angles, now);
+        now.commands.copy_from_slice(&commands);
+        let smooth = efforts.iter().map(|effort| effort.map_or(0.0, |[smooth, _]| smooth));
+        let driving: Vec<_> =
+            self.basis.joints.iter().copied().zip(smooth).chain(applied).collect();
+        self.fill(pose, &driving, (&leaning, &angles), now);
         for (sensor, errors) in &self.others {
             let of = &self.mechanism.sensors[*sensor];
             let states = match of.reads {
@@ -328,8 +302,14 @@ impl<'a> Look<'a> {
         Some(())
     }
 
-    /// What sensors look at beside states.
-    fn fill(&self, pose: &Posed, leaning: &[BodyState], angles: &[f64], now: &mut Evaluation) {
+    /// What sensors look at beside states and commands, with what drives each joint.
+    fn fill(
+        &self,
+        pose: &Posed,
+        driving: &[(JointIndex, f64)],
+        (leaning, angles): (&[BodyState], &[f64]),
+        now: &mut Evaluation,
+    ) {
         for (i, acceleration) in now.accelerations.iter_mut().enumerate() {
             *acceleration = pose.acceleration(self.mechanism, i);
         }
@@ -337,6 +317,8 @@ impl<'a> Look<'a> {
             *length = joint.length(leaning);
         }
         for (i, drive) in self.mechanism.actuators.iter().enumerate() {
+            let own = driving.iter().find(|(joint, _)| *joint == drive.joint);
+            now.drive_forces[i] = own.map_or(0.0, |(_, effort)| *effort);
             now.coordinates[i] = match drive.joint {
                 JointIndex::Prismatic(k) => now.lengths[k],
                 JointIndex::Revolute(k) => {
