@@ -8,6 +8,8 @@ use crate::calibrate::sensed::residuals::problem::{Run, Stopped};
 use crate::calibrate::sensed::thresholds::{AFAR, GAIN, MOSTLY, NOISE, PROMISING, SIMULATED};
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::effects::{Parameter, ScanRange, Setting};
+use crate::mechanism::{Mechanism, Reads, Sensor};
+use std::f64::consts::TAU;
 
 impl Search<'_> {
     /// The best models with one effect more than this one has that residuals see.
@@ -108,14 +110,45 @@ impl Search<'_> {
             let place = |p: &Parameter| p.unit == "m" && p.bounds[0] < 0.0;
             effect.kind.parameter(name).is_some_and(place) && (value - middle(i)).abs() > afar
         };
-        let seconds = |run: &Run| run.recording.duration();
-        let longest = self.problem.runs.iter().map(seconds).fold(0.0, f64::max);
         let once = effect.kind.scan.is_some_and(|scan| {
-            let frequency =
-                effect.value(scan.over).filter(|_| scan.range == ScanRange::Frequencies);
-            frequency.is_some_and(|frequency| frequency * longest < 1.0)
+            let periods = effect.value(scan.over).map(|value| match scan.range {
+                ScanRange::Frequencies => value * self.seconds(),
+                ScanRange::Orders(_) => value * self.travel(effect) / TAU,
+                ScanRange::WaveNumbers(_) => self.travel(effect) / value,
+            });
+            periods.is_some_and(|periods| periods < 1.0)
         });
         once || at_a_limit(effect) || effect.values().enumerate().any(far)
+    }
+
+    /// The longest run in s.
+    fn seconds(&self) -> f64 {
+        let seconds = |run: &Run| run.recording.duration();
+        self.problem.runs.iter().map(seconds).fold(0.0, f64::max)
+    }
+
+    /// How far the joints of an effect go in a run, at most, in m or rad, as their sensors or commands show; endless where
+    /// nobody recorded that.
+    fn travel(&self, effect: &Setting) -> f64 {
+        let Mechanism { sensors, actuators, .. } = &self.problem.declared;
+        let own = |joint| {
+            let name = self.problem.declared.joint_name(joint);
+            effect.target.names().iter().any(|own| own == name)
+        };
+        let shows = |sensor: &Sensor| match sensor.reads {
+            Reads::Position(joint) => own(joint),
+            Reads::Command(drive) => own(actuators[drive].joint),
+            _ => false,
+        };
+        let columns = sensors.iter().enumerate().filter(|(_, sensor)| shows(sensor));
+        let runs = &self.problem.runs;
+        let recorded =
+            columns.flat_map(|(i, _)| runs.iter().filter_map(move |r| r.recording.get(i)));
+        let farthest = recorded.map(|column| {
+            let least = column.iter().copied().fold(f64::INFINITY, f64::min);
+            column.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
+        });
+        farthest.max_by(f64::total_cmp).unwrap_or(f64::INFINITY)
     }
 }
 
@@ -179,5 +212,16 @@ mod tests {
             search.imitates(&Setting::on(kind, Target::Machine, &values))
         };
         assert!(vibration(0.3) && !vibration(0.4));
+        // The crank goes round many times, the drives of a five-bar an eighth of a turn.
+        let ripple = |search: &Search, joint: &str, per_turn: f64| {
+            let joint = Target::Joints(vec![joint.to_owned()]);
+            let values = [("amplitude", 0.1), ("per_turn", per_turn)];
+            search.imitates(&Setting::on(named("torque-ripple").unwrap(), joint, &values))
+        };
+        assert!(!ripple(&search, "O", 1.5));
+        let five_bar = RigProblem::planar("planar-5");
+        let swings = Search::new(&five_bar, &split, &[], &|_| {});
+        let drive = &five_bar.declared.actuators[0].name;
+        assert!(ripple(&swings, drive, 1.5) && !ripple(&swings, drive, 12.0));
     }
 }
