@@ -318,7 +318,28 @@ fn held_there(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::calibrate::sensed::residuals::problem::RigProblem;
     use crate::model::parts_of;
+
+    /// Held once more, a double pendulum that was let go stays where it is.
+    #[test]
+    fn what_is_let_go_has_come_to_rest() {
+        let problem = RigProblem::planar("planar-4");
+        let recording = &problem.runs[0].recording;
+        let Closed { mechanism, held } = closed(&problem.rig, &[], recording, None).unwrap();
+        let held_once = held_there(mechanism.clone(), held.len(), problem.control).unwrap();
+        let mut again = mechanism.clone();
+        for (body, known) in again.bodies.iter_mut().zip(&held_once.bodies) {
+            (body.start, body.angle) = (known.start, known.angle);
+        }
+        let held_twice = held_there(again, held.len(), problem.control).unwrap();
+        let farthest = |from: &Mechanism| {
+            let pairs = held_once.bodies.iter().zip(&from.bodies);
+            pairs.map(|(a, b)| (a.start.position - b.start.position).norm()).fold(0.0, f64::max)
+        };
+        let (moved, settled) = (farthest(&held_twice), farthest(&mechanism));
+        assert!(moved < 2e-8 && settled > 1e-5, "{moved:e} m after {settled:e} m");
+    }
 
     /// Starts are drawn as far apart as their covariance says, and where they were fitted without one.
     #[test]
