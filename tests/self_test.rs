@@ -67,6 +67,14 @@ fn a_soft_coupling_is_found_where_nobody_measured_its_torque() {
     right(701_000_004);
 }
 
+/// The same of a four-bar with two encoders: its servo's own effort tells by how much the drive gives way, and without that a disk beside its
+/// axis took the first part of it.
+#[test]
+#[ignore = "a minute"]
+fn a_servo_tells_how_far_its_drive_gives_way() {
+    right(1_128_000_000);
+}
+
 /// A base that vibrates lifts the journals of a six-bar off, which rests in them as declared; so does a hair of unbalance,
 /// which explains as much by that alone.
 #[test]
