@@ -287,9 +287,8 @@ impl<'a> Look<'a> {
             turned.map(|(state, near)| angle_near(state.rotation, *near)).collect();
         now.commands.copy_from_slice(&commands);
         let smooth = efforts.iter().map(|effort| effort.map_or(0.0, |[smooth, _]| smooth));
-        let driving: Vec<_> =
-            self.basis.joints.iter().copied().zip(smooth).chain(applied).collect();
-        self.fill(pose, &driving, (&leaning, &angles), now);
+        self.driven(self.basis.joints.iter().copied().zip(smooth).chain(applied), now);
+        self.fill(pose, &leaning, &angles, now);
         for (sensor, errors) in &self.others {
             let of = &self.mechanism.sensors[*sensor];
             let states = match of.reads {
@@ -302,14 +301,18 @@ impl<'a> Look<'a> {
         Some(())
     }
 
-    /// What sensors look at beside states and commands, with what drives each joint.
-    fn fill(
-        &self,
-        pose: &Posed,
-        driving: &[(JointIndex, f64)],
-        (leaning, angles): (&[BodyState], &[f64]),
-        now: &mut Evaluation,
-    ) {
+    /// What pushes joints, as their drives' encoders see it behind what gives way.
+    fn driven(&self, efforts: impl Iterator<Item = (JointIndex, f64)>, now: &mut Evaluation) {
+        for (joint, effort) in efforts {
+            let own = self.mechanism.actuators.iter().position(|drive| drive.joint == joint);
+            if let Some(drive) = own {
+                now.drive_forces[drive] = effort;
+            }
+        }
+    }
+
+    /// What else sensors look at beside states and commands.
+    fn fill(&self, pose: &Posed, leaning: &[BodyState], angles: &[f64], now: &mut Evaluation) {
         for (i, acceleration) in now.accelerations.iter_mut().enumerate() {
             *acceleration = pose.acceleration(self.mechanism, i);
         }
@@ -317,8 +320,6 @@ impl<'a> Look<'a> {
             *length = joint.length(leaning);
         }
         for (i, drive) in self.mechanism.actuators.iter().enumerate() {
-            let own = driving.iter().find(|(joint, _)| *joint == drive.joint);
-            now.drive_forces[i] = own.map_or(0.0, |(_, effort)| *effort);
             now.coordinates[i] = match drive.joint {
                 JointIndex::Prismatic(k) => now.lengths[k],
                 JointIndex::Revolute(k) => {

@@ -98,7 +98,7 @@ impl Search<'_> {
     }
 
     /// Whether an effect's values say that it imitates another one: one lies at the end of what makes sense, a place is far
-    /// off the machine, or what repeats does so less than once in a run.
+    /// off the machine, or what repeats does so less than once in a run, or on the way of its joint.
     pub(in crate::calibrate::sensed) fn imitates(&self, effect: &Setting) -> bool {
         let afar = AFAR * self.problem.declared.size();
         // A machine need not stand at the origin: places are around where they are looked for.
