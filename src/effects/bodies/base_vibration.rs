@@ -49,6 +49,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: defaults,
     starts: linear,
     scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: ScanRange::Frequencies }),
+    fitted_by: None,
     apply,
 };
 

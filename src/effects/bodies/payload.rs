@@ -38,6 +38,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: crate::effects::kind::defaults,
     starts,
     scan: None,
+    fitted_by: None,
     apply,
 };
 

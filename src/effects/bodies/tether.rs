@@ -1,7 +1,7 @@
 //! A cable or hose that pulls at a body.
 
 use crate::effects::kind::defaults;
-use crate::effects::{Kind, Parameter, Setting, Targets, Wrong};
+use crate::effects::{FittedBy, Kind, Parameter, Setting, Targets, Wrong};
 use crate::mechanism::{Axes, Load, Mark, Mechanism, Situation};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
@@ -32,6 +32,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: defaults,
     starts,
     scan: None,
+    fitted_by: Some(FittedBy { numbers, values }),
     apply,
 };
 
@@ -47,6 +48,59 @@ fn starts(mechanism: &Mechanism, _: &Setting) -> Vec<Vec<f64>> {
         [0.5, 0.9, 1.0].map(|slack| vec![20.0, anchor.x, anchor.y, slack * r])
     };
     around.flat_map(slack).collect()
+}
+
+/// What pulls at a point that hardly moves: with how much force T, in which direction θ, by how much more for each metre along
+/// that, k, and how sharply the direction turns, 1/d, with the anchor d away. Of a small motion δ the force is
+/// T u + k (u·δ) u + T/d (1 − u uᵀ) δ towards the anchor: each number shows by itself, where another anchor and another length
+/// make up for a stiffness almost entirely.
+fn numbers(mechanism: &Mechanism, setting: &Setting) -> Option<Vec<[f64; 2]>> {
+    let [stiffness, x, y, rest_length] =
+        setting.values().map(|(_, value)| value).collect::<Vec<_>>()[..]
+    else {
+        return None;
+    };
+    let pull = Vector2::new(x, y) - middle(mechanism, setting)?;
+    let length = pull.norm();
+    let told = stiffness > 0.0 && length > 0.0;
+    told.then(|| {
+        let force = stiffness * (length - rest_length);
+        vec![
+            [force, SHARE * stiffness * length],
+            [pull.y.atan2(pull.x), SHARE],
+            [stiffness, SHARE * stiffness],
+            [1.0 / length, SHARE / length],
+        ]
+    })
+}
+
+/// How far from a machine an anchor is looked for, in sizes of it: farther ones pull alike.
+const REACH: f64 = 1.5;
+
+/// Change of the numbers that a tether is fitted by, as a share of each, by which derivatives are taken: what bends is hardly bent over it.
+const SHARE: f64 = 0.01;
+
+/// The values of a tether that such numbers stand for; a rest length that would be less than nothing is none, with the anchor farther off.
+fn values(mechanism: &Mechanism, setting: &Setting, numbers: &[f64]) -> Vec<f64> {
+    let own = || setting.values().map(|(_, value)| value).collect();
+    let (&[force, angle, stiffness, bend], Some(middle)) = (numbers, middle(mechanism, setting))
+    else {
+        return own();
+    };
+    let stiffness = stiffness.max(force / FAR).max(f64::MIN_POSITIVE);
+    let stretched = force / stiffness;
+    let length = (1.0 / bend.max(1.0 / (REACH * mechanism.size()))).max(stretched);
+    let anchor = middle + Vector2::new(angle.cos(), angle.sin()) * length;
+    let rest_length = (length - stretched).clamp(0.0, FAR);
+    vec![stiffness.min(1e5), anchor.x.clamp(-FAR, FAR), anchor.y.clamp(-FAR, FAR), rest_length]
+}
+
+/// Where the body that it pulls at begins, in m.
+fn middle(mechanism: &Mechanism, setting: &Setting) -> Option<Vector2<f64>> {
+    let (body, Axes { centre, .. }) = setting.body(mechanism).ok()?;
+    let start = &mechanism.bodies[body].start;
+    let from = mechanism.bodies[body].reference + centre.point;
+    Some(start.position + start.rotation * from)
 }
 
 #[derive(Debug)]

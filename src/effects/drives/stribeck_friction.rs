@@ -63,6 +63,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
             .into()
     },
     scan: None,
+    fitted_by: None,
     apply,
 };
 

@@ -74,6 +74,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: |_, _| Vec::new(),
     starts,
     scan: None,
+    fitted_by: None,
     apply,
 };
 

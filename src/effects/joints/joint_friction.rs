@@ -55,6 +55,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
         _ => Vec::new(),
     },
     scan: None,
+    fitted_by: None,
     apply,
 };
 

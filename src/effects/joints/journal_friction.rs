@@ -33,6 +33,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     },
     starts: linear,
     scan: None,
+    fitted_by: None,
     apply,
 };
 

@@ -38,6 +38,7 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: defaults,
     starts: linear,
     scan: None,
+    fitted_by: None,
     apply,
 };
 

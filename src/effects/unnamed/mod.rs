@@ -30,6 +30,7 @@ pub(super) const KIND: Kind = Kind {
     neutral: defaults,
     starts: linear,
     scan: None,
+    fitted_by: None,
     apply,
 };
 

@@ -10,7 +10,9 @@ use crate::calibrate::sensed::rounds::rest::Rest;
 use crate::calibrate::sensed::rounds::round::{Round, Tried};
 use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::rounds::words::names;
-use crate::calibrate::sensed::thresholds::{BY_LOOKS, GAIN, GAIN_PER_VALUE, RIVAL, RIVALS, TWINS};
+use crate::calibrate::sensed::thresholds::{
+    BY_LOOKS, GAIN, GAIN_PER_VALUE, RIVAL, RIVALS, SIMULATED, TWINS,
+};
 use crate::calibrate::sensed::values::linear::Derivatives;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::Far;
@@ -152,8 +154,10 @@ impl Search<'_> {
         let all: Vec<Tried> = self.screened(&without).into_par_iter().map(fitted).collect();
         for tried in all {
             let known = found.iter().any(|(_, known)| known.is(&tried.effect));
+            // One with more values than it was left with may do as well as those in its place.
+            let more = tried.effect.values().count() > own.values().count();
             if !known
-                && !tried.effect.is(&own)
+                && (more || !tried.effect.is(&own))
                 && tried.gain > RIVAL * gain
                 && !self.imitates(&tried.effect)
             {
@@ -181,32 +185,60 @@ impl Search<'_> {
 
     /// What would still take more off what a model leaves than chance does, on data that it is not fitted to: a candidate
     /// beside its effects, or other values of them on another run than that which they were fitted to. A model that is right
-    /// leaves neither; one that imitates what is missing does, even where what it leaves is no larger than noise.
-    pub(in crate::calibrate::sensed) fn rest(&self, model: &Model) -> Option<Rest> {
+    /// leaves neither; one that imitates what is missing does, even where what it leaves is no larger than noise. What one
+    /// simulation of a candidate can follow is held against that: a candidate that filters what sensors show takes noise off
+    /// looks by more than a few draws of it tell.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub(in crate::calibrate::sensed) fn rest(
+        &self,
+        model: &Model,
+    ) -> Result<Option<Rest>, Stopped> {
+        if let Some(drop) = self.other_values(model) {
+            return Ok(Some(Rest::Values(drop)));
+        }
+        for Tried { effect, gain, .. } in self.standing_out(model).into_iter().take(SIMULATED) {
+            if model.baseline.rattles {
+                return Ok(Some(Rest::Effect(effect, gain)));
+            }
+            let effects = [model.fit.effects.as_slice(), std::slice::from_ref(&effect)].concat();
+            (self.tell)(&format!("simulating with {}", names(&effects)));
+            let settled = self.settle(&effects, 1)?;
+            let gain = settled.map_or(0.0, |settled| model.misfit - settled.misfit);
+            if gain > enough(model, effect.values().count()) {
+                return Ok(Some(Rest::Effect(effect, gain)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// What other values of a model's effects would take off the sum of squares of the runs that these were not fitted to, where
+    /// that is more than chance does.
+    fn other_values(&self, model: &Model) -> Option<f64> {
         let values: usize = model.fit.effects.iter().map(|effect| effect.values().count()).sum();
-        let enough = |values: usize| price(model) + 2.0 * GAIN_PER_VALUE * values as f64;
         let hold = self.target(&model.baseline, true);
-        let refitted = hold.fit(&model.fit.effects, STEPS);
-        let shrunk = |effects: &[Setting]| {
-            model.baseline.shrunk(self.problem, effects, &self.split.hold).unwrap_or(0.0)
-        };
-        let drop = refitted
-            .as_ref()
-            .map_or(0.0, |refitted| model.held - refitted.chi2 - shrunk(&refitted.effects));
+        let refitted = hold.fit(&model.fit.effects, STEPS)?;
+        let shrunk = model.baseline.shrunk(self.problem, &refitted.effects, &self.split.hold);
+        let drop = model.held - refitted.chi2 - shrunk.unwrap_or(0.0);
         let chance = || {
             let on = model.fit.jacobian.clone()?;
-            let columns = Derivatives { on, hold: hold.jacobian(refitted.as_ref()?)?, known: 0 };
+            let columns = Derivatives { on, hold: hold.jacobian(&refitted)?, known: 0 };
             columns.refitted(&self.draws(model), model.baseline.replicas)
         };
-        if drop > enough(values) && chance().is_none_or(|chance| drop > chance) {
-            return Some(Rest::Values(drop));
-        }
-        let all = self.screened(model).into_iter();
-        let mut certain = all.filter(|tried| {
-            let enough = enough(tried.effect.values().count()).max(tried.chance);
+        let stands_out =
+            drop > enough(model, values) && chance().is_none_or(|chance| drop > chance);
+        stands_out.then_some(drop)
+    }
+
+    /// Candidates that by looks would still take more off what a model leaves than chance does, the best first.
+    pub(in crate::calibrate::sensed) fn standing_out(&self, model: &Model) -> Vec<Tried> {
+        let mut all = self.screened(model);
+        all.retain(|tried| {
+            let enough = enough(model, tried.effect.values().count()).max(tried.chance);
             tried.fitted && tried.gain > enough
         });
-        certain.next().map(|tried| Rest::Effect(tried.effect, tried.gain))
+        all
     }
 
     /// An effect of a model whose joints rattle more than the declared one's by more than few replicas tell, and that is not
@@ -238,6 +270,11 @@ impl Search<'_> {
         let noise = self.noisiness(&model.baseline, on) + model.baseline.lost(on);
         model.cost() + model.fit.chi2 + noise + GAIN_PER_VALUE * values as f64
     }
+}
+
+/// Drop of the sum of squares beyond chance that so many more values of a model have to bring.
+fn enough(model: &Model, values: usize) -> f64 {
+    price(model) + 2.0 * GAIN_PER_VALUE * values as f64
 }
 
 #[cfg(test)]

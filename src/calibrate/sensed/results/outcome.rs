@@ -199,7 +199,7 @@ fn searched(
             let settled =
                 settled.filter(|own| search.is_noise(own) || !search.is_noise(&found.best));
             found.best = search.simplified(settled.unwrap_or(found.best))?;
-            found.rest = search.rest(&found.best);
+            found.rest = search.rest(&found.best)?;
         }
     }
     Ok(found)

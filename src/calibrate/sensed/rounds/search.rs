@@ -2,12 +2,14 @@
 //! effects is often mistaken for a rival that also takes up a part of the second.
 
 use super::rest::Rest;
-use super::round::{Round, SeenBeside};
+use super::round::{Round, SeenBeside, Tried};
 use super::words::names;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Split, Stopped};
 use crate::calibrate::sensed::residuals::residual::Name;
-use crate::calibrate::sensed::thresholds::{BUDGET, EFFECTS, HYPOTHESES, NEAR, TWINS};
+use crate::calibrate::sensed::thresholds::{
+    BUDGET, EFFECTS, HYPOTHESES, MOSTLY, NEAR, NOISE, TWINS,
+};
 use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::Far;
@@ -86,7 +88,7 @@ impl<'a> Search<'a> {
         let mut rounds = Vec::new();
         let mut hypotheses = vec![declared.clone()];
         // What is no larger than noise as a whole may still be an effect that stands out of it.
-        let mut lacks = !self.is_noise(&best) || self.rest(&best).is_some();
+        let mut lacks = !self.is_noise(&best) || !self.standing_out(&best).is_empty();
         while best.fit.effects.len() < EFFECTS && !self.is_spent() && lacks {
             let NextRound { mut round, next, lifts_off } = self.beside_all(&hypotheses)?;
             let won = next.first().is_some_and(|first| first.cost() < best.cost() - price(&best));
@@ -141,8 +143,8 @@ impl<'a> Search<'a> {
 
     /// What is found beside several hypotheses, the best first, and the round of the first one. Once one effect leaves no more
     /// than noise beside one of them, it alone is tried beside the others. What residuals see beside any of them is tried before
-    /// what they hardly see beside one, and this not at all where that leaves little more than noise, or where one simulation
-    /// of the best says little.
+    /// what they hardly see beside one, and this not at all where that leaves little more than noise, where residuals see what
+    /// takes the rest, or where one simulation of the best says little.
     fn beside_all(&self, hypotheses: &[Model]) -> Result<NextRound, Stopped> {
         let mut next: Vec<Model> = Vec::new();
         let mut round = Round::default();
@@ -165,12 +167,15 @@ impl<'a> Search<'a> {
             sights.push(own.sight);
             next.extend(own.found);
         }
-        let best = next.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
-        let lifts_off = best
+        next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let lifts_off = next
+            .first()
             .is_some_and(|best| !self.is_noise(best) && self.problem.lifts_off(&best.fit.effects));
-        if !lifts_off && !sights.contains(&SeenBeside::All) {
-            let hidden = |&i: &usize| sights[i] == SeenBeside::Less;
-            for i in (0..sights.len()).filter(hidden) {
+        let hidden = |&i: &usize| sights[i] == SeenBeside::Less;
+        let hidden: Vec<usize> = (0..sights.len()).filter(hidden).collect();
+        let seen = sights.contains(&SeenBeside::All);
+        if !(hidden.is_empty() || lifts_off || seen || self.sees_the_rest(&next)) {
+            for i in hidden {
                 if i > 0 && self.is_spent() {
                     break;
                 }
@@ -182,6 +187,20 @@ impl<'a> Search<'a> {
         next.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         next.dedup_by(|a, b| same(&a.fit.effects, &b.fit.effects));
         Ok(NextRound { round, next, lifts_off })
+    }
+
+    /// Whether by looks one more effect beside one of the best models takes most of what that leaves above noise, and leaves no
+    /// more than noise.
+    fn sees_the_rest(&self, models: &[Model]) -> bool {
+        models.iter().take(HYPOTHESES).any(|model| {
+            let look = self.target(&model.baseline, true).look(&model.fit.effects);
+            let count = look.map_or(0, |look| look.white.len()) as f64;
+            let takes_it = |tried: Tried| {
+                let most = tried.gain > MOSTLY * (model.held - count) && tried.gain > price(model);
+                most && model.held - tried.gain < NOISE[0] * count
+            };
+            !self.is_noise(model) && self.screened(model).into_iter().any(takes_it)
+        })
     }
 
     /// A model that was found with its values settled, without what it does not need, held against its rivals; and, where it
@@ -223,10 +242,10 @@ impl<'a> Search<'a> {
         if !same(&effects, &best.fit.effects) {
             best = self.swinging_as_seen(best)?;
         }
-        let mut rest = self.rest(&best);
+        let mut rest = self.rest(&best)?;
         if rest.is_some() && !best.baseline.rattles {
             best = self.refined(best, Far::All)?;
-            rest = self.rest(&best);
+            rest = self.rest(&best)?;
         }
         Ok((best, rest))
     }

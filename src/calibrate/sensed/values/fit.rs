@@ -3,6 +3,7 @@
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
+use crate::calibrate::values::coordinates::FitCoordinates;
 use crate::calibrate::values::draws::difference;
 use crate::calibrate::values::instrument::{Replicated, Unpulled, unpulled};
 use crate::calibrate::values::least_squares::{self, FitEffort, least_squares};
@@ -117,15 +118,16 @@ impl FitTarget<'_> {
     /// Least squares from the given values on, at most `steps` steps; none where the model cannot be at its
     /// start.
     pub fn fit(&self, effects: &[Setting], steps: usize) -> Option<Fit> {
-        let look = |values: &[f64]| Some(self.look(&with_values(effects, values))?.white);
+        let chosen = FitCoordinates::of(&self.problem.declared, effects);
+        let look = |numbers: &[f64]| Some(self.look(&chosen.effects(numbers))?.white);
         // A drop of a thousandth is none: looks are cheap.
         let effort = FitEffort { steps, enough: 1e-3, secant: false };
-        let best = least_squares(&look, &free(effects), values(effects), effort, None)?;
+        let best = least_squares(&look, &chosen.free(), chosen.start(), effort, None)?;
         Some(Fit {
-            effects: with_values(effects, &best.values),
+            effects: chosen.effects(&best.values),
             chi2: best.residual.norm_squared(),
             white: best.residual,
-            jacobian: best.jacobian,
+            jacobian: best.jacobian.filter(|_| chosen.are_values()),
             told: None,
         })
     }
