@@ -210,11 +210,21 @@ pub enum ScanRange {
 /// Other numbers that say the same as an effect's values, each of which small motions show by itself.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedBy {
-    /// These numbers for an effect on a machine, and the change of each by which derivatives are taken; none where its
-    /// values do not tell them.
-    pub numbers: fn(&Mechanism, &Setting) -> Option<Vec<[f64; 2]>>,
+    /// These numbers for an effect on a machine; none where its values do not tell them.
+    pub numbers: fn(&Mechanism, &Setting) -> Option<Vec<FittedNumber>>,
     /// The effect's values that such numbers say the same as.
     pub values: fn(&Mechanism, &Setting, &[f64]) -> Vec<f64>,
+}
+
+/// One of the numbers that an effect is [fitted by](FittedBy).
+#[derive(Clone, Copy, Debug)]
+pub struct FittedNumber {
+    /// What it is at first.
+    pub start: f64,
+    /// The change by which derivatives are taken.
+    pub step: f64,
+    /// Least and largest.
+    pub bounds: [f64; 2],
 }
 
 /// An effect by name, with everything that a user and a search need to know of it.

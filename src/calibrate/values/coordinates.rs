@@ -31,9 +31,8 @@ impl<'a> FitCoordinates<'a> {
             match other {
                 None => Fitted { effect, start: values(own), free: free(own), by: None },
                 Some((numbers, by)) => {
-                    let bounds = [-f64::MAX, f64::MAX];
-                    let free = numbers.iter().map(|[_, step]| Free { step: *step, bounds });
-                    let start = numbers.iter().map(|[number, _]| *number).collect();
+                    let free = numbers.iter().map(|of| Free { step: of.step, bounds: of.bounds });
+                    let start = numbers.iter().map(|of| of.start).collect();
                     Fitted { effect, start, free: free.collect(), by: Some(by) }
                 }
             }

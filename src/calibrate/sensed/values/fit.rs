@@ -138,6 +138,33 @@ mod tests {
     use super::*;
     use crate::effects::{Target, named};
 
+    /// A cable that pulls at a five-bar, from an anchor on another side and half as stiff on: eight steps find with what force, in
+    /// which direction and with what slope it pulls, which is all that so small a machine shows of it.
+    #[test]
+    fn a_tether_is_found_from_another_anchor() {
+        let problem = RigProblem::planar("planar-5");
+        let body = Target::Body("left2".to_owned());
+        let tether = |stiffness: f64, x: f64, y: f64, rest_length: f64| {
+            let values = [
+                ("stiffness_N_m", stiffness),
+                ("anchor_x_m", x),
+                ("anchor_y_m", y),
+                ("rest_length_m", rest_length),
+            ];
+            Setting::on(named("tether").unwrap(), body.clone(), &values)
+        };
+        let hidden = tether(12.0, 0.18, 0.25, 0.1);
+        let released = problem.let_go(std::slice::from_ref(&hidden)).unwrap();
+        let recorded = problem.simulated(&released, 1).unwrap().remove(0).remove(0);
+        let problem = problem.recorded_as(recorded);
+        let on = problem.split().on;
+        let baseline = Baseline::of(&problem, &[], &[], &on).unwrap();
+        let target = FitTarget { problem: &problem, baseline: &baseline, on: &on };
+        let left = |effect: &Setting| target.look(std::slice::from_ref(effect)).unwrap().chi2;
+        let fit = target.fit(&[tether(6.0, 0.1, 0.36, 0.1)], 8).unwrap();
+        assert!(fit.chi2 < left(&hidden) + 10.0, "{} {}", fit.chi2, left(&hidden));
+    }
+
     /// What a payload changes is the difference of two looks, as often as it is asked for.
     #[test]
     fn a_response_is_the_difference_of_two_looks() {
