@@ -75,15 +75,7 @@ fn a_servo_tells_how_far_its_drive_gives_way() {
     right(1_128_000_000);
 }
 
-/// A cable at a five-bar whose link only turns: where its anchor is hardly shows, and a fit along that valley ended far off the
-/// machine, so that gravity was named.
-#[test]
-#[ignore = "two minutes"]
-fn a_tether_is_found_though_its_anchor_hardly_shows() {
-    right(1_128_000_013);
-}
-
-/// The same of a large one, on which a servo without an encoder seems to have another gain: that filters noise, and no more.
+/// A cable at a large five-bar, on which a servo without an encoder seems to have another gain: that filters noise, and no more.
 #[test]
 #[ignore = "three minutes"]
 fn what_takes_noise_off_looks_does_not_speak_against_a_model() {

@@ -207,26 +207,6 @@ pub enum ScanRange {
     Orders([f64; 3]),
 }
 
-/// Other numbers that say the same as an effect's values, each of which small motions show by itself.
-#[derive(Clone, Copy, Debug)]
-pub struct FittedBy {
-    /// These numbers for an effect on a machine; none where its values do not tell them.
-    pub numbers: fn(&Mechanism, &Setting) -> Option<Vec<FittedNumber>>,
-    /// The effect's values that such numbers say the same as.
-    pub values: fn(&Mechanism, &Setting, &[f64]) -> Vec<f64>,
-}
-
-/// One of the numbers that an effect is [fitted by](FittedBy).
-#[derive(Clone, Copy, Debug)]
-pub struct FittedNumber {
-    /// What it is at first.
-    pub start: f64,
-    /// The change by which derivatives are taken.
-    pub step: f64,
-    /// Least and largest.
-    pub bounds: [f64; 2],
-}
-
 /// An effect by name, with everything that a user and a search need to know of it.
 ///
 /// ```
@@ -266,8 +246,6 @@ pub struct Kind {
     pub starts: fn(&Mechanism, &Setting) -> Vec<Vec<f64>>,
     /// How to find a repeating effect, if it is one.
     pub scan: Option<Scan>,
-    /// By what it is fitted in place of its own values, where small motions hardly tell these apart.
-    pub fitted_by: Option<FittedBy>,
     /// Changes a mechanism as the effect does.
     pub apply: fn(&Setting, &mut Mechanism) -> Result<(), Wrong>,
 }

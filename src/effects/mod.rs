@@ -18,9 +18,7 @@ mod twins;
 mod unnamed;
 mod wrong;
 
-pub use kind::{
-    FittedBy, FittedNumber, JointKinds, Kind, Parameter, Scan, ScanRange, Senses, Targets,
-};
+pub use kind::{JointKinds, Kind, Parameter, Scan, ScanRange, Senses, Targets};
 pub use setting::Setting;
 pub use target::Target;
 pub use unnamed::UNNAMED;

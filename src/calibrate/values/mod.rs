@@ -1,7 +1,6 @@
 //! Numbers from residuals: spectra in units of noise ([`spectrum`], [`draws`]), values by least squares ([`least_squares`], `normal`) and
 //! without the pull of what rattles ([`instrument`]), and by how much predictions miss ([`errors`]).
 
-pub(super) mod coordinates;
 pub mod draws;
 pub mod errors;
 pub mod instrument;

@@ -24,7 +24,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: |mechanism, _| vec![mechanism.gravity.x, mechanism.gravity.y],
     starts: linear,
     scan: None,
-    fitted_by: None,
     apply,
 };
 

@@ -38,7 +38,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: crate::effects::kind::defaults,
     starts,
     scan: None,
-    fitted_by: None,
     apply,
 };
 

@@ -44,7 +44,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: defaults,
     starts: linear,
     scan: Some(Scan { over: "frequency_Hz", phase: "phase_rad", range: ScanRange::Frequencies }),
-    fitted_by: None,
     apply,
 };
 

@@ -44,7 +44,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
         phase: "phase_rad",
         range: ScanRange::WaveNumbers([50.0, 1000.0, 4.0]),
     }),
-    fitted_by: None,
     apply,
 };
 

@@ -42,7 +42,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
         phase: "phase_rad",
         range: ScanRange::Orders([1.0, 64.0, 1.0]),
     }),
-    fitted_by: None,
     apply,
 };
 

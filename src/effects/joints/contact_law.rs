@@ -74,7 +74,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: |_, _| Vec::new(),
     starts,
     scan: None,
-    fitted_by: None,
     apply,
 };
 

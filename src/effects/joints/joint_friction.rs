@@ -55,7 +55,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
         _ => Vec::new(),
     },
     scan: None,
-    fitted_by: None,
     apply,
 };
 

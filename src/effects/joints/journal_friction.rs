@@ -33,7 +33,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
     },
     starts: linear,
     scan: None,
-    fitted_by: None,
     apply,
 };
 

@@ -44,7 +44,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
     // A slight oval in eight directions of its half turn: it has to be less than the clearance.
     starts: |_, _| (0..8).map(|k| vec![5e-6, TAU * f64::from(k) / 16.0]).collect(),
     scan: None,
-    fitted_by: None,
     apply,
 };
 

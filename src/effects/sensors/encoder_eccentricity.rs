@@ -38,7 +38,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
     // Half a degree, in eight directions.
     starts: |_, _| (0..8).map(|k| vec![0.01, TAU * f64::from(k) / 8.0]).collect(),
     scan: None,
-    fitted_by: None,
     apply,
 };
 

@@ -23,7 +23,6 @@ pub(in crate::effects) const KIND: Kind = Kind {
     neutral: defaults,
     starts: linear,
     scan: None,
-    fitted_by: None,
     apply,
 };
 

@@ -30,7 +30,6 @@ pub(super) const KIND: Kind = Kind {
     neutral: defaults,
     starts: linear,
     scan: None,
-    fitted_by: None,
     apply,
 };
 

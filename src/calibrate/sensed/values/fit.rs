@@ -3,7 +3,6 @@
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment};
-use crate::calibrate::values::coordinates::FitCoordinates;
 use crate::calibrate::values::draws::difference;
 use crate::calibrate::values::instrument::{Replicated, Unpulled, unpulled};
 use crate::calibrate::values::least_squares::{self, FitEffort, least_squares};
@@ -118,16 +117,15 @@ impl FitTarget<'_> {
     /// Least squares from the given values on, at most `steps` steps; none where the model cannot be at its
     /// start.
     pub fn fit(&self, effects: &[Setting], steps: usize) -> Option<Fit> {
-        let chosen = FitCoordinates::of(&self.problem.declared, effects);
-        let look = |numbers: &[f64]| Some(self.look(&chosen.effects(numbers))?.white);
+        let look = |values: &[f64]| Some(self.look(&with_values(effects, values))?.white);
         // A drop of a thousandth is none: looks are cheap.
         let effort = FitEffort { steps, enough: 1e-3, secant: false };
-        let best = least_squares(&look, &chosen.free(), chosen.start(), effort, None)?;
+        let best = least_squares(&look, &free(effects), values(effects), effort, None)?;
         Some(Fit {
-            effects: chosen.effects(&best.values),
+            effects: with_values(effects, &best.values),
             chi2: best.residual.norm_squared(),
             white: best.residual,
-            jacobian: best.jacobian.filter(|_| chosen.are_values()),
+            jacobian: best.jacobian,
             told: None,
         })
     }
@@ -137,33 +135,6 @@ impl FitTarget<'_> {
 mod tests {
     use super::*;
     use crate::effects::{Target, named};
-
-    /// A cable that pulls at a five-bar, from an anchor on another side and half as stiff on: eight steps find with what force, in
-    /// which direction and with what slope it pulls, which is all that so small a machine shows of it.
-    #[test]
-    fn a_tether_is_found_from_another_anchor() {
-        let problem = RigProblem::planar("planar-5");
-        let body = Target::Body("left2".to_owned());
-        let tether = |stiffness: f64, x: f64, y: f64, rest_length: f64| {
-            let values = [
-                ("stiffness_N_m", stiffness),
-                ("anchor_x_m", x),
-                ("anchor_y_m", y),
-                ("rest_length_m", rest_length),
-            ];
-            Setting::on(named("tether").unwrap(), body.clone(), &values)
-        };
-        let hidden = tether(12.0, 0.18, 0.25, 0.1);
-        let released = problem.let_go(std::slice::from_ref(&hidden)).unwrap();
-        let recorded = problem.simulated(&released, 1).unwrap().remove(0).remove(0);
-        let problem = problem.recorded_as(recorded);
-        let on = problem.split().on;
-        let baseline = Baseline::of(&problem, &[], &[], &on).unwrap();
-        let target = FitTarget { problem: &problem, baseline: &baseline, on: &on };
-        let left = |effect: &Setting| target.look(std::slice::from_ref(effect)).unwrap().chi2;
-        let fit = target.fit(&[tether(6.0, 0.1, 0.36, 0.1)], 8).unwrap();
-        assert!(fit.chi2 < left(&hidden) + 10.0, "{} {}", fit.chi2, left(&hidden));
-    }
 
     /// What a payload changes is the difference of two looks, as often as it is asked for.
     #[test]

@@ -8,8 +8,8 @@ use crate::calibrate::sensed::motion::simulate::apart;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Stopped};
 use crate::calibrate::sensed::thresholds::{ALIKE, NOISE};
-use crate::calibrate::values::coordinates::FitCoordinates;
 use crate::calibrate::values::least_squares::{FitEffort, least_squares};
+use crate::calibrate::values::least_squares::{free, values, with_values};
 use crate::effects::Setting;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -119,9 +119,8 @@ pub fn predicted(
         .iter()
         .map(|segment| Ok(floors_of(machine, &replicas(effects, segment)?)))
         .collect::<Result<_, Stopped>>()?;
-    let chosen = FitCoordinates::of(machine, effects);
-    let look = |numbers: &[f64]| {
-        let there = chosen.effects(numbers);
+    let look = |values: &[f64]| {
+        let there = with_values(effects, values);
         let mut all = Vec::new();
         for (segment, floors) in on.iter().zip(&floors) {
             let simulated = replicas(&there, segment).ok()?;
@@ -131,8 +130,8 @@ pub fn predicted(
         }
         Some(DVector::from_vec(all))
     };
-    let best = least_squares(&look, &chosen.free(), chosen.start(), EFFORT, None);
-    Ok(best.map_or_else(|| effects.to_vec(), |best| chosen.effects(&best.values)))
+    let best = least_squares(&look, &free(effects), values(effects), EFFORT, None);
+    Ok(best.map_or_else(|| effects.to_vec(), |best| with_values(effects, &best.values)))
 }
 
 /// The first so many seconds of a segment.

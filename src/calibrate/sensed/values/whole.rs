@@ -7,7 +7,6 @@ use super::errors::{OVERSAMPLED, floors_of, in_floors};
 use crate::calibrate::sensed::motion::released::SMALL;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Stopped};
-use crate::calibrate::values::coordinates::FitCoordinates;
 use crate::calibrate::values::least_squares::{
     FitEffort, Free, derivative, jacobian, least_squares,
 };
@@ -79,17 +78,16 @@ impl<'a> Whole<'a> {
     /// The effects at the values that leave the least, from these on, and the mean square of that in units of noise; none where
     /// there is no such machine. Where it was let go with them is known from then on.
     pub fn fitted(&self, effects: &[Setting], effort: FitEffort) -> Option<(Vec<Setting>, f64)> {
-        let chosen = FitCoordinates::of(&self.problem.declared, effects);
-        let count = chosen.start().len();
+        let count = values(effects).len();
         let look = |all: &[f64]| {
-            let (numbers, coordinates) = all.split_at(count);
-            self.look_from(&chosen.effects(numbers), coordinates)
+            let (values, coordinates) = all.split_at(count);
+            self.look_from(&with_values(effects, values), coordinates)
         };
-        let free = [chosen.free(), self.free()].concat();
-        let start = [chosen.start(), self.coordinates()].concat();
+        let free = [free(effects), self.free()].concat();
+        let start = [values(effects), self.coordinates()].concat();
         let best = least_squares(&look, &free, start, effort, None)?;
         let (own, mut coordinates) = best.values.split_at(count);
-        let fitted = chosen.effects(own);
+        let fitted = with_values(effects, own);
         for (segment, start) in self.segments.iter().zip(self.starts()) {
             let (own, others) = coordinates.split_at(start.len());
             coordinates = others;
