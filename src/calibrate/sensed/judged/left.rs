@@ -51,18 +51,26 @@ impl Search<'_> {
         let segments = if held { &self.split.hold } else { &self.split.on };
         let places = model.baseline.places(self.problem, segments);
         let (draws, replicas) = (model.baseline.draws(segments), model.baseline.replicas);
-        let chance =
-            |k: usize| squares_up_to(draws.iter().map(|d| mean_square(d, &places, k)), replicas);
         let of = |(k, name): (usize, &Name)| {
-            let own = fit.white.iter().zip(&places).filter(|(_, (c, _))| *c == k);
-            let largest = own.map(|(value, _)| value.abs()).fold(0.0, f64::max);
-            let mean_square = mean_square(&fit.white, &places, k);
-            let limit = NOISE[usize::from(!held)].max(chance(k));
-            let noise = mean_square < limit && largest < LARGEST;
+            let chance = |square: &dyn Fn(&DVector<f64>) -> f64| {
+                squares_up_to(draws.iter().map(square), replicas)
+            };
+            let squares = |white: &DVector<f64>| mean_square(white, &places, k);
+            let largest_of = |white: &DVector<f64>| largest(white, &places, k);
+            let (mean_square, largest) = (squares(&fit.white), largest_of(&fit.white));
+            let limit = NOISE[usize::from(!held)].max(chance(&squares));
+            let highest = LARGEST.max(chance(&|draw| largest_of(draw).powi(2)).sqrt());
+            let noise = mean_square < limit && largest < highest;
             Left { residual: name.kind, of: name.of.clone(), mean_square, limit, largest, noise }
         };
         self.names.iter().enumerate().map(of).collect()
     }
+}
+
+/// Largest of the numbers of residual `k` of a whitened look.
+fn largest(white: &DVector<f64>, places: &[(usize, f64)], k: usize) -> f64 {
+    let own = white.iter().zip(places).filter(|(_, (c, _))| *c == k);
+    own.map(|(value, _)| value.abs()).fold(0.0, f64::max)
 }
 
 /// Mean square of the numbers of residual `k` of a whitened look.

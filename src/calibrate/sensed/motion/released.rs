@@ -2,7 +2,7 @@
 //! fall is fitted to what its sensors show.
 
 use super::simulate::{deviation, record};
-use super::start::{Closed, LEAD, closed, placed, release, still};
+use super::start::{CalmedBodies, Closed, LEAD, closed, placed, release, still};
 use super::swinging::{OutputKicks, kicked, kicks_as_seen};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::position_sensor;
@@ -18,15 +18,17 @@ use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Time in s for which a free machine is held by the angles of its joints before it is let go, at most: journals settle
-/// in some hundredths of a second.
-const HELD: f64 = 0.1;
+/// Time in s for which a free machine is held by the angles of its joints before it is let go, at most: journals whose swing
+/// is damped settle in some hundredths of a second. Undamped they went on for more than a tenth, and from which place they were
+/// let go hung on the last millionth of a radian.
+const HELD: f64 = 1.0;
 
-/// It is let go as soon as no body moves farther (m) between two looks (s): a thousandth of what the finest sensors see, and
-/// more than steps at the default tolerance make of a journal at rest.
-const AT_REST: (f64, f64) = (5e-9, 5e-3);
+/// It is let go as soon as no body moves farther (m) between two looks (s): what creeps to its place has ten times as far to go
+/// still, a thousandth of what the finest sensors see. Stopped ten times sooner, a pendulum seemed to be dragged by 3e-6 N.
+const AT_REST: (f64, f64) = (5e-10, 5e-3);
 
 /// Natural frequency in Hz of what holds it: the weight of a machine of some decimetres bends it by
 /// `g/(l ω²)`, a hundred-thousandth of a radian, and contacts take shorter steps.
@@ -257,9 +259,10 @@ fn mean_square(left: &DVector<f64>) -> f64 {
 }
 
 /// Time in s from the first row over which the start of a free machine is fitted first: a start that is wrong by fifty
-/// steps of an encoder then shows as such, and after a tenth of a second of journals that hit their rings no longer. Twice
-/// as long, again and again, follows while the model shows that: many rows average a sensor's steps.
-const SEEN: f64 = 0.05;
+/// steps of an encoder then shows as such, and once journals have hit their rings some times no longer, which those of a small
+/// machine do within 0.05 s. Twice as long, again and again, follows while the model shows that: many rows average a
+/// sensor's steps.
+const SEEN: f64 = 0.0125;
 
 /// Mean square in units of noise up to which it does: a model that lacks an effect of the size of noise may be
 /// right about the start.
@@ -283,6 +286,7 @@ fn held_there(
     let total: f64 = mechanism.bodies.iter().map(inertia).sum();
     let mass: f64 = mechanism.bodies.iter().map(|body| body.mass).sum();
     let mut holding = mechanism.clone();
+    holding.loads.push(Arc::new(CalmedBodies));
     holding.epoch = -HELD;
     let first = holding.actuators.len() - held;
     let omega = TAU * HOLD;

@@ -268,7 +268,7 @@ const SHORT: f64 = 0.03;
 
 /// `f = −D v` on every body.
 #[derive(Debug)]
-struct CalmedBodies;
+pub(super) struct CalmedBodies;
 
 impl Load for CalmedBodies {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
