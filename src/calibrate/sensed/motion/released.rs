@@ -164,7 +164,7 @@ pub fn released(
         if !shown || seconds >= recording.duration() {
             break;
         }
-        seconds *= 2.0;
+        seconds *= LONGER;
     }
     Ok(Released { covariance, ..Released::from(falling.let_go(&values)?, values) })
 }
@@ -260,9 +260,13 @@ fn mean_square(left: &DVector<f64>) -> f64 {
 
 /// Time in s from the first row over which the start of a free machine is fitted first: a start that is wrong by fifty
 /// steps of an encoder then shows as such, and once journals have hit their rings some times no longer, which those of a small
-/// machine do within 0.05 s. Twice as long, again and again, follows while the model shows that: many rows average a
+/// machine do within 0.05 s. [Longer](LONGER) ones follow, again and again, while the model shows that: many rows average a
 /// sensor's steps.
 const SEEN: f64 = 0.0125;
+
+/// How much longer each of these is than the one before: what a start is off by at its end grows with it, and is still small
+/// beside a swing. Fits over twice as long each time take half as long again.
+const LONGER: f64 = 4.0;
 
 /// Mean square in units of noise up to which it does: a model that lacks an effect of the size of noise may be
 /// right about the start.
