@@ -135,7 +135,8 @@ pub const MISSED: f64 = 0.3;
 /// predictions have to meet the recording within [`MET`] floors besides.
 pub const NOISE: [f64; 2] = [1.3, 2.0];
 
-/// Its largest coefficient in units of noise: of 1000 normal numbers one in a thousand runs has one of 5.
+/// Its largest coefficient in units of noise, or as far as chance leads that of draws of it, whose rattle is not normal: of 1000
+/// normal numbers one in a thousand runs has one of 5.
 pub const LARGEST: f64 = 6.0;
 
 /// Largest error after calibration, in floors, of a model that explains, in all columns of all runs.

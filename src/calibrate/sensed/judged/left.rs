@@ -67,16 +67,24 @@ impl Search<'_> {
     }
 }
 
-/// Largest of the numbers of residual `k` of a whitened look.
-fn largest(white: &DVector<f64>, places: &[(usize, f64)], k: usize) -> f64 {
-    let own = white.iter().zip(places).filter(|(_, (c, _))| *c == k);
-    own.map(|(value, _)| value.abs()).fold(0.0, f64::max)
+/// The numbers of residual `k` of a whitened look.
+fn numbers_of<'a>(
+    white: &'a DVector<f64>,
+    places: &'a [(usize, f64)],
+    k: usize,
+) -> impl Iterator<Item = f64> + 'a {
+    white.iter().zip(places).filter(move |(_, (c, _))| *c == k).map(|(value, _)| *value)
 }
 
-/// Mean square of the numbers of residual `k` of a whitened look.
+/// Largest of them.
+fn largest(white: &DVector<f64>, places: &[(usize, f64)], k: usize) -> f64 {
+    numbers_of(white, places, k).map(f64::abs).fold(0.0, f64::max)
+}
+
+/// Their mean square.
 fn mean_square(white: &DVector<f64>, places: &[(usize, f64)], k: usize) -> f64 {
-    let own = white.iter().zip(places).filter(|(_, (c, _))| *c == k);
-    let (sum, count) = own.fold((0.0, 0.0), |(sum, n), (value, _)| (sum + value * value, n + 1.0));
+    let squares = numbers_of(white, places, k);
+    let (sum, count) = squares.fold((0.0, 0.0), |(sum, n), value| (sum + value * value, n + 1.0));
     sum / f64::max(count, 1.0)
 }
 
