@@ -255,7 +255,7 @@ pub fn let_go_at(
     control: StepControl,
 ) -> Result<Mechanism, StartError> {
     let Closed { mechanism, held } = closed(rig, effects, recording, Some(coordinates))?;
-    Ok(held_there(mechanism, held.len(), control)?)
+    Ok(held_there(mechanism, held.len(), control)?.0)
 }
 
 fn mean_square(left: &DVector<f64>) -> f64 {
@@ -283,12 +283,13 @@ const EFFORT: FitEffort = FitEffort { steps: 6, enough: 1.0, secant: true };
 /// A small change of a coordinate in m or rad: far above rounding, far below a swing.
 pub const SMALL: f64 = 1e-4;
 
-/// A machine that was held at its start by the last `held` of its drives until its journals settled, and let go.
+/// A machine that was held at its start by the last `held` of its drives until its journals settled, and let go, and the time in s
+/// for which it was held.
 fn held_there(
     mut mechanism: Mechanism,
     held: usize,
     control: StepControl,
-) -> Result<Mechanism, Halt> {
+) -> Result<(Mechanism, f64), Halt> {
     let inertia =
         |body: &crate::mechanism::Body| body.inertia + body.mass * mechanism.size().powi(2);
     let total: f64 = mechanism.bodies.iter().map(inertia).sum();
@@ -316,7 +317,7 @@ fn held_there(
     let (moved, interval) = AT_REST;
     let schedule = Schedule { duration: HELD, interval };
     let mut began = false;
-    run_while(&holding, control, schedule, &AtomicBool::new(false), &mut |instant| {
+    let work = run_while(&holding, control, schedule, &AtomicBool::new(false), &mut |instant| {
         let mut rests = std::mem::replace(&mut began, true);
         for (i, body) in mechanism.bodies.iter_mut().enumerate() {
             let state = instant.states[i];
@@ -328,7 +329,7 @@ fn held_there(
     })?;
     release(&mut mechanism, held);
     mechanism.epoch = 0.0;
-    Ok(mechanism)
+    Ok((mechanism, work.reached))
 }
 
 #[cfg(test)]
@@ -343,12 +344,12 @@ mod tests {
         let problem = RigProblem::planar("planar-4");
         let recording = &problem.runs[0].recording;
         let Closed { mechanism, held } = closed(&problem.rig, &[], recording, None).unwrap();
-        let held_once = held_there(mechanism.clone(), held.len(), problem.control).unwrap();
+        let (held_once, _) = held_there(mechanism.clone(), held.len(), problem.control).unwrap();
         let mut again = mechanism.clone();
         for (body, known) in again.bodies.iter_mut().zip(&held_once.bodies) {
             (body.start, body.angle) = (known.start, known.angle);
         }
-        let held_twice = held_there(again, held.len(), problem.control).unwrap();
+        let (held_twice, _) = held_there(again, held.len(), problem.control).unwrap();
         let farthest = |from: &Mechanism| {
             let pairs = held_once.bodies.iter().zip(&from.bodies);
             pairs.map(|(a, b)| (a.start.position - b.start.position).norm()).fold(0.0, f64::max)
@@ -356,8 +357,9 @@ mod tests {
         let (moved, settled) = (farthest(&held_twice), farthest(&mechanism));
         assert!(moved < 2e-8 && settled > 1e-5, "{moved:e} m after {settled:e} m");
         let coarse = StepControl::Tolerance(1e-4);
-        let apart = farthest(&held_there(mechanism.clone(), held.len(), coarse).unwrap());
-        assert!(apart < 2e-8, "{apart:e} m");
+        let (held_coarsely, seconds) = held_there(mechanism.clone(), held.len(), coarse).unwrap();
+        let apart = farthest(&held_coarsely);
+        assert!(apart < 2e-8 && seconds < 0.5 * HELD, "{apart:e} m, {seconds} s");
     }
 
     /// Starts are drawn as far apart as their covariance says, and where they were fitted without one.
