@@ -63,6 +63,8 @@ pub struct Instant<'a> {
     pub peaks: Peaks,
     /// What [`Work::rubbed`] has come to.
     pub rubbed: Option<&'a [Vec<f64>]>,
+    /// Steps so far.
+    pub steps: u64,
 }
 
 /// Simulates `mechanism` and calls `observe` at each row of the schedule.
@@ -277,8 +279,9 @@ impl OngoingRun<'_> {
         let RunWatch { tallies, peaks, angles, .. } = &seen;
         let rubbed = seen.rubbed();
         self.watch.new_row(mechanism, at, stepper);
-        let peaks = *peaks;
-        let go_on = observe(&Instant { t: at, states, angles, evaluation, tallies, peaks, rubbed });
+        let (peaks, steps) = (*peaks, self.work.steps);
+        let instant = Instant { t: at, states, angles, evaluation, tallies, peaks, rubbed, steps };
+        let go_on = observe(&instant);
         if go_on.is_break() || at >= self.end {
             self.work.rubbed = rubbed.map(<[_]>::to_vec);
         }

@@ -323,7 +323,7 @@ impl HeldRun {
 pub enum Broken {
     /// Its start.
     #[error(transparent)]
-    Start(#[from] crate::calibrate::sensed::motion::released::StartError),
+    Start(#[from] crate::calibrate::sensed::motion::start::StartError),
     /// What follows.
     #[error(transparent)]
     Halted(#[from] Halt),

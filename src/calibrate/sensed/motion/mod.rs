@@ -1,8 +1,9 @@
-//! How a recorded machine moved: where it begins, driven ([`start`]) or let go ([`released`]), and how it swings
+//! How a recorded machine moved: where it begins, driven ([`start`]) or let go at rest ([`released`], [`at_rest`]), and how it swings
 //! there ([`swinging`]); what says how it stands ([`basis`]) and
 //! along which motions ([`shown`], [`motions`]); what servos make of that ([`law`]); what its sensors would have recorded
 //! ([`simulate`]).
 
+pub(super) mod at_rest;
 pub mod basis;
 pub(super) mod law;
 pub(super) mod motions;

@@ -1,53 +1,23 @@
 //! Where a machine was let go: one that drives hold rests at its first commands; where one that nothing holds began to
 //! fall is fitted to what its sensors show.
 
-use super::simulate::{deviation, record};
-use super::start::{CalmedBodies, Closed, LEAD, closed, placed, release, still};
+use super::at_rest::let_go_at;
+use super::simulate::{deviation, record, record_counting};
+use super::start::{Closed, LEAD, StartError, closed, placed, release, still};
 use super::swinging::{OutputKicks, kicked, kicks_as_seen};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::calibrate::values::least_squares::{Best, FitEffort, Free, least_squares};
 use crate::calibrate::values::normal::inverse_normal;
 use crate::effects::Setting;
-use crate::engine::{Halt, Schedule, StepControl, run_while};
+use crate::engine::{Halt, StepControl};
 use crate::mechanism::{Actuator, Drive, JointIndex, Mechanism};
-use crate::scenario::{Problem, Scenario};
+use crate::scenario::Scenario;
 use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
-use std::f64::consts::TAU;
-use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
-/// Time in s for which a free machine is held by the angles of its joints before it is let go, at most: journals whose swing
-/// is damped settle in some hundredths of a second. Undamped they went on for more than a tenth, and from which place they were
-/// let go hung on the last millionth of a radian.
-const HELD: f64 = 1.0;
-
-/// It is let go as soon as no body moves farther (m) between two looks (s): what creeps to its place has ten times as far to go
-/// still, a thousandth of what the finest sensors see. Stopped ten times sooner, a pendulum seemed to be dragged by 3e-6 N.
-const AT_REST: (f64, f64) = (5e-10, 5e-3);
-
-/// Tolerance in m/s with which it is held, at most: errors of steps move a journal at rest by less than that then. With 1e-4 they
-/// never let one rest.
-const HOLDING: f64 = 1e-5;
-
-/// Natural frequency in Hz of what holds it: the weight of a machine of some decimetres bends it by
-/// `g/(l ω²)`, a hundred-thousandth of a radian, and contacts take shorter steps.
-const HOLD: f64 = 300.0;
-
-/// Why a machine cannot be put where a recording begins.
-#[derive(Debug, thiserror::Error)]
-pub enum StartError {
-    /// The machine cannot be.
-    #[error("{0}")]
-    Model(#[from] Problem),
-    /// It breaks down while it is held.
-    #[error("{0}")]
-    Halted(#[from] Halt),
-}
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A machine that was let go.
 #[derive(Clone, Debug)]
@@ -60,12 +30,14 @@ pub struct Released {
     pub at_rest: Option<Mechanism>,
     /// Their covariance, as far as the recording leaves them open; none where nothing was fitted.
     covariance: Option<DMatrix<f64>>,
+    /// Steps of bodies that it took to find them.
+    pub steps: u64,
 }
 
 impl Released {
     /// One from these coordinates, without a covariance.
     fn from(machine: Mechanism, coordinates: Vec<f64>) -> Self {
-        Self { machine, coordinates, at_rest: None, covariance: None }
+        Self { machine, coordinates, at_rest: None, covariance: None, steps: 0 }
     }
 
     /// The machine at rest under its first commands, shortly before the first row, without a swing; none of one that begins
@@ -151,26 +123,10 @@ pub fn released(
         return Ok(Released::from(mechanism, Vec::new()));
     }
     let joints = held.iter().map(|(joint, _)| *joint).collect();
-    let falling = Falling { rig, effects, recording, joints, control };
-    let mut values: Vec<f64> = held.iter().map(|(_, value)| *value).collect();
-    let free = unbounded(values.len());
-    let mut seconds = SEEN;
-    let mut covariance = None;
-    loop {
-        let look = |values: &[f64]| falling.missed(values, seconds);
-        let Some(best) = least_squares(&look, &free, values.clone(), EFFORT, None) else { break };
-        // What a model does not show is no reason to have started elsewhere.
-        let shown = mean_square(&best.residual) <= KEPT;
-        if shown || seconds == SEEN {
-            covariance = uncertainty(&best);
-            values = best.values;
-        }
-        if !shown || seconds >= recording.duration() {
-            break;
-        }
-        seconds *= LONGER;
-    }
-    Ok(Released { covariance, ..Released::from(falling.let_go(&values)?, values) })
+    let falling = Falling { rig, effects, recording, joints, control, steps: AtomicU64::new(0) };
+    let values = held.iter().map(|(_, value)| *value).collect();
+    let (values, covariance) = falling.fitted(values);
+    falling.released(values, covariance)
 }
 
 /// The same machine from near `coordinates`, which something else than its start told, where from there it does more of what
@@ -187,16 +143,15 @@ pub fn released_near(
 ) -> Result<Released, StartError> {
     let held = closed(rig, effects, recording, None)?.held;
     let joints = held.iter().map(|(joint, _)| *joint).collect();
-    let falling = Falling { rig, effects, recording, joints, control };
-    let look = |values: &[f64]| falling.missed(values, recording.duration());
-    let free = unbounded(coordinates.len());
-    let best = least_squares(&look, &free, coordinates.to_vec(), EFFORT, None);
-    let (Some(best), Some(before)) = (best, look(&known.coordinates)) else { return Ok(known) };
+    let falling = Falling { rig, effects, recording, joints, control, steps: AtomicU64::new(0) };
+    let best = falling.best(coordinates, recording.duration());
+    let before = falling.missed(&known.coordinates, recording.duration());
+    let (Some(best), Some(before)) = (best, before) else { return Ok(known) };
     if best.residual.norm_squared() >= before.norm_squared() {
         return Ok(known);
     }
-    let machine = falling.let_go(&best.values)?;
-    Ok(Released { covariance: uncertainty(&best), ..Released::from(machine, best.values) })
+    let covariance = uncertainty(&best);
+    falling.released(best.values, covariance)
 }
 
 /// A machine with these effects that nothing holds where a recording begins.
@@ -207,11 +162,64 @@ struct Falling<'a> {
     /// The joints whose coordinates say where it was let go.
     joints: Vec<JointIndex>,
     control: StepControl,
+    /// Steps of bodies so far.
+    steps: AtomicU64,
 }
 
 impl Falling<'_> {
     fn let_go(&self, values: &[f64]) -> Result<Mechanism, StartError> {
-        let_go_at(self.rig, self.effects, self.recording, values, self.control)
+        let held = let_go_at(self.rig, self.effects, self.recording, values, self.control)?;
+        self.steps.fetch_add(held.steps(), Ordering::Relaxed);
+        Ok(held.machine)
+    }
+
+    /// The machine let go at these coordinates, of this covariance.
+    fn released(
+        self,
+        coordinates: Vec<f64>,
+        covariance: Option<DMatrix<f64>>,
+    ) -> Result<Released, StartError> {
+        let machine = self.let_go(&coordinates)?;
+        let steps = self.steps.into_inner();
+        Ok(Released { covariance, steps, ..Released::from(machine, coordinates) })
+    }
+
+    /// Coordinates near these that do most of what is recorded, over as long as the model shows that, and their covariance.
+    fn fitted(&self, coordinates: Vec<f64>) -> (Vec<f64>, Option<DMatrix<f64>>) {
+        let lengths = lengths(self.recording.duration());
+        let mut known = (coordinates, None);
+        // The length that was shown last from what a shorter one told.
+        let mut passed = None;
+        for (k, &seconds) in lengths.iter().enumerate() {
+            let (first, last) = (k == 0, k + 1 == lengths.len());
+            let shows = |left: DVector<f64>| mean_square(&left) <= KEPT;
+            if !(first || last) && self.missed(&known.0, seconds).is_some_and(shows) {
+                passed = Some(seconds);
+                continue;
+            }
+            let told = |best: Best| (uncertainty(&best), best.values);
+            let best = self.best(&known.0, seconds);
+            // What a model does not show is no reason to have started elsewhere.
+            let shown = best.as_ref().is_some_and(|best| mean_square(&best.residual) <= KEPT);
+            let best = match passed.take() {
+                Some(seconds) if !shown => self.best(&known.0, seconds),
+                _ => best.filter(|_| shown || first),
+            };
+            if let Some((covariance, coordinates)) = best.map(told) {
+                known = (coordinates, covariance);
+            }
+            if !shown {
+                break;
+            }
+        }
+        known
+    }
+
+    /// Coordinates near these that do most of what the first `seconds` show.
+    fn best(&self, coordinates: &[f64], seconds: f64) -> Option<Best> {
+        let look = |coordinates: &[f64]| self.missed(coordinates, seconds);
+        let free = vec![Free { step: SMALL, bounds: [-f64::MAX, f64::MAX] }; coordinates.len()];
+        least_squares(&look, &free, coordinates.to_vec(), EFFORT, None)
     }
 
     /// By how much it misses what the first `seconds` of the recording show of these joints, in units of noise, let go at
@@ -219,7 +227,9 @@ impl Falling<'_> {
     fn missed(&self, values: &[f64], seconds: f64) -> Option<DVector<f64>> {
         let part = self.recording.first(seconds);
         let machine = self.let_go(values).ok()?;
-        let simulated = record(&machine, self.control, &part, 0).ok()?;
+        let (simulated, steps) =
+            record_counting(&machine, self.control, &part, 0, u64::MAX).ok()?;
+        self.steps.fetch_add(steps, Ordering::Relaxed);
         let mut left = Vec::new();
         for joint in &self.joints {
             let sensor = position_sensor(&machine, *joint);
@@ -232,30 +242,10 @@ impl Falling<'_> {
     }
 }
 
-fn unbounded(count: usize) -> Vec<Free> {
-    vec![Free { step: SMALL, bounds: [-f64::MAX, f64::MAX] }; count]
-}
-
 /// The covariance of coordinates that were fitted.
 fn uncertainty(best: &Best) -> Option<DMatrix<f64>> {
     let inverse = best.jacobian.as_ref().and_then(inverse_normal);
     inverse.map(|inverse| inverse * mean_square(&best.residual).max(1.0))
-}
-
-/// The machine of a rig with these effects, let go at its first row with these coordinates (m or rad) of the joints that
-/// its drives leave free.
-///
-/// # Errors
-/// As of [`released`].
-pub fn let_go_at(
-    rig: &Scenario,
-    effects: &[Setting],
-    recording: &Recording,
-    coordinates: &[f64],
-    control: StepControl,
-) -> Result<Mechanism, StartError> {
-    let Closed { mechanism, held } = closed(rig, effects, recording, Some(coordinates))?;
-    Ok(held_there(mechanism, held.len(), control)?.0)
 }
 
 fn mean_square(left: &DVector<f64>) -> f64 {
@@ -268,9 +258,16 @@ fn mean_square(left: &DVector<f64>) -> f64 {
 /// sensor's steps.
 const SEEN: f64 = 0.0125;
 
-/// How much longer each of these is than the one before: what a start is off by at its end grows with it, and is still small
-/// beside a swing. Fits over twice as long each time take half as long again.
+/// How much longer each of these is than the one before, at most: what a start is off by at its end grows with it, and is still
+/// small beside a swing. Fits over twice as long each time take half as long again.
 const LONGER: f64 = 4.0;
+
+/// Lengths in s over which a start is fitted, one after another, up to the whole of a recording.
+fn lengths(whole: f64) -> Vec<f64> {
+    let count = (whole / SEEN).max(1.0).log(LONGER).ceil();
+    let left = |k: usize| if count > 0.0 { 1.0 - k as f64 / count } else { 0.0 };
+    (0..=count as usize).map(|k| whole * (SEEN / whole).powf(left(k))).collect()
+}
 
 /// Mean square in units of noise up to which it does: a model that lacks an effect of the size of noise may be
 /// right about the start.
@@ -283,83 +280,17 @@ const EFFORT: FitEffort = FitEffort { steps: 6, enough: 1.0, secant: true };
 /// A small change of a coordinate in m or rad: far above rounding, far below a swing.
 pub const SMALL: f64 = 1e-4;
 
-/// A machine that was held at its start by the last `held` of its drives until its journals settled, and let go, and the time in s
-/// for which it was held.
-fn held_there(
-    mut mechanism: Mechanism,
-    held: usize,
-    control: StepControl,
-) -> Result<(Mechanism, f64), Halt> {
-    let inertia =
-        |body: &crate::mechanism::Body| body.inertia + body.mass * mechanism.size().powi(2);
-    let total: f64 = mechanism.bodies.iter().map(inertia).sum();
-    let mass: f64 = mechanism.bodies.iter().map(|body| body.mass).sum();
-    let mut holding = mechanism.clone();
-    holding.loads.push(Arc::new(CalmedBodies));
-    holding.epoch = -HELD;
-    let first = holding.actuators.len() - held;
-    let omega = TAU * HOLD;
-    for drive in &mut holding.actuators[first..] {
-        let inert = match drive.joint {
-            JointIndex::Revolute(_) => total,
-            JointIndex::Prismatic(_) => mass,
-        };
-        drive.drive =
-            Drive::Servo { stiffness: inert * omega * omega, damping: 2.0 * inert * omega };
-    }
-    for body in &mut holding.bodies {
-        body.start.twist.fill(0.0);
-    }
-    let control = match control.tolerance() {
-        Some(tolerance) => control.with_tolerance_times((HOLDING / tolerance).min(1.0)),
-        None => control,
-    };
-    let (moved, interval) = AT_REST;
-    let schedule = Schedule { duration: HELD, interval };
-    let mut began = false;
-    let work = run_while(&holding, control, schedule, &AtomicBool::new(false), &mut |instant| {
-        let mut rests = std::mem::replace(&mut began, true);
-        for (i, body) in mechanism.bodies.iter_mut().enumerate() {
-            let state = instant.states[i];
-            rests &= (state.position - body.start.position).norm() < moved;
-            (body.start, body.angle) = (state, instant.angles[i]);
-            body.start.twist.fill(0.0);
-        }
-        if rests { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })?;
-    release(&mut mechanism, held);
-    mechanism.epoch = 0.0;
-    Ok((mechanism, work.reached))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibrate::sensed::residuals::problem::RigProblem;
     use crate::model::parts_of;
 
-    /// Held once more, a double pendulum that was let go stays where it is; however coarse steps are, it rests there.
     #[test]
-    fn what_is_let_go_has_come_to_rest() {
-        let problem = RigProblem::planar("planar-4");
-        let recording = &problem.runs[0].recording;
-        let Closed { mechanism, held } = closed(&problem.rig, &[], recording, None).unwrap();
-        let (held_once, _) = held_there(mechanism.clone(), held.len(), problem.control).unwrap();
-        let mut again = mechanism.clone();
-        for (body, known) in again.bodies.iter_mut().zip(&held_once.bodies) {
-            (body.start, body.angle) = (known.start, known.angle);
-        }
-        let (held_twice, _) = held_there(again, held.len(), problem.control).unwrap();
-        let farthest = |from: &Mechanism| {
-            let pairs = held_once.bodies.iter().zip(&from.bodies);
-            pairs.map(|(a, b)| (a.start.position - b.start.position).norm()).fold(0.0, f64::max)
-        };
-        let (moved, settled) = (farthest(&held_twice), farthest(&mechanism));
-        assert!(moved < 2e-8 && settled > 1e-5, "{moved:e} m after {settled:e} m");
-        let coarse = StepControl::Tolerance(1e-4);
-        let (held_coarsely, seconds) = held_there(mechanism.clone(), held.len(), coarse).unwrap();
-        let apart = farthest(&held_coarsely);
-        assert!(apart < 2e-8 && seconds < 0.5 * HELD, "{apart:e} m, {seconds} s");
+    fn lengths_grow_fourfold_at_most_up_to_the_whole() {
+        let all = lengths(4.0);
+        assert!((all[0] - SEEN).abs() < 1e-12 && all.last() == Some(&4.0), "{all:?}");
+        assert!(all.windows(2).all(|pair| pair[1] / pair[0] <= LONGER), "{all:?}");
+        assert_eq!(lengths(0.01), [0.01]);
     }
 
     /// Starts are drawn as far apart as their covariance says, and where they were fitted without one.

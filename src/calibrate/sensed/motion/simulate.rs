@@ -3,7 +3,7 @@
 use super::start::told_by;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::position_sensor;
-use crate::engine::{Halt, LONGEST_STEP, Schedule, StepControl, run};
+use crate::engine::{Halt, LONGEST_STEP, Schedule, StepControl, run_while};
 use crate::measure::filter::ZeroPhase;
 use crate::measure::spline::CubicSpline;
 use crate::mechanism::{Drive, Mechanism, Reads, Sensor};
@@ -11,6 +11,8 @@ use nalgebra::Vector2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal, StandardUniform};
+use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 
 /// Longest time between two samples of a simulation in s: a fine grid for the sensors' low-passes.
 const FINE: f64 = 2.5e-4;
@@ -35,18 +37,19 @@ pub fn record(
     like: &Recording,
     replica: u64,
 ) -> Result<Recording, Halt> {
-    Ok(record_counting(machine, control, like, replica)?.0)
+    Ok(record_counting(machine, control, like, replica, u64::MAX)?.0)
 }
 
-/// The same, and the steps that it took.
+/// The same, and the steps of bodies that it took, which are to be no more than `most`.
 ///
 /// # Errors
-/// As [`record`].
+/// As [`record`], and more steps than that.
 pub fn record_counting(
     machine: &Mechanism,
     control: StepControl,
     like: &Recording,
     replica: u64,
+    most: u64,
 ) -> Result<(Recording, u64), Halt> {
     let control = control.with_tolerance_times(FINER.powi(replica as i32));
     let mut machine = machine.clone();
@@ -66,7 +69,13 @@ pub fn record_counting(
     let read: Vec<usize> =
         (0..machine.sensors.len()).filter(|&i| like.get(i).is_some() && !commands(i)).collect();
     let mut columns: Vec<Vec<f64>> = read.iter().map(|_| Vec::with_capacity(rows + 1)).collect();
-    let work = run(machine, control, schedule, &mut |instant| {
+    let bodies = machine.bodies.len() as u64;
+    let mut beyond = None;
+    let work = run_while(machine, control, schedule, &AtomicBool::new(false), &mut |instant| {
+        if instant.steps.saturating_mul(bodies) > most {
+            beyond = Some(instant.t);
+            return ControlFlow::Break(());
+        }
         for (&i, column) in read.iter().zip(&mut columns) {
             let sensor = &machine.sensors[i];
             let (states, angles) = (instant.states, instant.angles);
@@ -76,7 +85,13 @@ pub fn record_counting(
                 _ => sensor.reading(machine, states, angles, instant.evaluation),
             });
         }
+        ControlFlow::Continue(())
     })?;
+    if let Some(t) = beyond {
+        let what = format!("{} steps", work.steps);
+        let cause = "which is more than this model is worth".to_owned();
+        return Err(Halt { t, what, cause, work: work.into() });
+    }
     let command = |i| like.get(i).filter(|_| commands(i)).map(<[f64]>::to_vec);
     let mut recorded: Vec<Option<Vec<f64>>> = (0..machine.sensors.len()).map(command).collect();
     for (&i, column) in read.iter().zip(columns) {
@@ -90,7 +105,7 @@ pub fn record_counting(
             _ => shown(sensor, column, interval, lead, fine),
         });
     }
-    Ok((like.with(recorded), work.steps))
+    Ok((like.with(recorded), work.steps * bodies))
 }
 
 /// What the sampled controller of a drive asks of it (N or N·m) at the rows of a recording where it reads these

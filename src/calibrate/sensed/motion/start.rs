@@ -22,6 +22,17 @@ pub const LEAD: f64 = 0.25;
 /// square of time: short beside its swing, and enough rows to average a sensor's steps.
 const FIRST: f64 = 0.012;
 
+/// Why a machine cannot be put where a recording begins.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// The machine cannot be.
+    #[error("{0}")]
+    Model(#[from] Problem),
+    /// It breaks down while it is held.
+    #[error("{0}")]
+    Halted(#[from] Halt),
+}
+
 /// What a recording says that a drive was told.
 #[derive(Debug)]
 enum Told {
@@ -266,22 +277,24 @@ pub(super) const SWING: f64 = 40.0;
 /// Time in s from rest to the first row.
 const SHORT: f64 = 0.03;
 
-/// `f = −D v` on every body.
+/// `f = −D v` on every body, D its mass or moment of inertia times a rate.
 #[derive(Debug)]
-pub(super) struct CalmedBodies;
+pub(super) struct CalmedBodies {
+    /// The rate in 1/s: twice the angular frequency that is damped critically.
+    pub rate: f64,
+}
 
 impl Load for CalmedBodies {
     fn add(&self, at: Situation, wrenches: &mut [Vector3<f64>]) {
-        let rate = 2.0 * TAU * SWING;
         let bodies = at.mechanism.bodies.iter().zip(at.states);
         for (wrench, (body, state)) in wrenches.iter_mut().zip(bodies) {
             let masses = Vector3::new(body.mass, body.mass, body.inertia);
-            *wrench -= masses.component_mul(&state.twist) * rate;
+            *wrench -= masses.component_mul(&state.twist) * self.rate;
         }
     }
 
     fn longest_step(&self, _mechanism: &Mechanism) -> Option<f64> {
-        Some(1.0 / (2.0 * TAU * SWING))
+        Some(1.0 / self.rate)
     }
 }
 
@@ -296,7 +309,7 @@ pub fn still(released: &Mechanism, control: StepControl) -> Result<Option<Mechan
         return Ok(None);
     }
     let mut calmed = released.clone();
-    calmed.loads.push(Arc::new(CalmedBodies));
+    calmed.loads.push(Arc::new(CalmedBodies { rate: 2.0 * TAU * SWING }));
     let mut machine = released.clone();
     run(&calmed, control, Schedule { duration, interval: duration }, &mut |instant| {
         for (i, body) in machine.bodies.iter_mut().enumerate() {

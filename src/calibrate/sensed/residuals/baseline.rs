@@ -165,7 +165,7 @@ impl Baseline {
         let mut all = Vec::new();
         let sensors = problem.declared.sensors.len();
         for part in self.parts.iter().filter(|part| segments.contains(&part.segment)) {
-            let simulated = problem.one(effects, part.segment.run, part.segment.rows.end, 0)?;
+            let simulated = problem.look(effects, part.segment.run, part.segment.rows.end)?;
             let view = View::new(&simulated, sensors);
             let own = problem.coefficients(&view, &part.machine, &part.segment);
             let Some(own) = own else { return Ok(None) };

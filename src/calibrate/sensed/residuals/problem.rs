@@ -1,13 +1,12 @@
 //! A rig and the runs that it is held against.
 
+use super::kept::KeptStarts;
 use super::residual::{Residuals, residuals};
 use super::responses::Responses;
 use crate::calibrate::sensed::motion::basis::Basis;
 use crate::calibrate::sensed::motion::motions::{Motions, Poses};
-use crate::calibrate::sensed::motion::released::{
-    Released, StartError, let_go_at, released, released_near,
-};
-use crate::calibrate::sensed::motion::start::machine;
+use crate::calibrate::sensed::motion::released::Released;
+use crate::calibrate::sensed::motion::start::{StartError, machine};
 use crate::calibrate::sensed::motion::swinging::{OutputKicks, kicks_as_seen};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
@@ -18,15 +17,10 @@ use crate::engine::{Halt, StepControl};
 use crate::measure::log::LogError;
 use crate::mechanism::Mechanism;
 use crate::scenario::{Problem as Wrong, Scenario};
-use lru::LruCache;
 use rayon::prelude::*;
-use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// Machines that are kept as they were let go: those of two models on eight runs each.
-const LET_GO: NonZeroUsize = NonZeroUsize::new(16).unwrap();
 
 /// A recorded run, ready to be explained.
 #[derive(Debug)]
@@ -59,6 +53,11 @@ impl Start {
     /// Coordinates in m or rad from which a machine that nothing holds is let go.
     pub fn coordinates(&self) -> &[f64] {
         &self.released.coordinates
+    }
+
+    /// Steps of bodies that it took to find them.
+    pub fn steps(&self) -> u64 {
+        self.released.steps
     }
 
     /// Whether it was fitted to the recording's first rows: nothing held the machine there.
@@ -102,12 +101,14 @@ pub struct RigProblem {
     pub replicas: usize,
     pub(super) simulations: AtomicUsize,
     pub(super) work: AtomicU64,
+    /// Steps of bodies in a run of the declared machine; 0 where nobody knows them.
+    pub(super) declared_steps: AtomicU64,
     motions: Motions,
     pub(in crate::calibrate::sensed) responses: Responses,
     /// Run by run, what makes a machine that rests swing as was recorded, where it does not as it is let go.
     kicks: Mutex<Vec<Option<OutputKicks>>>,
-    /// Machines as they were let go: the start of a free one costs more than a simulation.
-    released: Mutex<LruCache<String, Released>>,
+    /// Machines as they were let go.
+    pub(super) kept: Mutex<KeptStarts>,
 }
 
 /// Why a method cannot go on.
@@ -167,10 +168,11 @@ impl RigProblem {
             replicas: 1,
             simulations,
             work,
+            declared_steps: AtomicU64::new(0),
             motions,
             responses,
             kicks,
-            released: Mutex::new(LruCache::new(LET_GO)),
+            kept: Mutex::default(),
         };
         if problem.names().is_some_and(|names| names.is_empty()) {
             let message = "say nothing that a model could get wrong: how the machine moves, and nothing beside it";
@@ -204,9 +206,14 @@ impl RigProblem {
         self.work.load(Ordering::Relaxed)
     }
 
+    /// Steps of bodies that are left before nothing further is begun.
+    pub fn left(&self) -> u64 {
+        thresholds::WORK.saturating_sub(self.work())
+    }
+
     /// Whether they are so many that nothing further is begun.
     pub fn is_worn_out(&self) -> bool {
-        self.work() >= thresholds::WORK
+        self.left() == 0
     }
 
     /// Where these runs of a model with these effects begin, with a swing and without one.
@@ -247,84 +254,8 @@ impl RigProblem {
         self.kicks().fill(None);
     }
 
-    fn kicks(&self) -> MutexGuard<'_, Vec<Option<OutputKicks>>> {
+    pub(super) fn kicks(&self) -> MutexGuard<'_, Vec<Option<OutputKicks>>> {
         self.kicks.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// The machine with these effects as it was let go in run `index`.
-    pub(super) fn released(&self, effects: &[Setting], index: usize) -> Result<Released, Stopped> {
-        let key = self.key(effects, index);
-        let kept = || self.released.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(machine) = kept().get(&key) {
-            return Ok(machine.clone());
-        }
-        let mut machine = released(&self.rig, effects, &self.runs[index].recording, self.control)?;
-        let kicks = self.kicks()[index];
-        if let Some(kicks) = kicks {
-            machine = machine.with_kicks(&kicks, self.control)?;
-        }
-        kept().put(key, machine.clone());
-        Ok(machine)
-    }
-
-    /// Knows from now on where the machine with these effects was let go in run `index`: near `coordinates`, where that does
-    /// more of what was recorded.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn let_go_near(
-        &self,
-        effects: &[Setting],
-        index: usize,
-        coordinates: &[f64],
-    ) -> Result<(), Stopped> {
-        let known = (self.released(effects, index)?, coordinates);
-        let recording = &self.runs[index].recording;
-        let near = released_near(&self.rig, effects, recording, known, self.control)?;
-        let key = self.key(effects, index);
-        self.released.lock().unwrap_or_else(PoisonError::into_inner).put(key, near);
-        Ok(())
-    }
-
-    fn key(&self, effects: &[Setting], index: usize) -> String {
-        format!("{index} {:?} {:?} {effects:?}", self.kicks()[index], self.rig.effects)
-    }
-
-    /// The machine with the `drawn` effects about where the model that begins at `start` was let go in run `index`, as
-    /// far as nobody knows that: it is as uncertain whatever their values, and costs more than a simulation to find.
-    pub(super) fn let_go_like(
-        &self,
-        start: &Start,
-        drawn: &[Setting],
-        index: usize,
-        replica: u64,
-    ) -> Result<Mechanism, Stopped> {
-        if start.released.coordinates.is_empty() {
-            return Ok(self.released(drawn, index)?.machine);
-        }
-        let coordinates = start.released.drawn(replica);
-        let recording = &self.runs[index].recording;
-        Ok(let_go_at(&self.rig, drawn, recording, &coordinates, self.control)?)
-    }
-
-    /// Where the runs of a model with these effects begin as it is let go, whatever swing was recorded.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn let_go(&self, effects: &[Setting]) -> Result<Vec<Start>, Stopped> {
-        let start = |run| {
-            let released = self.released(effects, run)?;
-            Ok(Start { run, released, effects: effects.to_vec(), still: None })
-        };
-        (0..self.runs.len()).into_par_iter().map(start).collect()
-    }
-
-    /// Whether nothing holds the machine with these effects in some run.
-    ///
-    /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
-    pub fn falls(&self, effects: &[Setting]) -> Result<bool, Stopped> {
-        Ok(self.let_go(effects)?.iter().any(Start::is_fitted))
     }
 
     /// Residuals of a view of run `segment.run` under a mechanism.

@@ -1,10 +1,9 @@
 //! Noiseless recordings of models of a problem.
 
 use super::problem::{RigProblem, Start, Stopped};
-use crate::calibrate::sensed::motion::released::let_go_at;
 use crate::calibrate::sensed::motion::simulate;
 use crate::calibrate::sensed::recorded::recording::Recording;
-use crate::calibrate::sensed::thresholds;
+use crate::calibrate::sensed::thresholds::{BUDGET, REPLICAS, SEEN, STIFFER, TRIM, WORK};
 use crate::calibrate::values::least_squares::{free, values, with_values};
 use crate::effects::Setting;
 use crate::engine::Halt;
@@ -68,6 +67,20 @@ impl RigProblem {
         Ok(recorded.chunks(replicas.len()).map(<[Recording]>::to_vec).collect())
     }
 
+    /// Two noiseless recordings of each run of the declared machine, whose steps say from then on what a
+    /// [look](Self::look) at another model is worth.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn simulated_as_declared(&self) -> Result<Vec<Vec<Recording>>, Stopped> {
+        let starts = self.let_go(&[])?;
+        let before = self.work();
+        let simulated = self.simulated(&starts, 2)?;
+        let mean = (self.work() - before) / (2 * starts.len() as u64).max(1);
+        self.declared_steps.store(mean, Ordering::Relaxed);
+        Ok(simulated)
+    }
+
     /// A noiseless recording of run `index` of a model with these effects, some time beyond row `until` of it: a replica.
     ///
     /// # Errors
@@ -80,13 +93,27 @@ impl RigProblem {
         replica: u64,
     ) -> Result<Recording, Stopped> {
         let machine = self.released(effects, index)?.machine;
-        Ok(self.recorded(&machine, index, until, replica)?)
+        Ok(self.recorded(&machine, index, until, replica, u64::MAX)?)
     }
 
-    /// The same of the first replica where the machine, which nothing holds, is let go at these coordinates.
+    /// The same of the first replica of a model that is [worth](STIFFER) no more than so many steps.
     ///
     /// # Errors
-    /// An effect that the machine cannot take, a run that broke down.
+    /// As of [`Self::one`], and more steps than that.
+    pub fn look(
+        &self,
+        effects: &[Setting],
+        index: usize,
+        until: usize,
+    ) -> Result<Recording, Stopped> {
+        let machine = self.released(effects, index)?.machine;
+        Ok(self.recorded(&machine, index, until, 0, self.most_steps())?)
+    }
+
+    /// The same where the machine, which nothing holds, is let go at these coordinates.
+    ///
+    /// # Errors
+    /// As of [`Self::look`].
     pub fn from(
         &self,
         effects: &[Setting],
@@ -94,9 +121,8 @@ impl RigProblem {
         until: usize,
         coordinates: &[f64],
     ) -> Result<Recording, Stopped> {
-        let recording = &self.runs[index].recording;
-        let machine = let_go_at(&self.rig, effects, recording, coordinates, self.control)?;
-        Ok(self.recorded(&machine, index, until, 0)?)
+        let machine = self.at_rest(effects, index, coordinates)?;
+        Ok(self.recorded(&machine, index, until, 0, self.most_steps())?)
     }
 
     fn recorded(
@@ -105,11 +131,20 @@ impl RigProblem {
         index: usize,
         until: usize,
         replica: u64,
+        most: u64,
     ) -> Result<Recording, Halt> {
         let recording = &self.runs[index].recording;
         // Filters see a little beyond the last row.
-        let seconds = until as f64 * recording.interval + 3.0 * thresholds::TRIM;
-        self.record(machine, &recording.first(seconds), replica)
+        let seconds = until as f64 * recording.interval + 3.0 * TRIM;
+        self.record_within(machine, &recording.first(seconds), replica, most)
+    }
+
+    /// Steps of bodies that a look at a model is worth.
+    fn most_steps(&self) -> u64 {
+        match self.declared_steps.load(Ordering::Relaxed) {
+            0 => u64::MAX,
+            declared => declared.saturating_mul(STIFFER).max(WORK / BUDGET as u64),
+        }
     }
 
     /// What sensors show of a run like this recording, counted among the simulations.
@@ -119,10 +154,24 @@ impl RigProblem {
         like: &Recording,
         replica: u64,
     ) -> Result<Recording, Halt> {
+        self.record_within(machine, like, replica, u64::MAX)
+    }
+
+    fn record_within(
+        &self,
+        machine: &Mechanism,
+        like: &Recording,
+        replica: u64,
+        most: u64,
+    ) -> Result<Recording, Halt> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        let (recorded, steps) = simulate::record_counting(machine, self.control, like, replica)?;
-        self.work.fetch_add(steps * machine.bodies.len() as u64, Ordering::Relaxed);
-        Ok(recorded)
+        let recorded = simulate::record_counting(machine, self.control, like, replica, most);
+        let steps = match &recorded {
+            Ok((_, steps)) => *steps,
+            Err(halt) => halt.work.steps * machine.bodies.len() as u64,
+        };
+        self.work.fetch_add(steps, Ordering::Relaxed);
+        Ok(recorded?.0)
     }
 
     /// Finds out whether replicas of the machine with these effects differ by more than sensors see, and by how
@@ -138,8 +187,8 @@ impl RigProblem {
     /// The same by simulations of two replicas or more of each run.
     pub fn rattle(&mut self, logs: &[Vec<Recording>]) -> f64 {
         let largest = self.apart(logs);
-        if largest > thresholds::SEEN {
-            self.replicas = thresholds::REPLICAS;
+        if largest > SEEN {
+            self.replicas = REPLICAS;
         }
         largest
     }
@@ -159,7 +208,7 @@ impl RigProblem {
         }
         // What cannot be simulated as it is let go tells nothing.
         let logs = self.let_go(effects).and_then(|starts| self.simulated(&starts, 2));
-        logs.is_ok_and(|logs| self.apart(&logs) > thresholds::SEEN)
+        logs.is_ok_and(|logs| self.apart(&logs) > SEEN)
     }
 
     /// Noiseless recordings of a model that begins there without a swing; none of runs whose machine is not held
@@ -195,6 +244,21 @@ fn drawn(effects: &[Setting], deviations: &[f64], replica: u64) -> Option<Vec<Se
 mod tests {
     use super::*;
     use crate::effects::{Target, named};
+
+    #[test]
+    fn a_look_that_takes_more_steps_than_it_is_worth_is_given_up() {
+        let problem = RigProblem::planar("planar-1");
+        let machine = problem.let_go(&[]).unwrap()[0].machine().clone();
+        let taken = |most: u64| {
+            let before = problem.work();
+            let looked = problem.record_within(&machine, &problem.runs[0].recording, 0, most);
+            (looked.is_ok(), problem.work() - before)
+        };
+        let (_, whole) = taken(u64::MAX);
+        assert_eq!(taken(whole), (true, whole));
+        let (ended, part) = taken(whole / 4);
+        assert!(!ended && part > whole / 4 && part < whole / 2, "{part} of {whole}");
+    }
 
     /// What rests in its bearings as declared is thrown about with more on its piston, on the faster one of its runs.
     #[test]

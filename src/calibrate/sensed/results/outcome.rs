@@ -132,7 +132,7 @@ pub fn calibrate(
 
 /// Two simulations of each run as declared, by which efforts and accelerations are what their heads say.
 fn as_declared(problem: &RigProblem) -> Result<Vec<Vec<Recording>>, Stopped> {
-    let simulated = problem.simulated(&problem.let_go(&[])?, 2)?;
+    let simulated = problem.simulated_as_declared()?;
     let unlike = |(run, logs): (&Run, &Vec<Recording>)| {
         unlike(&problem.rig, &problem.declared, &run.recording, logs)
     };

@@ -56,11 +56,15 @@ impl Search<'_> {
         };
         let mut found = Vec::new();
         for start in self.promising(model)? {
+            if self.problem.is_worn_out() {
+                break;
+            }
             found.extend(fitted(&[own.as_slice(), &[start]].concat(), Far::First)?);
         }
         let most = found.iter().map(|(gain, _)| *gain).fold(0.0, f64::max);
         for (gain, there) in &mut found {
             if *gain >= NEAR * most
+                && !self.problem.is_worn_out()
                 && let Some(closer) = fitted(&there.fit.effects, Far::All)?
                 && closer.0 > *gain
             {
@@ -121,7 +125,7 @@ impl Search<'_> {
         let Some(starts) = whole.by_start(own, &left) else { return Ok(Vec::new()) };
         (self.tell)("simulating every effect for a moment");
         let mut kept = self.stepped(model, &whole, (&starts, &left));
-        if follows {
+        if follows && !self.problem.is_worn_out() {
             kept.extend(other_laws(
                 &whole,
                 &self.problem.declared,

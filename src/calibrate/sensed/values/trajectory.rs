@@ -101,7 +101,7 @@ pub fn fitted(
 }
 
 /// The effects at values whose predictions of these runs, means of replicas that rattle, miss them least, from values
-/// near them on.
+/// near them on; in as many steps as the work that is left to the problem allows for.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
@@ -115,6 +115,7 @@ pub fn predicted(
         (0..problem.replicas as u64).into_par_iter().map(one).collect::<Result<Vec<_>, _>>()
     };
     let machine = &problem.declared;
+    let before = problem.work();
     let floors: Vec<Vec<Option<f64>>> = on
         .iter()
         .map(|segment| Ok(floors_of(machine, &replicas(effects, segment)?)))
@@ -130,7 +131,14 @@ pub fn predicted(
         }
         Some(DVector::from_vec(all))
     };
-    let best = least_squares(&look, &free(effects), values(effects), EFFORT, None);
+    let free = free(effects);
+    // A free machine is let go anew with each value.
+    let starts = problem.let_go(effects)?;
+    let starts: u64 = on.iter().map(|segment| starts[segment.run].steps()).sum();
+    let step = (problem.work() - before + starts) * (free.len() as u64 + 1);
+    let effort =
+        FitEffort { steps: EFFORT.steps.min((problem.left() / step.max(1)) as usize), ..EFFORT };
+    let best = least_squares(&look, &free, values(effects), effort, None);
     Ok(best.map_or_else(|| effects.to_vec(), |best| with_values(effects, &best.values)))
 }
 
