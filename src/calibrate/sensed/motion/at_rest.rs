@@ -21,7 +21,7 @@ const HELD: f64 = 1.0;
 const AT_REST: (f64, f64) = (5e-10, 5e-3);
 
 /// Tolerance in m/s with which it is held, at most: errors of steps move a journal at rest by less than that then. With 1e-4 they
-/// never let one rest, with 1e-5 not two of five in wide play, with 1e-6 one in sixty rested late.
+/// never let one rest, with 1e-5 hardly half in play of 0.4 mm, and with 1e-6 one in sixty rested late.
 const HOLDING: f64 = 1e-7;
 
 /// Natural frequency in Hz of what holds a joint's two bodies against each other: the weight of a machine of some decimetres bends

@@ -151,3 +151,29 @@ pub fn shorter(problem: &RigProblem, segment: &Segment, length: Option<f64>) -> 
     let end = segment.rows.end.min(segment.rows.start + rows);
     Segment { run: segment.run, rows: segment.rows.start..end }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{Target, named};
+
+    /// Predictions of a machine whose rod is not dragged take a drag away, unless no work is left for that.
+    #[test]
+    fn predictions_are_fitted_with_what_work_is_left() {
+        let target = Target::Body("rod".to_owned());
+        let start = [("force_Ns_m", 5.0), ("torque_Nms", 0.0)];
+        let drag = vec![Setting::on(named("drag").unwrap(), target, &start)];
+        let found = |problem: RigProblem| {
+            let on: Vec<Segment> = problem
+                .split()
+                .on
+                .iter()
+                .map(|whole| shorter(&problem, whole, Some(0.3)))
+                .collect();
+            values(&predicted(&problem, &drag, &on).unwrap())
+        };
+        let fresh = || RigProblem::planar("planar-1");
+        assert_eq!(found(fresh().worn_out()), [5.0, 0.0]);
+        assert!(found(fresh())[0] < 2.5, "{:?}", found(fresh()));
+    }
+}
