@@ -14,7 +14,6 @@ use crate::calibrate::sensed::rounds::round::Tried;
 use crate::calibrate::sensed::rounds::words::{name, names};
 use crate::calibrate::sensed::windows::horizons::Windows;
 use crate::calibrate::values::errors::{ChannelError, worst};
-use crate::effects::Setting;
 use crate::simulate::Provenance;
 use serde::Serialize;
 
@@ -62,8 +61,7 @@ pub struct Report {
 
 pub(super) fn summary(outcome: &SensedOutcome) -> String {
     let lasting = outcome.effects.iter().filter(|(effect, _)| effect.history().is_none());
-    let found: Vec<_> = lasting.map(|(e, _)| (name(e), as_good(outcome, e))).collect();
-    let list = found.iter().map(|(own, _)| own.as_str()).collect::<Vec<_>>().join(", ");
+    let list = lasting.map(|(e, _)| name(e)).collect::<Vec<_>>().join(", ");
     let worst = worst(&outcome.errors).map_or_else(String::new, |error| {
         format!(
             " (worst: {} of {}, {:.2} floors)",
@@ -79,15 +77,10 @@ pub(super) fn summary(outcome: &SensedOutcome) -> String {
         Verdict::Explained if list.is_empty() => format!(
             "With what does not last the declared model explains the recordings to within noise{worst}."
         ),
-        Verdict::Explained => match one_of_some(&found) {
-            Some(some) => format!(
-                "The declared model lacks {some}: these recordings do not tell which. With {list} they are \
-                 explained to within noise{worst}."
-            ),
-            None => format!(
-                "The declared model lacks {list}. With it the recordings are explained to within noise{worst}."
-            ),
-        },
+        Verdict::Explained => format!(
+            "The declared model lacks {list}. With it the recordings are explained to within noise{worst}.{}",
+            as_good(outcome)
+        ),
         Verdict::Unexplained if outcome.rest.is_some() => format!(
             "{} leaves residuals that are no more than noise, but {}.",
             names(&outcome.tried),
@@ -108,24 +101,16 @@ pub(super) fn summary(outcome: &SensedOutcome) -> String {
     }
 }
 
-/// What explains the recordings as well in place of an effect that was found.
-fn as_good(outcome: &SensedOutcome, effect: &Setting) -> Vec<String> {
-    let mut rounds = outcome.rounds.iter();
-    let own = rounds.find(|round| round.added.as_ref().is_some_and(|added| added.is(effect)));
-    own.map_or_else(Vec::new, |round| round.as_good.iter().map(name).collect())
-}
-
-/// Effects by their names, each one of those that are as good in its place; none where none has any.
-fn one_of_some(found: &[(String, Vec<String>)]) -> Option<String> {
-    let each = |(own, others): &(String, Vec<String>)| match others.split_last() {
-        Some((last, others)) => {
-            let names = [std::slice::from_ref(own), others].concat();
-            format!("one of {} and {last}", names.join(", "))
-        }
-        None => own.clone(),
-    };
-    let open = found.iter().any(|(_, others)| !others.is_empty());
-    open.then(|| found.iter().map(each).collect::<Vec<_>>().join("; "))
+/// What explains the recordings as well as what was found does.
+fn as_good(outcome: &SensedOutcome) -> String {
+    let all = outcome.effects.iter().filter_map(|(effect, _)| {
+        let mut rounds = outcome.rounds.iter();
+        let own = rounds.find(|round| round.added.as_ref().is_some_and(|a| a.is(effect)))?;
+        let others = own.as_good.iter().map(name).collect::<Vec<_>>().join(" or ");
+        (!others.is_empty())
+            .then(|| format!(" In place of {} these do not rule out {others}.", name(effect)))
+    });
+    all.collect()
 }
 
 /// What is said of instruments that are noisier or quieter than declared.
@@ -240,23 +225,4 @@ pub(super) fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> 
         largest_after: after.largest,
     };
     before.iter().zip(after).map(pair).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_recordings_leave_open_is_said_to_be_open() {
-        let found = |all: &[&[&str]]| {
-            let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-            let all: Vec<(String, Vec<String>)> =
-                all.iter().map(|all| (all[0].to_owned(), names(&all[1..]))).collect();
-            one_of_some(&all)
-        };
-        assert_eq!(found(&[&["payload at rod"], &["gravity"]]), None);
-        let open = found(&[&["payload at rod"], &["wear at A", "gravity", "tether at rod"]]);
-        let expected = "payload at rod; one of wear at A, gravity and tether at rod";
-        assert_eq!(open.as_deref(), Some(expected));
-    }
 }
