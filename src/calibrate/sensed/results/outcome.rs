@@ -275,13 +275,17 @@ fn what_does_not_last(
 /// Puts a model that predicts the recordings in the place of what was found where that leaves noise and misses them: those that
 /// values are fitted to, then the others; and what speaks against it although it leaves no more than noise.
 fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped> {
-    let rest = predicting(search, found)?;
+    let mut rest = predicting(search, found)?;
     if rest.is_none()
         && let Some((wider, round)) = search.wider(&found.best)?
     {
         found.best = wider;
         found.rounds.push(round);
-        return Ok(against(search, found, None));
+        rest = against(search, found, None);
+    }
+    if rest.is_none() && search.is_noise(&found.best) {
+        found.best = search.closest(found.best.clone())?;
+        rest = against(search, found, None);
     }
     Ok(rest)
 }

@@ -132,16 +132,45 @@ impl Search<'_> {
         far: Far,
     ) -> Result<Option<Model>, Stopped> {
         let mut model = self.at(&fitted(self.problem, effects, &self.split.on, far)?, &[])?;
-        if let Some(Model { fit, baseline, .. }) = &mut model {
-            let length = followed(self.problem, &fit.effects, &self.split.on)?.pop().flatten();
-            let on = self.split.on.iter();
-            let on: Vec<_> = on.map(|segment| shorter(self.problem, segment, length)).collect();
-            let whole = Whole::of(self.problem, &fit.effects, &on, || Ok(baseline.clone()))?;
-            if whole.falls() || !baseline.rattles {
-                fit.told = whole.covariance(&fit.effects);
-            }
+        if let Some(model) = &mut model {
+            model.fit.told = self.over_whole(model, |whole, effects| {
+                let told = whole.falls() || !model.baseline.rattles;
+                told.then(|| whole.covariance(effects)).flatten()
+            })?;
         }
         Ok(model)
+    }
+
+    /// What whole simulations of a model say, over as much of the runs that values are fitted to as they can be followed.
+    fn over_whole<T>(
+        &self,
+        Model { fit, baseline, .. }: &Model,
+        said: impl FnOnce(&Whole, &[Setting]) -> T,
+    ) -> Result<T, Stopped> {
+        let length = followed(self.problem, &fit.effects, &self.split.on)?.pop().flatten();
+        let on = self.split.on.iter();
+        let on: Vec<_> = on.map(|segment| shorter(self.problem, segment, length)).collect();
+        let whole = Whole::of(self.problem, &fit.effects, &on, || Ok(baseline.clone()))?;
+        Ok(said(&whole, &fit.effects))
+    }
+
+    /// A model whose values whole simulations tell at the [closest](Whole::closest) ones, where it leaves no more than noise with
+    /// them.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub(in crate::calibrate::sensed) fn closest(&self, model: Model) -> Result<Model, Stopped> {
+        if model.fit.told.is_none() || self.problem.is_worn_out() {
+            return Ok(model);
+        }
+        (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
+        let closest = self.over_whole(&model, |whole, effects| whole.closest(effects))?;
+        let Some((effects, covariance)) = closest else { return Ok(model) };
+        let closest = self.at(&effects, &[])?.map(|mut closest| {
+            closest.fit.told = Some(covariance);
+            closest
+        });
+        Ok(closest.filter(|closest| self.is_noise(closest)).unwrap_or(model))
     }
 
     /// A model whose predictions of the runs that values are fitted to are met, and the round that led to it, in place of

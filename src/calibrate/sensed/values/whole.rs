@@ -8,10 +8,11 @@ use crate::calibrate::sensed::motion::released::SMALL;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{RigProblem, Segment, Stopped};
 use crate::calibrate::values::least_squares::{
-    FitEffort, Free, derivative, jacobian, least_squares,
+    Best, FitEffort, Free, derivative, jacobian, least_squares,
 };
 use crate::calibrate::values::least_squares::{free, values, with_values};
 use crate::calibrate::values::normal::{inverse_normal, pull};
+use crate::calibrate::values::rough::closest;
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 
@@ -70,7 +71,7 @@ impl<'a> Whole<'a> {
 
     /// The derivative of the residual of a model, which is `left`, by each coordinate from which it was let go.
     pub fn by_start(&self, effects: &[Setting], left: &DVector<f64>) -> Option<Vec<DVector<f64>>> {
-        let (own, free) = (self.coordinates(), self.free());
+        let (own, free) = (self.coordinates(), self.free_starts());
         let look = |coordinates: &[f64]| self.look_from(effects, coordinates);
         (0..own.len()).map(|i| derivative(&look, &free, &own, left, i)).collect()
     }
@@ -78,45 +79,62 @@ impl<'a> Whole<'a> {
     /// The effects at the values that leave the least, from these on, and the mean square of that in units of noise; none where
     /// there is no such machine. Where it was let go with them is known from then on.
     pub fn fitted(&self, effects: &[Setting], effort: FitEffort) -> Option<(Vec<Setting>, f64)> {
-        let count = values(effects).len();
-        let look = |all: &[f64]| {
-            let (values, coordinates) = all.split_at(count);
-            self.look_from(&with_values(effects, values), coordinates)
+        let look = |all: &[f64]| self.look_at(effects, all);
+        let best = least_squares(&look, &self.free(effects), self.all(effects), effort, None)?;
+        let left = best.residual.norm_squared() / best.residual.len().max(1) as f64;
+        Some((self.let_go(effects, &best.values)?, left))
+    }
+
+    /// The covariance of the values of a model's effects, whatever the starts: `(JᵀJ)⁻¹`, J in units of noise, larger where
+    /// what is left is larger than noise or noise pulls values further.
+    pub fn covariance(&self, effects: &[Setting]) -> Option<DMatrix<f64>> {
+        let left = self.look(effects)?;
+        let look = |all: &[f64]| self.look_at(effects, all);
+        let own = jacobian(&look, &self.free(effects), &self.all(effects), &left)?;
+        self.covariance_by(&own, &left, values(effects).len())
+    }
+
+    /// The effects at the values that leave the least, [closely](closest), from those of a fit on, which ends where a step brings
+    /// little, and their [covariance](Self::covariance).
+    pub fn closest(&self, effects: &[Setting]) -> Option<(Vec<Setting>, DMatrix<f64>)> {
+        let look = |all: &[f64]| self.look_at(effects, all);
+        let Best { values: all, residual, jacobian } =
+            closest(&look, self.free(effects), self.all(effects))?;
+        let covariance = self.covariance_by(&jacobian?, &residual, values(effects).len())?;
+        Some((self.let_go(effects, &all)?, covariance))
+    }
+
+    /// The covariance of the first `count` values by derivatives of what is `left`.
+    fn covariance_by(
+        &self,
+        own: &DMatrix<f64>,
+        left: &DVector<f64>,
+        count: usize,
+    ) -> Option<DMatrix<f64>> {
+        let inverse = inverse_normal(own)?;
+        let independent = left.len() as f64;
+        let factor = match &self.compared {
+            ComparedBy::Looks(baseline) => {
+                let pulled = pull(own, &inverse, &baseline.draws(self.segments));
+                pulled.max(left.norm_squared() / independent.max(1.0))
+            }
+            ComparedBy::Columns { .. } => {
+                left.norm_squared() / (independent / OVERSAMPLED).max(1.0)
+            }
         };
-        let free = [free(effects), self.free()].concat();
-        let start = [values(effects), self.coordinates()].concat();
-        let best = least_squares(&look, &free, start, effort, None)?;
-        let (own, mut coordinates) = best.values.split_at(count);
-        let fitted = with_values(effects, own);
+        Some(inverse.view((0, 0), (count, count)) * factor.max(1.0))
+    }
+
+    /// The effects with the first of these values; that they are let go at the others is known from then on.
+    fn let_go(&self, effects: &[Setting], all: &[f64]) -> Option<Vec<Setting>> {
+        let (own, mut coordinates) = all.split_at(values(effects).len());
+        let effects = with_values(effects, own);
         for (segment, start) in self.segments.iter().zip(self.starts()) {
             let (own, others) = coordinates.split_at(start.len());
             coordinates = others;
-            self.problem.let_go_near(&fitted, segment.run, own).ok()?;
+            self.problem.let_go_near(&effects, segment.run, own).ok()?;
         }
-        Some((fitted, best.residual.norm_squared() / best.residual.len().max(1) as f64))
-    }
-
-    /// The covariance of the values of a model's effects, whatever the starts: `(JᵀJ)⁻¹`, J in units of noise and without what
-    /// other starts make up for, larger where what is left is larger than noise or noise pulls values further.
-    pub fn covariance(&self, effects: &[Setting]) -> Option<DMatrix<f64>> {
-        let left = self.look(effects)?;
-        let look = |values: &[f64]| self.look(&with_values(effects, values));
-        let own = jacobian(&look, &free(effects), &values(effects), &left)?;
-        let mean_square = |independent: f64| left.norm_squared() / independent.max(1.0);
-        let count = left.len() as f64;
-        let (own, factor) = match &self.compared {
-            ComparedBy::Looks(baseline) => {
-                let inverse = inverse_normal(&own)?;
-                let pulled = pull(&own, &inverse, &baseline.draws(self.segments));
-                (own, mean_square(count).max(pulled).max(1.0))
-            }
-            ComparedBy::Columns { .. } => {
-                let across = DMatrix::from_columns(&self.by_start(effects, &left)?).qr().q();
-                let own = &own - &across * across.tr_mul(&own);
-                (own, mean_square(count / OVERSAMPLED).max(1.0))
-            }
-        };
-        Some(inverse_normal(&own)? * factor)
+        Some(effects)
     }
 
     /// The coordinates from which the machine is let go, segment by segment.
@@ -132,9 +150,25 @@ impl<'a> Whole<'a> {
         self.starts().concat()
     }
 
-    fn free(&self) -> Vec<Free> {
+    /// The values of effects, and the coordinates of all runs.
+    fn all(&self, effects: &[Setting]) -> Vec<f64> {
+        [values(effects), self.coordinates()].concat()
+    }
+
+    /// Steps and bounds of these.
+    fn free(&self, effects: &[Setting]) -> Vec<Free> {
+        [free(effects), self.free_starts()].concat()
+    }
+
+    fn free_starts(&self) -> Vec<Free> {
         let free = Free { step: SMALL, bounds: [-f64::MAX, f64::MAX] };
         vec![free; self.coordinates().len()]
+    }
+
+    /// The residual of these effects with such values.
+    fn look_at(&self, effects: &[Setting], all: &[f64]) -> Option<DVector<f64>> {
+        let (own, coordinates) = all.split_at(values(effects).len());
+        self.look_from(&with_values(effects, own), coordinates)
     }
 
     fn look_from(&self, effects: &[Setting], coordinates: &[f64]) -> Option<DVector<f64>> {
