@@ -229,13 +229,19 @@ fn named(place: &Place, rig: &str, truth: &[&str], seeds: std::ops::RangeInclusi
                 value.parse::<f64>().is_ok() || effect[key] == value
             })
         };
-        let alone = |effect: &Value| effect["as_good"].as_array().unwrap().is_empty();
+        let alone = |effect: &Value| {
+            ["as_good", "not_ruled_out"]
+                .iter()
+                .all(|key| effect[*key].as_array().unwrap().is_empty())
+        };
         let found = effects.len() == 1
             && own(&effects[0])
             && alone(&effects[0])
             && report["verdict"] == "explained";
-        let names: Vec<String> =
-            effects.iter().map(|e| format!("{} {}", e["kind"], e["as_good"])).collect();
+        let names: Vec<String> = effects
+            .iter()
+            .map(|e| format!("{} {} {}", e["kind"], e["as_good"], e["not_ruled_out"]))
+            .collect();
         println!("{rig} seed {seed}: {} {names:?}", report["verdict"]);
         right += usize::from(found);
     }

@@ -13,11 +13,12 @@ fn found(report: &Value) -> Value {
         .unwrap()
         .iter()
         .map(|effect| {
-            let [kind, joint, depends_on, as_good, params] =
-                ["kind", "joint", "depends_on", "as_good", "params"].map(|key| &effect[key]);
+            let [kind, joint, depends_on, as_good, not_ruled_out, params] =
+                ["kind", "joint", "depends_on", "as_good", "not_ruled_out", "params"]
+                    .map(|key| &effect[key]);
             object!({
                 "kind": kind, "joint": joint, "depends_on": depends_on, "as_good": as_good,
-                "params": params,
+                "not_ruled_out": not_ruled_out, "params": params,
             })
         })
         .collect();
@@ -61,7 +62,7 @@ fn calibration(rig: usize) {
         .map(|key| (kept[key].as_array().unwrap(), now[key].as_array().unwrap()));
     assert_eq!((effects.1.len(), errors.1.len()), (effects.0.len(), errors.0.len()), "{name}");
     for (kept, now) in effects.0.iter().zip(effects.1) {
-        for key in ["kind", "joint", "depends_on", "as_good"] {
+        for key in ["kind", "joint", "depends_on", "as_good", "not_ruled_out"] {
             assert_eq!(now[key], kept[key], "{name}");
         }
         let params = [kept, now].map(|effect| effect["params"].as_object().unwrap());

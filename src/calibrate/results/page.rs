@@ -74,6 +74,7 @@ mod tests {
             params: Vec::new(),
             evidence: evidence.to_owned(),
             as_good: Vec::new(),
+            not_ruled_out: Vec::new(),
             equation: "f = 0",
         };
         assert_eq!(why(&effect(None, "removes it")), "kind: f = 0. It removes it.");

@@ -91,8 +91,10 @@ pub struct EffectReport {
     pub params: Vec<(&'static str, Fitted)>,
     /// What it rests on.
     pub evidence: String,
-    /// Effects that explain these recordings as well.
+    /// Effects that explain these recordings as well, as whole simulations showed.
     pub as_good: Vec<String>,
+    /// Effects that residuals alone do not rule out in its place, and that were not simulated.
+    pub not_ruled_out: Vec<String>,
     /// Its equation.
     pub equation: &'static str,
 }
@@ -154,12 +156,14 @@ pub struct ResidualReport {
     pub mean_square_before: f64,
     /// Under the named effects.
     pub mean_square_after: f64,
-    /// Up to where noise reaches.
+    /// Mean square up to which that is noise.
     pub noise_up_to: f64,
     /// Largest coefficient in units of noise under the declared model.
     pub largest_before: f64,
     /// Under the named effects.
     pub largest_after: f64,
+    /// Largest coefficient up to which that is noise.
+    pub largest_noise_up_to: f64,
 }
 
 /// Whether the machine rattles.

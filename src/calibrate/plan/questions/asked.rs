@@ -210,8 +210,9 @@ pub fn left_open(text: &str, path: &str, mechanism: &Mechanism) -> Result<Vec<Qu
     let mut questions = Vec::new();
     for effect in found {
         let Some(own) = setting_of(effect) else { continue };
-        let rivals = effect.get("as_good").and_then(Value::as_array).into_iter().flatten();
-        for rival in rivals.filter_map(Value::as_str) {
+        let rivals =
+            ["as_good", "not_ruled_out"].into_iter().filter_map(|key| effect.get(key)?.as_array());
+        for rival in rivals.flatten().filter_map(Value::as_str) {
             let spelt = rival.replacen(" at ", ":", 1).replace(", ", "+");
             let mut others = effects(&spelt, mechanism).map_err(|wrong| {
                 format!(

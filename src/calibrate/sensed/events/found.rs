@@ -140,6 +140,7 @@ impl Event {
             params: self.params(),
             evidence: self.evidence(),
             as_good: Vec::new(),
+            not_ruled_out: Vec::new(),
             equation: "effort at joints over time, tabulated in calibrated.toml",
         }
     }

@@ -144,6 +144,7 @@ fn effect(found: &HeldEffect) -> EffectReport {
         params: found.params.clone(),
         evidence: found.evidence.clone(),
         as_good: Vec::new(),
+        not_ruled_out: Vec::new(),
         equation: found.effect.kind.equation,
     }
 }

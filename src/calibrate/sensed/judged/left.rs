@@ -19,9 +19,11 @@ pub struct Left {
     pub mean_square: f64,
     /// The mean square up to which that is noise on that run.
     pub limit: f64,
-    /// Its largest coefficient in units of noise, on any run.
+    /// Its largest coefficient in units of noise, on the run where that is farthest above what noise may be.
     pub largest: f64,
-    /// Whether that is noise, on each run.
+    /// The largest coefficient up to which that is noise on that run.
+    pub highest: f64,
+    /// Whether both are noise, on each run.
     pub noise: bool,
 }
 
@@ -36,15 +38,18 @@ impl Search<'_> {
     pub fn left(&self, model: &Model) -> Vec<Left> {
         let [on, hold] = [false, true].map(|held| self.left_on(model, held));
         let above = |left: &Left| left.mean_square / left.limit;
-        let worse = |(on, hold): (Left, Left)| Left {
-            largest: on.largest.max(hold.largest),
-            noise: on.noise && hold.noise,
-            ..if above(&on) > above(&hold) { on } else { hold }
+        let stands_out = |left: &Left| left.largest / left.highest;
+        let worse = |(on, hold): (Left, Left)| {
+            let most = if stands_out(&on) > stands_out(&hold) { &on } else { &hold };
+            let (largest, highest) = (most.largest, most.highest);
+            let noise = on.noise && hold.noise;
+            Left { largest, highest, noise, ..if above(&on) > above(&hold) { on } else { hold } }
         };
         on.into_iter().zip(hold).map(worse).collect()
     }
 
-    fn left_on(&self, model: &Model, held: bool) -> Vec<Left> {
+    /// The same on the runs that values are fitted to, or on those that are held.
+    pub(super) fn left_on(&self, model: &Model, held: bool) -> Vec<Left> {
         let Some(fit) = self.target(&model.baseline, held).look(&model.fit.effects) else {
             return Vec::new();
         };
@@ -61,7 +66,8 @@ impl Search<'_> {
             let limit = NOISE[usize::from(!held)].max(chance(&squares));
             let highest = LARGEST.max(chance(&|draw| largest_of(draw).powi(2)).sqrt());
             let noise = mean_square < limit && largest < highest;
-            Left { residual: name.kind, of: name.of.clone(), mean_square, limit, largest, noise }
+            let (residual, of) = (name.kind, name.of.clone());
+            Left { residual, of, mean_square, limit, largest, highest, noise }
         };
         self.names.iter().enumerate().map(of).collect()
     }

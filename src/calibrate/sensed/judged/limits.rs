@@ -5,8 +5,9 @@
 //! make good, `a c⊥`, brings more than a chance candidate does. Currie, *Anal. Chem.* 40 (1968) 586–593, has the
 //! two kinds of error that a limit is a balance of.
 
+use super::left::Left;
 use crate::calibrate::sensed::rounds::search::Search;
-use crate::calibrate::sensed::thresholds::{GAIN, GAIN_PER_VALUE, LARGEST, NOISE, SURE};
+use crate::calibrate::sensed::thresholds::{GAIN, GAIN_PER_VALUE, SURE};
 use crate::calibrate::sensed::values::candidates::within;
 use crate::calibrate::sensed::values::fit::FitTarget as Fitted;
 use crate::calibrate::sensed::values::model::Model;
@@ -31,10 +32,10 @@ pub struct DetectionLimit {
     pub smallest: Option<f64>,
 }
 
-/// Numbers of white residuals that belong together, and what their mean square is now.
+/// Numbers of white residuals that belong together, and what is left there now.
 struct WhiteNumbers {
     places: Vec<usize>,
-    squares: f64,
+    left: Left,
 }
 
 /// Limits of all candidates beside a model whose residuals are noise, on the data that they are judged on; none
@@ -49,13 +50,12 @@ pub fn limits(search: &Search, model: &Model) -> Vec<DetectionLimit> {
     let own = hold.jacobian(&base).filter(|jacobian| jacobian.ncols() > 0);
     let own = own.map(|jacobian| jacobian.qr().q());
     let places = model.baseline.places(search.problem, &search.split.hold);
-    let parts: Vec<WhiteNumbers> = (0..search.names.len())
-        .map(|k| {
-            let places: Vec<usize> = (0..places.len()).filter(|&i| places[i].0 == k).collect();
-            let squares = places.iter().map(|&i| base.white[i].powi(2)).sum();
-            WhiteNumbers { places, squares }
-        })
-        .collect();
+    let of = |(k, left): (usize, Left)| {
+        let places = (0..places.len()).filter(|&i| places[i].0 == k).collect();
+        WhiteNumbers { places, left }
+    };
+    let parts: Vec<WhiteNumbers> =
+        search.left_on(model, true).into_iter().enumerate().map(of).collect();
     let fresh = |candidate: &&Setting| !model.fit.effects.iter().any(|e| e.is(candidate));
     let found: Vec<DetectionLimit> = simplest(search.candidates.iter().filter(fresh))
         .into_par_iter()
@@ -152,8 +152,9 @@ fn size(
         let count = part.places.len() as f64;
         let squares: f64 = part.places.iter().map(|&i| across[i].powi(2)).sum();
         let largest = part.places.iter().map(|&i| across[i].abs()).fold(0.0, f64::max);
-        let short = (NOISE[0] * count - part.squares).max(0.0) + SURE * (2.0 * count).sqrt();
-        ((short / squares).sqrt()).min((LARGEST + SURE) / largest)
+        let short = (part.left.limit - part.left.mean_square).max(0.0) * count;
+        let short = short + SURE * (2.0 * count).sqrt();
+        ((short / squares).sqrt()).min((part.left.highest + SURE) / largest)
     });
     named.max(seen.fold(f64::INFINITY, f64::min))
 }

@@ -67,29 +67,23 @@ impl Search<'_> {
             let mut all = self.in_its_place(&best, i, simulated)?;
             let enough = self.whole(&all[0].1) + TWINS[usize::from(best.baseline.rattles)];
             let as_good = all.iter().take_while(|(_, model)| self.whole(model) < enough);
-            let mut near: Vec<Setting> = as_good.map(|(effect, _)| effect.clone()).collect();
+            let near: Vec<Setting> = as_good.map(|(effect, _)| effect.clone()).collect();
             let least = self.whole(&all[0].1) + TWINS[0];
             let alike = all.iter().take_while(|(_, model)| self.whole(model) < least).count();
             let place = chosen(&near, alike);
             let round = rounds
                 .iter_mut()
                 .find(|round| round.added.as_ref().is_some_and(|added| added.is(&own)));
-            if near.iter().any(|effect| effect.is(&own)) {
-                let ruled_out = |effect: &Setting| {
-                    round.as_ref().is_some_and(|round| round.rules_out(effect, &own, CLOSE))
-                };
-                near.extend(beyond.into_iter().filter(|effect| !ruled_out(effect)));
-            }
             let (won, model) = all.swap_remove(place);
             if let Some(round) = round {
-                round.as_good.retain(|known| !known.is(&won));
-                near.retain(|effect| !effect.is(&won));
-                round.added = Some(won);
-                for effect in near {
-                    if !round.as_good.iter().any(|known| known.is(&effect)) {
-                        round.as_good.push(effect);
-                    }
-                }
+                let not_ruled_out = match near.iter().any(|effect| effect.is(&own)) {
+                    true => beyond
+                        .into_iter()
+                        .filter(|effect| !round.rules_out(effect, &own, CLOSE))
+                        .collect(),
+                    false => Vec::new(),
+                };
+                round.add_instead(&won, near, not_ruled_out);
             }
             best = model;
         }

@@ -114,13 +114,15 @@ fn residuals(report: &Report) -> PageTable {
             "noise up to",
             "largest before",
             "after",
+            "noise up to",
         ]),
         rows: report
             .residuals
             .iter()
             .map(|r| {
                 let squares = [r.mean_square_before, r.mean_square_after, r.noise_up_to];
-                let cells = squares.into_iter().chain([r.largest_before, r.largest_after]);
+                let largest = [r.largest_before, r.largest_after, r.largest_noise_up_to];
+                let cells = squares.into_iter().chain(largest);
                 std::iter::once(r.residual.clone()).chain(cells.map(number)).collect()
             })
             .collect(),

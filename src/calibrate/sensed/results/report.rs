@@ -10,10 +10,11 @@ use crate::calibrate::sensed::intake::noise::OtherNoise;
 use crate::calibrate::sensed::judged::left::Left;
 use crate::calibrate::sensed::judged::limits::DetectionLimit;
 use crate::calibrate::sensed::rounds::rest::Rest;
-use crate::calibrate::sensed::rounds::round::Tried;
+use crate::calibrate::sensed::rounds::round::{Round, Tried};
 use crate::calibrate::sensed::rounds::words::{name, names};
 use crate::calibrate::sensed::windows::horizons::Windows;
 use crate::calibrate::values::errors::{ChannelError, worst};
+use crate::effects::Setting;
 use crate::simulate::Provenance;
 use serde::Serialize;
 
@@ -60,8 +61,8 @@ pub struct Report {
 }
 
 pub(super) fn summary(outcome: &SensedOutcome) -> String {
-    let lasting = outcome.effects.iter().filter(|(effect, _)| effect.history().is_none());
-    let list = lasting.map(|(e, _)| name(e)).collect::<Vec<_>>().join(", ");
+    let lasting = || lasting(outcome);
+    let list = lasting().map(name).collect::<Vec<_>>().join(", ");
     let worst = worst(&outcome.errors).map_or_else(String::new, |error| {
         format!(
             " (worst: {} of {}, {:.2} floors)",
@@ -78,8 +79,10 @@ pub(super) fn summary(outcome: &SensedOutcome) -> String {
             "With what does not last the declared model explains the recordings to within noise{worst}."
         ),
         Verdict::Explained => format!(
-            "The declared model lacks {list}. With it the recordings are explained to within noise{worst}.{}",
-            as_good(outcome)
+            "The declared model lacks {}. With {} the recordings are explained to within noise{worst}.{}",
+            lacking(outcome),
+            if lasting().any(|effect| !as_good(outcome, effect).is_empty()) { &list } else { "it" },
+            not_ruled_out(outcome)
         ),
         Verdict::Unexplained if outcome.rest.is_some() => format!(
             "{} leaves residuals that are no more than noise, but {}.",
@@ -101,14 +104,45 @@ pub(super) fn summary(outcome: &SensedOutcome) -> String {
     }
 }
 
-/// What explains the recordings as well as what was found does.
-fn as_good(outcome: &SensedOutcome) -> String {
-    let all = outcome.effects.iter().filter_map(|(effect, _)| {
-        let mut rounds = outcome.rounds.iter();
-        let own = rounds.find(|round| round.added.as_ref().is_some_and(|a| a.is(effect)))?;
-        let others = own.as_good.iter().map(name).collect::<Vec<_>>().join(" or ");
-        (!others.is_empty())
-            .then(|| format!(" In place of {} these do not rule out {others}.", name(effect)))
+/// The effects that were found and last.
+fn lasting(outcome: &SensedOutcome) -> impl Iterator<Item = &Setting> {
+    outcome.effects.iter().map(|(effect, _)| effect).filter(|effect| effect.history().is_none())
+}
+
+/// The round in which an effect was added.
+fn round_of<'a>(outcome: &'a SensedOutcome, effect: &Setting) -> Option<&'a Round> {
+    let mut rounds = outcome.rounds.iter();
+    rounds.find(|round| round.added.as_ref().is_some_and(|added| added.is(effect)))
+}
+
+/// What explains the recordings as well as an effect that was found does, as whole simulations showed.
+fn as_good<'a>(outcome: &'a SensedOutcome, effect: &Setting) -> &'a [Setting] {
+    round_of(outcome, effect).map_or(&[], |round| &round.as_good)
+}
+
+/// What the declared model lacks: of what explains as much these recordings do not say which.
+fn lacking(outcome: &SensedOutcome) -> String {
+    let one = |effect: &Setting| match as_good(outcome, effect) {
+        [] => name(effect),
+        others => {
+            let others = others.iter().map(name).collect::<Vec<_>>().join(" or ");
+            format!("{} or, as these recordings do not tell, {others} in its place", name(effect))
+        }
+    };
+    lasting(outcome).map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// What residuals alone do not rule out in place of what was found.
+fn not_ruled_out(outcome: &SensedOutcome) -> String {
+    let all = lasting(outcome).filter_map(|effect| {
+        let others = &round_of(outcome, effect)?.not_ruled_out;
+        let others = others.iter().map(name).collect::<Vec<_>>().join(" or ");
+        (!others.is_empty()).then(|| {
+            format!(
+                " In place of {} residuals alone do not rule out {others}, which were not simulated.",
+                name(effect)
+            )
+        })
     });
     all.collect()
 }
@@ -135,10 +169,7 @@ pub(super) fn effects(outcome: &SensedOutcome) -> Vec<EffectReport> {
         if let Some(event) = own {
             return event.report();
         }
-        let round = outcome
-            .rounds
-            .iter()
-            .find(|round| round.added.as_ref().is_some_and(|added| added.is(effect)));
+        let round = round_of(outcome, effect);
         let gain = round.and_then(|round| {
             round.tried.iter().find(|tried| tried.effect.is(effect)).map(|tried| tried.gain)
         });
@@ -158,7 +189,9 @@ pub(super) fn effects(outcome: &SensedOutcome) -> Vec<EffectReport> {
                 ),
                 (None, None) => String::new(),
             },
-            as_good: round.map_or_else(Vec::new, |round| round.as_good.iter().map(name).collect()),
+            as_good: as_good(outcome, effect).iter().map(name).collect(),
+            not_ruled_out: round
+                .map_or_else(Vec::new, |round| round.not_ruled_out.iter().map(name).collect()),
             equation: effect.kind.equation,
         }
     };
@@ -223,6 +256,7 @@ pub(super) fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> 
         noise_up_to: after.limit,
         largest_before: before.largest,
         largest_after: after.largest,
+        largest_noise_up_to: after.highest,
     };
     before.iter().zip(after).map(pair).collect()
 }

@@ -35,11 +35,33 @@ pub struct Round {
     pub tried: Vec<Tried>,
     /// What was added.
     pub added: Option<Setting>,
-    /// What was as good.
+    /// What was as good in whole simulations.
     pub as_good: Vec<Setting>,
+    /// What residuals alone do not rule out in its place, and was not simulated.
+    pub not_ruled_out: Vec<Setting>,
 }
 
 impl Round {
+    /// The effect that was added, from now on, in place of the one so far, and what is no worse in its place: in whole
+    /// simulations, and as far as residuals tell.
+    pub(in crate::calibrate::sensed) fn add_instead(
+        &mut self,
+        won: &Setting,
+        as_good: Vec<Setting>,
+        not_ruled_out: Vec<Setting>,
+    ) {
+        let known = |all: &[Setting], effect: &Setting| all.iter().any(|known| known.is(effect));
+        for effect in as_good {
+            if !known(&self.as_good, &effect) {
+                self.as_good.push(effect);
+            }
+        }
+        self.as_good.retain(|effect| !effect.is(won));
+        self.not_ruled_out = not_ruled_out;
+        self.not_ruled_out.retain(|effect| !effect.is(won) && !known(&self.as_good, effect));
+        self.added = Some(won.clone());
+    }
+
     /// Whether simulations of this round left more with an effect than with its own one, by more than `enough`.
     pub(in crate::calibrate::sensed) fn rules_out(
         &self,
@@ -72,4 +94,27 @@ pub(super) enum SeenBeside {
     Most,
     /// Less: only simulations may show what it lacks.
     Less,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::named;
+
+    /// What simulations found as good is not said again of what residuals do not rule out, and what was named before is as good
+    /// as what is named now.
+    #[test]
+    fn what_is_named_is_nowhere_among_what_is_as_good() {
+        let at = |joint: &str| Setting::new(named("joint-wear").unwrap(), Some(joint), &[]);
+        let mut round = Round { added: Some(at("A")), as_good: vec![at("B")], ..Round::default() };
+        round.add_instead(
+            &at("B"),
+            vec![at("B"), at("A"), at("C")],
+            vec![at("C"), at("D"), at("B")],
+        );
+        let names = |all: &[Setting]| all.iter().map(Setting::to_string).collect::<Vec<_>>();
+        assert_eq!(round.added.as_ref().map(Setting::to_string), Some(at("B").to_string()));
+        assert_eq!(names(&round.as_good), names(&[at("A"), at("C")]));
+        assert_eq!(names(&round.not_ruled_out), names(&[at("D")]));
+    }
 }

@@ -61,5 +61,5 @@ fn round(wider: &Model, from: &Model) -> Round {
     let added = wider.fit.effects.last().cloned();
     let gain = from.cost() - wider.cost();
     let tried = added.iter().map(|effect| Tried::simulated(effect.clone(), gain, from)).collect();
-    Round { tried, added, as_good: Vec::new() }
+    Round { tried, added, ..Round::default() }
 }

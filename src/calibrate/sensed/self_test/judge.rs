@@ -35,7 +35,10 @@ pub(super) fn judge(
     let validation = || outcome.errors.iter().filter(|error| error.role == "validation");
     let as_good = |effect: &Setting| {
         found.iter().any(|found| found.is(effect))
-            || outcome.rounds.iter().any(|r| r.as_good.iter().any(|other| other.is(effect)))
+            || outcome
+                .rounds
+                .iter()
+                .any(|r| r.as_good.iter().chain(&r.not_ruled_out).any(|other| other.is(effect)))
     };
     TrialAnswer {
         lacks: lacks(hidden),

@@ -237,6 +237,7 @@ fn effect(certain: &Certain) -> EffectReport {
             certain.gain
         ),
         as_good: Vec::new(),
+        not_ruled_out: Vec::new(),
         equation: certain.effect.kind.equation,
     }
 }
