@@ -62,7 +62,7 @@ pub struct Report {
 
 pub(super) fn summary(outcome: &SensedOutcome) -> String {
     let lasting = || lasting(outcome);
-    let list = lasting().map(name).collect::<Vec<_>>().join(", ");
+    let list = lasting().map(name).collect::<Vec<_>>().join(" and ");
     let worst = worst(&outcome.errors).map_or_else(String::new, |error| {
         format!(
             " (worst: {} of {}, {:.2} floors)",
@@ -81,7 +81,11 @@ pub(super) fn summary(outcome: &SensedOutcome) -> String {
         Verdict::Explained => format!(
             "The declared model lacks {}. With {} the recordings are explained to within noise{worst}.{}",
             lacking(outcome),
-            if lasting().any(|effect| !as_good(outcome, effect).is_empty()) { &list } else { "it" },
+            match lasting().count() {
+                _ if lasting().any(|effect| !as_good(outcome, effect).is_empty()) => &list,
+                1 => "it",
+                _ => "them",
+            },
             not_ruled_out(outcome)
         ),
         Verdict::Unexplained if outcome.rest.is_some() => format!(
@@ -124,12 +128,15 @@ fn as_good<'a>(outcome: &'a SensedOutcome, effect: &Setting) -> &'a [Setting] {
 fn lacking(outcome: &SensedOutcome) -> String {
     let one = |effect: &Setting| match as_good(outcome, effect) {
         [] => name(effect),
-        others => {
-            let others = others.iter().map(name).collect::<Vec<_>>().join(" or ");
-            format!("{} or, as these recordings do not tell, {others} in its place", name(effect))
-        }
+        others => one_of(std::iter::once(effect).chain(others).map(name).collect()),
     };
-    lasting(outcome).map(one).collect::<Vec<_>>().join(", ")
+    lasting(outcome).map(one).collect::<Vec<_>>().join(", and ")
+}
+
+/// What one of several is.
+fn one_of(names: Vec<String>) -> String {
+    let (last, others) = names.split_last().map_or(("", &[][..]), |(last, others)| (last, others));
+    format!("one of {} or {last}, which these recordings do not tell apart", others.join(", "))
 }
 
 /// What residuals alone do not rule out in place of what was found.
@@ -259,4 +266,18 @@ pub(super) fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> 
         largest_noise_up_to: after.highest,
     };
     before.iter().zip(after).map(pair).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::one_of;
+
+    #[test]
+    fn what_is_not_told_apart_reads_well() {
+        let names = |all: &[&str]| all.iter().map(|&name| name.to_owned()).collect();
+        let said = one_of(names(&["payload at rod", "drag at rod", "gravity"]));
+        let apart = "which these recordings do not tell apart";
+        assert_eq!(said, format!("one of payload at rod, drag at rod or gravity, {apart}"));
+        assert_eq!(one_of(names(&["wear", "oil"])), format!("one of wear or oil, {apart}"));
+    }
 }
