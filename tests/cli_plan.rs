@@ -113,10 +113,14 @@ fn what_a_report_left_open_is_planned_for() {
         )
     };
     let open = r#"{"verdict": "explained", "effects": [{"kind": "payload", "joint": null, "body": "rocker",
-        "params": {"mass_kg": {"value": 0.05}}, "as_good": ["joint-friction at D"]}]}"#;
+        "params": {"mass_kg": {"value": 0.05}}, "as_good": ["joint-friction at D"],
+        "not_ruled_out": ["drag at rocker"]}]}"#;
     place.write("report.json", open);
     place.good(&format!("{} --out planned --quiet", plan("report.json")));
-    let question = &json(&place, "planned/plan.json")["questions"][0];
+    let questions = &json(&place, "planned/plan.json")["questions"];
+    // What residuals alone do not rule out is asked about, too.
+    assert_eq!(questions.as_array().unwrap().len(), 2, "{questions}");
+    let question = &questions[0];
     assert_eq!(question["kind"], "between");
     // The one that comes nearer to the other stands first.
     let effects = question["effects"].as_array().unwrap();

@@ -216,7 +216,7 @@ pub fn left_open(text: &str, path: &str, mechanism: &Mechanism) -> Result<Vec<Qu
             let spelt = rival.replacen(" at ", ":", 1).replace(", ", "+");
             let mut others = effects(&spelt, mechanism).map_err(|wrong| {
                 format!(
-                    "{path}: names {rival} as good as {own}: {wrong}; is it a report of this rig?"
+                    "{path}: names {rival} in place of {own}: {wrong}; is it a report of this rig?"
                 )
             })?;
             questions.extend(

@@ -22,7 +22,7 @@ pub struct Left {
     /// Its largest coefficient in units of noise, on the run where that is farthest above what noise may be.
     pub largest: f64,
     /// The largest coefficient up to which that is noise on that run.
-    pub highest: f64,
+    pub largest_limit: f64,
     /// Whether both are noise, on each run.
     pub noise: bool,
 }
@@ -38,12 +38,17 @@ impl Search<'_> {
     pub fn left(&self, model: &Model) -> Vec<Left> {
         let [on, hold] = [false, true].map(|held| self.left_on(model, held));
         let above = |left: &Left| left.mean_square / left.limit;
-        let stands_out = |left: &Left| left.largest / left.highest;
+        let stands_out = |left: &Left| left.largest / left.largest_limit;
         let worse = |(on, hold): (Left, Left)| {
             let most = if stands_out(&on) > stands_out(&hold) { &on } else { &hold };
-            let (largest, highest) = (most.largest, most.highest);
+            let (largest, largest_limit) = (most.largest, most.largest_limit);
             let noise = on.noise && hold.noise;
-            Left { largest, highest, noise, ..if above(&on) > above(&hold) { on } else { hold } }
+            Left {
+                largest,
+                largest_limit,
+                noise,
+                ..if above(&on) > above(&hold) { on } else { hold }
+            }
         };
         on.into_iter().zip(hold).map(worse).collect()
     }
@@ -64,10 +69,10 @@ impl Search<'_> {
             let largest_of = |white: &DVector<f64>| largest(white, &places, k);
             let (mean_square, largest) = (squares(&fit.white), largest_of(&fit.white));
             let limit = NOISE[usize::from(!held)].max(chance(&squares));
-            let highest = LARGEST.max(chance(&|draw| largest_of(draw).powi(2)).sqrt());
-            let noise = mean_square < limit && largest < highest;
+            let largest_limit = LARGEST.max(chance(&|draw| largest_of(draw).powi(2)).sqrt());
+            let noise = mean_square < limit && largest < largest_limit;
             let (residual, of) = (name.kind, name.of.clone());
-            Left { residual, of, mean_square, limit, largest, highest, noise }
+            Left { residual, of, mean_square, limit, largest, largest_limit, noise }
         };
         self.names.iter().enumerate().map(of).collect()
     }

@@ -154,7 +154,41 @@ fn size(
         let largest = part.places.iter().map(|&i| across[i].abs()).fold(0.0, f64::max);
         let short = (part.left.limit - part.left.mean_square).max(0.0) * count;
         let short = short + SURE * (2.0 * count).sqrt();
-        ((short / squares).sqrt()).min((part.left.highest + SURE) / largest)
+        ((short / squares).sqrt()).min((part.left.largest_limit + SURE) / largest)
     });
     named.max(seen.fold(f64::INFINITY, f64::min))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::sensed::residuals::residual::ResidualKind;
+
+    /// Where draws of rattle reach further than 1.3 in mean square or 6 at the largest, an effect has to show by more to be seen.
+    #[test]
+    fn what_noise_may_be_is_not_seen() {
+        let size_of = |column: &DVector<f64>, limit: f64, largest_limit: f64| {
+            let of = "A".to_owned();
+            let residual = ResidualKind::Closure;
+            let left = Left {
+                residual,
+                of,
+                mean_square: 1.0,
+                limit,
+                largest: 3.0,
+                largest_limit,
+                noise: true,
+            };
+            let part = WhiteNumbers { places: (0..column.len()).collect(), left };
+            size(column, None, &[part], false)
+        };
+        let spread = DVector::from_element(100, 1.0);
+        // √(0.3 + 2 √200 / 100) and √(2 + 2 √200 / 100): by its mean square.
+        assert!((size_of(&spread, 1.3, 6.0) - 0.763).abs() < 1e-3);
+        assert!((size_of(&spread, 3.0, 6.0) - 1.511).abs() < 1e-3);
+        // 6 + 2 and 9 + 2: by its largest.
+        let single = DVector::from_fn(100, |row, _| if row == 7 { 1.0 } else { 0.0 });
+        assert!((size_of(&single, 3.0, 6.0) - 8.0).abs() < 1e-9);
+        assert!((size_of(&single, 3.0, 9.0) - 11.0).abs() < 1e-9);
+    }
 }

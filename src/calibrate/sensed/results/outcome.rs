@@ -283,8 +283,11 @@ fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped
         found.rounds.push(round);
         rest = against(search, found, None);
     }
-    if rest.is_none() && search.is_noise(&found.best) {
-        found.best = search.closest(found.best.clone())?;
+    if rest.is_none()
+        && search.is_noise(&found.best)
+        && let Some(closest) = search.closest(&found.best)?
+    {
+        found.best = closest;
         rest = against(search, found, None);
     }
     Ok(rest)

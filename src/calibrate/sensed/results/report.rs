@@ -263,7 +263,7 @@ pub(super) fn residuals(before: &[Left], after: &[Left]) -> Vec<ResidualReport> 
         noise_up_to: after.limit,
         largest_before: before.largest,
         largest_after: after.largest,
-        largest_noise_up_to: after.highest,
+        largest_noise_up_to: after.largest_limit,
     };
     before.iter().zip(after).map(pair).collect()
 }

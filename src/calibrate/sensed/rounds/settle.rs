@@ -154,23 +154,26 @@ impl Search<'_> {
         Ok(said(&whole, &fit.effects))
     }
 
-    /// A model whose values whole simulations tell at the [closest](Whole::closest) ones, where it leaves no more than noise with
-    /// them.
+    /// A model whose values whole simulations tell at the [closest](Whole::closest) ones; none where they do not tell any, or where
+    /// it leaves more than noise with these.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    pub(in crate::calibrate::sensed) fn closest(&self, model: Model) -> Result<Model, Stopped> {
+    pub(in crate::calibrate::sensed) fn closest(
+        &self,
+        model: &Model,
+    ) -> Result<Option<Model>, Stopped> {
         if model.fit.told.is_none() || self.problem.is_worn_out() {
-            return Ok(model);
+            return Ok(None);
         }
         (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
-        let closest = self.over_whole(&model, |whole, effects| whole.closest(effects))?;
-        let Some((effects, covariance)) = closest else { return Ok(model) };
-        let closest = self.at(&effects, &[])?.map(|mut closest| {
+        let closest = self.over_whole(model, |whole, effects| whole.closest(effects))?;
+        let Some((effects, covariance)) = closest else { return Ok(None) };
+        let mut closest = self.at(&effects, &[])?;
+        if let Some(closest) = &mut closest {
             closest.fit.told = Some(covariance);
-            closest
-        });
-        Ok(closest.filter(|closest| self.is_noise(closest)).unwrap_or(model))
+        }
+        Ok(closest.filter(|closest| self.is_noise(closest)))
     }
 
     /// A model whose predictions of the runs that values are fitted to are met, and the round that led to it, in place of
