@@ -133,6 +133,8 @@ fn what_a_report_left_open_is_planned_for() {
     place.refused(&plan("other.json"), &["other.json", "is no report of a calibration"]);
     place.write("strange.json", &open.replace("joint-friction at D", "joint-friction at P7"));
     place.refused(&plan("strange.json"), &["P7", "is it a report of this rig?"]);
+    place.write("misspelt.json", &open.replace("\"payload\"", "\"paylod\""));
+    place.refused(&plan("misspelt.json"), &["misspelt.json", "paylod", "freeplay effects"]);
     place.refused(&plan("missing.json"), &["missing.json", "No such file"]);
 }
 

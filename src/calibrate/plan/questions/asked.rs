@@ -129,6 +129,14 @@ fn within(effect: &Setting, size: f64) -> Result<(), String> {
     ))
 }
 
+/// That there is no effect of this name.
+fn no_effect(name: &str) -> String {
+    let names: Vec<&str> = ALL.iter().filter(|k| k.lasts()).map(|kind| kind.name).collect();
+    let near =
+        nearest(name, &names).map_or_else(String::new, |near| format!("did you mean {near}? "));
+    format!("\"{name}\" is not an effect; {near}`freeplay effects` lists them")
+}
+
 /// Effects at their neutral values that a text names: of the target that it names, else of all single ones.
 fn effects(text: &str, mechanism: &Mechanism) -> Result<Vec<Setting>, String> {
     let (name, target) = match text.split_once(':') {
@@ -136,10 +144,7 @@ fn effects(text: &str, mechanism: &Mechanism) -> Result<Vec<Setting>, String> {
         None => (text, None),
     };
     let Some(kind) = named(name).filter(|kind| kind.lasts() && !kind.variants.is_empty()) else {
-        let names: Vec<&str> = ALL.iter().filter(|k| k.lasts()).map(|kind| kind.name).collect();
-        let near =
-            nearest(name, &names).map_or_else(String::new, |near| format!("did you mean {near}? "));
-        return Err(format!("\"{name}\" is not an effect; {near}`freeplay effects` lists them"));
+        return Err(no_effect(name));
     };
     let targets = kind.targets_of(mechanism);
     if targets.is_empty() {
@@ -209,6 +214,11 @@ pub fn left_open(text: &str, path: &str, mechanism: &Mechanism) -> Result<Vec<Qu
         list("effects").filter(|_| report.get("verdict").is_some()).ok_or_else(no_report)?;
     let mut questions = Vec::new();
     for effect in found {
+        let kind = effect.get("kind").and_then(Value::as_str).unwrap_or_default();
+        if named(kind).is_none() {
+            let unknown = no_effect(kind);
+            return Err(format!("{path}: effects: {unknown}; is it a report of this version?"));
+        }
         let Some(own) = setting_of(effect) else { continue };
         let rivals =
             ["as_good", "not_ruled_out"].into_iter().filter_map(|key| effect.get(key)?.as_array());
