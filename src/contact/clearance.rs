@@ -79,8 +79,18 @@ pub struct Contact {
     pub rate: f64,
     /// Normal force in N, zero while the journal flies.
     pub normal_force: f64,
+    /// How fast the journal slides on its ring in m/s, along the normal turned by +90°; zero while it flies.
+    pub sliding: f64,
     /// Friction force in N on the bearing, along the normal turned by +90°.
     pub friction_force: f64,
+}
+
+impl Contact {
+    /// The friction power in W that a coefficient of 1 would have here, `F_N |v_t|`.
+    #[inline]
+    pub fn rubbing_power(&self) -> f64 {
+        self.normal_force * self.sliding.abs()
+    }
 }
 
 /// A circle inside a ring, in closed form: penetration δ = |e| − c (m, negative inside) and the
@@ -207,8 +217,9 @@ impl Clearance {
         arms: [Vector2<f64>; 2],
     ) -> [Vector3<f64>; 2] {
         let tangent = Vector2::new(-normal.y, normal.x);
+        let sliding = sliding([bearing, journal], normal, to_surface);
+        contact.sliding = sliding;
         if let Some(friction) = &self.friction {
-            let sliding = sliding([bearing, journal], normal, to_surface);
             let (force, penetration) = (contact.normal_force, contact.penetration);
             contact.friction_force = match memory {
                 None => friction.force(force, sliding),

@@ -1,5 +1,6 @@
 //! The machine without clearance: where it would be, and the forces it would take.
 
+use super::ideal_past::{Past, Said};
 use crate::engine::{self, Schedule, StepControl};
 use crate::mechanism::{BodyState, Dynamics, Evaluation, Mechanism, TelescopicLegs, Tracker};
 use nalgebra::{Vector2, Vector3};
@@ -23,6 +24,8 @@ pub struct Ideal {
     states: States,
     dynamics: Dynamics,
     now: Evaluation,
+    said: Said,
+    pub(super) past: Past,
 }
 
 /// Where the states of the ideal machine come from.
@@ -53,7 +56,8 @@ impl Ideal {
     /// `mechanism` has ideal joints and prescribed drives only.
     pub(super) fn new(mechanism: Mechanism, states: States) -> Self {
         let (dynamics, now) = (Dynamics::new(&mechanism), Evaluation::new(&mechanism));
-        Self { mechanism, states, dynamics, now }
+        let (said, past) = (Said::of(now.drive_forces.len()), Past::default());
+        Self { mechanism, states, dynamics, now, said, past }
     }
 
     /// Whether the motion alone says where the machine is.
@@ -90,25 +94,36 @@ impl Ideal {
 
     /// The ideal machine at time `t` in s; not a number where it cannot be.
     pub fn at(&mut self, t: f64) -> IdealInstant<'_> {
-        let Some(states) = self.states(t) else {
-            self.now.drive_forces.fill(f64::NAN);
-            return IdealInstant {
-                position: Vector2::repeat(f64::NAN),
-                velocity: Vector2::repeat(f64::NAN),
-                acceleration: Vector3::repeat(f64::NAN),
-                drive_forces: &self.now.drive_forces,
-            };
+        match self.past.next(t) {
+            Some(said) => self.said.clone_from(said),
+            None => {
+                self.look(t);
+                self.past.keep(&self.said);
+            }
+        }
+        let Said { position, velocity, acceleration, drive_forces, .. } = &self.said;
+        let (position, velocity, acceleration) = (*position, *velocity, *acceleration);
+        IdealInstant { position, velocity, acceleration, drive_forces }
+    }
+
+    /// Looks at it at time `t` in s.
+    fn look(&mut self, t: f64) {
+        let states = self.states(t);
+        let said = &mut self.said;
+        said.t = t;
+        let Some(states) = states else {
+            (said.position, said.velocity) = (Vector2::repeat(f64::NAN), Vector2::repeat(f64::NAN));
+            said.acceleration = Vector3::repeat(f64::NAN);
+            said.drive_forces.fill(f64::NAN);
+            return;
         };
         self.dynamics.forces(&self.mechanism, t, &states, &mut self.now);
         self.dynamics.accelerations(&self.mechanism, &states, &mut self.now);
         self.dynamics.remember(&self.mechanism, t, &states);
         let output = self.mechanism.output_state(&states);
-        IdealInstant {
-            position: output.position,
-            velocity: output.twist.xy(),
-            acceleration: self.mechanism.output_acceleration(&states, &self.now.accelerations),
-            drive_forces: &self.now.drive_forces,
-        }
+        (said.position, said.velocity) = (output.position, output.twist.xy());
+        said.acceleration = self.mechanism.output_acceleration(&states, &self.now.accelerations);
+        said.drive_forces.copy_from_slice(&self.now.drive_forces);
     }
 }
 

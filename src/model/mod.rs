@@ -10,9 +10,11 @@ mod built;
 mod commands;
 mod drives;
 mod ideal;
+mod ideal_past;
 mod motion;
 mod native;
 mod path;
+mod shared_ideal;
 mod templates;
 
 pub use assemble::{Machine, assemble, close, driven, parts_of, radial_clearance, recorded};
@@ -21,4 +23,5 @@ pub use built::layout::{Layout, Written};
 pub use ideal::{Ideal, IdealInstant};
 pub use native::FIT_SPEED;
 pub use path::{DrivenPath, Singular};
+pub use shared_ideal::SharedIdeal;
 pub use templates::{LegUse, expand, instrumented, laboratory, leg_use};

@@ -23,6 +23,9 @@ pub(in crate::mechanism) enum Rigid {
     Rotor(usize),
 }
 
+/// A row and which of its two bodies.
+type RowEnd = [usize; 2];
+
 /// The rows of one group and the workspace that solving for their forces needs.
 #[derive(Clone, Debug, Default)]
 pub(in crate::mechanism) struct Constraints {
@@ -31,6 +34,9 @@ pub(in crate::mechanism) struct Constraints {
     /// J M⁻¹ of each row.
     weighted: Vec<[Vector3<f64>; 2]>,
     matrix: Vec<f64>,
+    /// The last row so far that acts on each body and at which of its ends, and for each end of a row the one before it.
+    last: Vec<Option<RowEnd>>,
+    before: Vec<[Option<RowEnd>; 2]>,
     /// λ of each row.
     pub multipliers: Vec<f64>,
     diagonal: Vec<f64>,
@@ -53,6 +59,10 @@ impl Constraints {
         self.matrix.resize(n * n, 0.0);
         self.multipliers.clear();
         self.weighted.clear();
+        self.last.clear();
+        self.last.resize(inverse_masses.len(), None);
+        self.before.clear();
+        self.before.resize(n, [None; 2]);
         for (i, row) in self.rows.iter().enumerate() {
             let mut rhs = -row.bias;
             let mut weighted = [Vector3::zeros(); 2];
@@ -64,18 +74,14 @@ impl Constraints {
                     *weighted = jacobian.component_mul(&inverse_masses[body]);
                 }
             }
-            for (entry, other) in self.matrix[i * n..=i * n + i].iter_mut().zip(&self.rows) {
-                if other.bodies == row.bodies {
-                    *entry =
-                        weighted[0].dot(&other.jacobians[0]) + weighted[1].dot(&other.jacobians[1]);
-                    continue;
-                }
-                for (body, weighted) in row.bodies.iter().zip(&weighted) {
-                    for (other_body, jacobian) in other.bodies.iter().zip(&other.jacobians) {
-                        if body.is_some() && body == other_body {
-                            *entry += weighted.dot(jacobian);
-                        }
-                    }
+            for (side, (body, weighted)) in row.bodies.iter().zip(&weighted).enumerate() {
+                let Some(body) = *body else { continue };
+                self.before[i][side] = self.last[body].replace([i, side]);
+                // This row and all before that act on the body.
+                let mut other = self.last[body];
+                while let Some([j, end]) = other {
+                    self.matrix[j * n + i] += weighted.dot(&self.rows[j].jacobians[end]);
+                    other = self.before[j][end];
                 }
             }
             self.matrix[i * n + i] += row.softness;
@@ -94,7 +100,7 @@ impl Constraints {
         }
     }
 
-    /// λ from the lower triangle in `matrix` and the right-hand side in `multipliers`, in place. Rows that
+    /// λ from the upper triangle in `matrix` and the right-hand side in `multipliers`, in place. Rows that
     /// depend on each other (a parallelogram's, or those of any loop in a singular pose) have no unique λ:
     /// then the smallest one, each row measured by its own diagonal.
     fn solve_system(&mut self) {
@@ -136,40 +142,45 @@ const DEPENDENT: f64 = 1e-13;
 /// least through the singular pose of two four-bars side by side, wherever steps end beside it.
 const SINGULAR: f64 = 1e-8;
 
-/// Cholesky solution of a symmetric positive definite system given by its lower triangle (row
+/// Cholesky solution `A = Uᵀ U` of a symmetric positive definite system given by its upper triangle (row
 /// major); the right-hand side becomes the solution. Returns the smallest pivot in shares of its diagonal;
 /// none, with nothing of use in a and b, where a row's pivot is not above the share `zero`: it depends on
 /// those before it. In place because it runs several times a step on systems of two or three rows, where an
-/// allocation would cost more than the solution.
+/// allocation would cost more than the solution; row by row because the machine without clearance has twenty, and
+/// a processor subtracts neighbours at once.
 fn factorise_and_solve(a: &mut [f64], b: &mut [f64], diagonal: &[f64], zero: f64) -> Option<f64> {
     let n = b.len();
     let mut weakest = 1.0f64;
     for j in 0..n {
-        for k in 0..j {
-            a[j * n + j] -= a[j * n + k] * a[j * n + k];
-        }
-        if a[j * n + j] <= zero * diagonal[j] {
+        let (above, below) = a.split_at_mut((j + 1) * n);
+        let row = &mut above[j * n + j..];
+        if row[0] <= zero * diagonal[j] {
             return None;
         }
-        weakest = weakest.min(a[j * n + j] / diagonal[j]);
-        let pivot = a[j * n + j].sqrt();
-        a[j * n + j] = pivot;
-        for i in j + 1..n {
-            for k in 0..j {
-                a[i * n + j] -= a[i * n + k] * a[j * n + k];
-            }
-            a[i * n + j] /= pivot;
-        }
-        for k in 0..j {
-            b[j] -= a[j * n + k] * b[k];
+        weakest = weakest.min(row[0] / diagonal[j]);
+        let pivot = row[0].sqrt();
+        row[0] = pivot;
+        for entry in &mut row[1..] {
+            *entry /= pivot;
         }
         b[j] /= pivot;
+        for (i, other) in (j + 1..n).zip(below.chunks_exact_mut(n)) {
+            let right = &row[i - j..];
+            // Joints that share no body have nothing to do with each other.
+            let factor = right[0];
+            if factor == 0.0 {
+                continue;
+            }
+            for (entry, right) in other[i..].iter_mut().zip(right) {
+                *entry -= factor * right;
+            }
+            b[i] -= factor * b[j];
+        }
     }
     for j in (0..n).rev() {
-        for i in j + 1..n {
-            b[j] -= a[i * n + j] * b[i];
-        }
-        b[j] /= a[j * n + j];
+        let (known, row) = (&b[j + 1..], &a[j * n + j..(j + 1) * n]);
+        let sum = row[1..].iter().zip(known).fold(b[j], |sum, (entry, b)| sum - entry * b);
+        b[j] = sum / row[0];
     }
     Some(weakest)
 }

@@ -170,8 +170,14 @@ impl Revolute {
         if contact.normal_force <= 0.0 {
             return None;
         }
-        let [direction, speed] = self.sliding(states)?;
-        Some([direction, contact.normal_force * speed.abs()])
+        let direction = match (&self.bearing, &self.out_of_round) {
+            (Bearing::Clearance(_), None) => {
+                let own = self.ring.rotation(states).inverse() * contact.eccentricity;
+                own.y.atan2(own.x)
+            }
+            _ => self.sliding(states)?[0],
+        };
+        Some([direction, contact.rubbing_power()])
     }
 
     /// That direction (rad), whether the journal touches or not, and how fast it slides there in m/s, positive where it

@@ -5,6 +5,7 @@ use super::rows::record::{hexadecimal, sha256};
 use super::rows::row;
 use super::{Design, Identity, Shard, Vary};
 use crate::measure::bounded;
+use crate::model::SharedIdeal;
 use crate::scenario::{Location, Problem, Scenario, Source};
 use crate::simulate::unacting;
 use crate::simulate::{Machine, Provenance, Severity, assemble, findings, measured_until};
@@ -42,6 +43,8 @@ pub struct Plan {
     warnings: Vec<String>,
     /// The mark of each run ([`Plan::mark`]), once they were checked.
     marks: Vec<u64>,
+    /// The machine without clearance, which most runs share.
+    ideal: SharedIdeal,
 }
 
 /// What is known of a run beforehand.
@@ -99,7 +102,8 @@ impl Plan {
         };
         let sets = sets.to_vec();
         let (warnings, marks) = (Vec::new(), Vec::new());
-        Ok(Plan { source, sets, base, design, identity, more, shard, warnings, marks })
+        let ideal = SharedIdeal::default();
+        Ok(Plan { source, sets, base, design, identity, more, shard, warnings, marks, ideal })
     }
 
     /// The scenario that is varied.
@@ -132,9 +136,14 @@ impl Plan {
     pub fn row(&self, run: usize, stop: &AtomicBool) -> Option<Vec<String>> {
         Some(match self.machine(run) {
             Ok((scenario, mut machine)) => {
+                let settle = scenario.simulation.settle();
+                self.ideal.begin(&mut machine.ideal, machine.schedule, settle);
                 let summary = measured_until(&scenario, &mut machine, stop, &mut |_, _, _| {});
                 if summary.interrupted {
                     return None;
+                }
+                if summary.halted.is_none() {
+                    self.ideal.end(machine.ideal);
                 }
                 row::of_summary(self.values(run), &summary, &self.more)
             }

@@ -75,9 +75,8 @@ impl Node {
         }
         if self.balanced {
             let slides = self.flows[JOINTS + mechanism.revolutes.len()..].iter_mut();
-            let joints = mechanism.revolutes.iter().zip(&self.evaluation.contacts);
-            for (flow, (joint, contact)) in slides.zip(joints) {
-                *flow = joint.rubbing(&self.states, contact).map_or(0.0, |[_, power]| power);
+            for (flow, contact) in slides.zip(&self.evaluation.contacts) {
+                *flow = contact.rubbing_power();
             }
         }
     }
