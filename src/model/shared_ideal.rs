@@ -75,7 +75,12 @@ mod tests {
         };
         let (known, said) = ask("joints.clearance=1e-4");
         assert!(!known, "the first one");
-        for alike in ["joints.clearance=1e-6", "contact.law=kelvin-voigt", "joints.friction=0.1"] {
+        for alike in [
+            "joints.clearance=1e-6",
+            "contact.law=kelvin-voigt",
+            "joints.friction=0.1",
+            "drive.mode=servo",
+        ] {
             assert_eq!(ask(alike), (true, said.clone()), "{alike}");
         }
         for other in
