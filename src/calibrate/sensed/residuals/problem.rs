@@ -100,6 +100,8 @@ pub struct RigProblem {
     /// Simulations that a mean is taken of: one, or several where joints rattle.
     pub replicas: usize,
     pub(super) simulations: AtomicUsize,
+    /// Rows of all of them.
+    pub(super) rows: AtomicU64,
     pub(super) work: AtomicU64,
     /// Steps of bodies in a run of the declared machine; 0 where nobody knows them.
     pub(super) declared_steps: AtomicU64,
@@ -158,7 +160,7 @@ impl RigProblem {
         };
         let runs: Vec<Run> = recordings.into_iter().map(run).collect();
         let kicks = Mutex::new(vec![None; runs.len()]);
-        let (simulations, work, motions, responses) = Default::default();
+        let (simulations, rows, work, motions, responses) = Default::default();
         let problem = Self {
             rig,
             declared,
@@ -167,6 +169,7 @@ impl RigProblem {
             control,
             replicas: 1,
             simulations,
+            rows,
             work,
             declared_steps: AtomicU64::new(0),
             motions,
@@ -199,6 +202,12 @@ impl RigProblem {
     /// Simulations so far.
     pub fn simulations(&self) -> usize {
         self.simulations.load(Ordering::Relaxed)
+    }
+
+    /// As many simulations of a whole run as theirs come to, of which many go no further than a moment.
+    pub fn whole_runs(&self) -> u64 {
+        let all: usize = self.runs.iter().map(|run| run.recording.samples).sum();
+        self.rows.load(Ordering::Relaxed) * self.runs.len() as u64 / all.max(1) as u64
     }
 
     /// Steps of bodies in them: what a calibration takes its time for, on any machine and whatever the number of threads.

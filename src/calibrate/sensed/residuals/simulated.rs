@@ -143,7 +143,7 @@ impl RigProblem {
     fn most_steps(&self) -> u64 {
         match self.declared_steps.load(Ordering::Relaxed) {
             0 => u64::MAX,
-            declared => declared.saturating_mul(STIFFER).max(WORK / BUDGET as u64),
+            declared => declared.saturating_mul(STIFFER).max(WORK / BUDGET),
         }
     }
 
@@ -165,6 +165,7 @@ impl RigProblem {
         most: u64,
     ) -> Result<Recording, Halt> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
+        self.rows.fetch_add(like.samples as u64, Ordering::Relaxed);
         let recorded = simulate::record_counting(machine, self.control, like, replica, most);
         let steps = match &recorded {
             Ok((_, steps)) => *steps,
@@ -258,6 +259,18 @@ mod tests {
         assert_eq!(taken(whole), (true, whole));
         let (ended, part) = taken(whole / 4);
         assert!(!ended && part > whole / 4 && part < whole / 2, "{part} of {whole}");
+    }
+
+    #[test]
+    fn moments_of_a_run_count_as_parts_of_one() {
+        let problem = RigProblem::planar("planar-1");
+        let tenth = problem.runs[0].view.rows().end / 10;
+        for _ in 0..10 {
+            problem.look(&[], 0, tenth).unwrap();
+        }
+        assert_eq!(problem.simulations(), 10);
+        // Each goes a little further than asked for.
+        assert!((1..=2).contains(&problem.whole_runs()), "{}", problem.whole_runs());
     }
 
     /// What rests in its bearings as declared is thrown about with more on its piston, on the faster one of its runs.

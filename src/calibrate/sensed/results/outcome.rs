@@ -276,11 +276,11 @@ fn what_does_not_last(
 /// values are fitted to, then the others; and what speaks against it although it leaves no more than noise.
 fn borne_out(search: &Search, found: &mut Found) -> Result<Option<Rest>, Stopped> {
     let mut rest = predicting(search, found)?;
-    if rest.is_none()
-        && let Some((wider, round)) = search.wider(&found.best)?
+    if matches!(rest, None | Some(Rest::Values(_)))
+        && let Some((meeting, round)) = search.meeting_all(&found.best)?
     {
-        found.best = wider;
-        found.rounds.push(round);
+        found.best = meeting;
+        found.rounds.extend(round);
         rest = against(search, found, None);
     }
     if rest.is_none()

@@ -43,8 +43,8 @@ pub struct Search<'a> {
     pub names: Vec<Name>,
     /// Hears what is being tried.
     pub tell: &'a (dyn Fn(&str) + Sync),
-    /// Simulations before it began.
-    before: usize,
+    /// Simulations of whole runs before it began.
+    before: u64,
 }
 
 impl<'a> Search<'a> {
@@ -56,12 +56,12 @@ impl<'a> Search<'a> {
         tell: &'a (dyn Fn(&str) + Sync),
     ) -> Self {
         let names = problem.names().unwrap_or_default();
-        Self { problem, split, candidates, names, tell, before: problem.simulations() }
+        Self { problem, split, candidates, names, tell, before: problem.whole_runs() }
     }
 
     /// Whether it has taken as many simulations as it may.
     pub(super) fn is_spent(&self) -> bool {
-        self.problem.simulations() - self.before >= BUDGET || self.problem.is_worn_out()
+        self.problem.whole_runs() - self.before >= BUDGET || self.problem.is_worn_out()
     }
 
     pub(in crate::calibrate::sensed) fn target<'b>(

@@ -13,6 +13,7 @@ use crate::calibrate::sensed::values::trajectory::{Far, fitted, followed, predic
 use crate::calibrate::sensed::values::whole::Whole;
 use crate::calibrate::values::least_squares::values;
 use crate::effects::Setting;
+use nalgebra::DMatrix;
 
 /// A change of a value, in its standard deviations, that is none.
 const SETTLED: f64 = 0.3;
@@ -167,7 +168,27 @@ impl Search<'_> {
             return Ok(None);
         }
         (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
-        let closest = self.over_whole(model, |whole, effects| whole.closest(effects))?;
+        self.as_told(self.over_whole(model, |whole, effects| whole.closest(effects))?)
+    }
+
+    /// The same from the best of other values [around](Whole::around) its own.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub(super) fn elsewhere(&self, model: &Model) -> Result<Option<Model>, Stopped> {
+        if self.problem.is_worn_out() {
+            return Ok(None);
+        }
+        (self.tell)(&format!("looking at other values of {}", names(&model.fit.effects)));
+        let closest = |whole: &Whole, effects: &[Setting]| whole.closest(&whole.around(effects)?);
+        self.as_told(self.over_whole(model, closest)?)
+    }
+
+    /// A model whose values whole simulations tell that well; none where it leaves more than noise.
+    fn as_told(
+        &self,
+        closest: Option<(Vec<Setting>, DMatrix<f64>)>,
+    ) -> Result<Option<Model>, Stopped> {
         let Some((effects, covariance)) = closest else { return Ok(None) };
         let mut closest = self.at(&effects, &[])?;
         if let Some(closest) = &mut closest {

@@ -1,42 +1,55 @@
-//! Effects that contain one that was found, where that misses a run that nothing was fitted to.
+//! Other values of what was found, or effects that contain it, where that misses a run that nothing was fitted to.
 
 use super::round::{Round, Tried};
 use super::search::Search;
 use super::words::names;
-use crate::calibrate::sensed::residuals::problem::Stopped;
+use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
 use crate::calibrate::sensed::values::candidates::starts;
 use crate::calibrate::sensed::values::model::Model;
 use crate::calibrate::sensed::values::trajectory::Far;
-use crate::effects::Setting;
 
 impl Search<'_> {
-    /// A model that meets the predictions of all runs, with an effect in place of one that it contains, and the round that
-    /// led to it; in place of one that leaves no more than noise and misses a run that its values were not fitted to. What the two
-    /// effects differ by may show along that run alone: values are fitted to the first one still. None where the model misses
-    /// none, and where no such effect meets them.
+    /// A model that meets the predictions of all runs in place of one that leaves no more than noise and misses a run that its values
+    /// were not fitted to: with values of its effects at which a fit to the first run did not [end](Self::elsewhere), or with an
+    /// effect in place of one that it contains, and the round that led to that. What two such models differ by may show along
+    /// the other run alone: values are fitted to the first one still. None where the model misses none, and where no such model
+    /// meets them.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    pub(in crate::calibrate::sensed) fn wider(
+    pub(in crate::calibrate::sensed) fn meeting_all(
         &self,
         model: &Model,
-    ) -> Result<Option<(Model, Round)>, Stopped> {
+    ) -> Result<Option<(Model, Option<Round>)>, Stopped> {
+        let none = model.fit.effects.is_empty();
+        if none
+            || model.baseline.rattles
+            || !self.is_noise(model)
+            || !self.misses(model, &self.split.hold)?
+        {
+            return Ok(None);
+        }
+        let all = [self.split.on.as_slice(), &self.split.hold].concat();
+        if let Some(elsewhere) = self.elsewhere(model)?
+            && !self.misses(&elsewhere, &all)?
+            && self.rest(&elsewhere)?.is_none()
+        {
+            return Ok(Some((elsewhere, None)));
+        }
+        let wider = self.wider(model, &all)?;
+        Ok(wider.map(|(wider, round)| (wider, Some(round))))
+    }
+
+    /// A model that meets the predictions of `all` runs with an effect in place of one that it contains, and the round that led to
+    /// it.
+    fn wider(&self, model: &Model, all: &[Segment]) -> Result<Option<(Model, Round)>, Stopped> {
         let effects = &model.fit.effects;
         let pairs = effects.iter().enumerate().flat_map(|(i, own)| {
             let all = self.candidates.iter();
             all.filter(move |candidate| candidate.contains(own)).map(move |outer| (i, outer))
         });
-        let wider: Vec<(usize, &Setting)> = pairs.collect();
-        // Simulations are dear: most effects are contained in none.
-        if wider.is_empty() || model.baseline.rattles || !self.is_noise(model) {
-            return Ok(None);
-        }
-        if !self.misses(model, &self.split.hold)? {
-            return Ok(None);
-        }
-        let all = [self.split.on.as_slice(), &self.split.hold].concat();
         let target = self.target(&model.baseline, false);
-        for (i, candidate) in wider {
+        for (i, candidate) in pairs {
             let mut others = effects.clone();
             others.remove(i);
             let Some(without) = target.look(&others) else { continue };
@@ -45,7 +58,7 @@ impl Search<'_> {
                 (self.tell)(&format!("fitting whole simulations with {}", names(&effects)));
                 if let Some(wider) = self.fitted(&effects, Far::All).ok().flatten()
                     && self.is_noise(&wider)
-                    && !self.misses(&wider, &all)?
+                    && !self.misses(&wider, all)?
                 {
                     let round = round(&wider, model);
                     return Ok(Some((wider, round)));

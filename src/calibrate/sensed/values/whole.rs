@@ -12,7 +12,7 @@ use crate::calibrate::values::least_squares::{
 };
 use crate::calibrate::values::least_squares::{free, values, with_values};
 use crate::calibrate::values::normal::{inverse_normal, pull};
-use crate::calibrate::values::rough::closest;
+use crate::calibrate::values::rough::{around, closest};
 use crate::effects::Setting;
 use nalgebra::{DMatrix, DVector};
 
@@ -102,6 +102,13 @@ impl<'a> Whole<'a> {
             closest(&look, self.free(effects), self.all(effects))?;
         let covariance = self.covariance_by(&jacobian?, &residual, values(effects).len())?;
         Some((self.let_go(effects, &all)?, covariance))
+    }
+
+    /// The effects at values, of these and others [around](around) them, that leave the least.
+    pub fn around(&self, effects: &[Setting]) -> Option<Vec<Setting>> {
+        let look = |all: &[f64]| self.look_at(effects, all);
+        let all = around(&look, self.free(effects), &self.all(effects))?;
+        self.let_go(effects, &all)
     }
 
     /// The covariance of the first `count` values by derivatives of what is `left`.
