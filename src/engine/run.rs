@@ -112,7 +112,7 @@ pub fn run_while(
     stop: &AtomicBool,
     observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
-    let mut stepper = stepper(mechanism, control, None);
+    let mut stepper = stepper(mechanism, control, None, false);
     drive(&mut *stepper, mechanism, None, control, schedule, stop, observe)
 }
 
@@ -146,20 +146,40 @@ pub fn run_balanced(
     stop: &AtomicBool,
     observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
 ) -> Result<Work, Halt> {
-    let mut stepper = stepper(mechanism, control, Some(Books::default()));
+    let mut stepper = stepper(mechanism, control, Some(Books::default()), true);
     let rubbing = Some(Rubbing::new(mechanism));
     drive(&mut *stepper, mechanism, rubbing, control, schedule, stop, observe)
 }
 
-/// The way of stepping that a mechanism and its control ask for.
-fn stepper(mechanism: &Mechanism, control: StepControl, books: Option<Books>) -> Box<dyn Stepper> {
+/// [`run_balanced`] that does not count where journals rub: it is for tables that say nothing of wear.
+///
+/// # Errors
+/// [`Halt`] when a state turns impossible or steps too short; the rows handed out before stand.
+pub fn run_unworn(
+    mechanism: &Mechanism,
+    control: StepControl,
+    schedule: Schedule,
+    stop: &AtomicBool,
+    observe: &mut dyn FnMut(&Instant) -> ControlFlow<()>,
+) -> Result<Work, Halt> {
+    let mut stepper = stepper(mechanism, control, Some(Books::default()), false);
+    drive(&mut *stepper, mechanism, None, control, schedule, stop, observe)
+}
+
+/// The way of stepping that a mechanism and its control ask for; `rubs` where it is to be counted how much journals rub.
+fn stepper(
+    mechanism: &Mechanism,
+    control: StepControl,
+    books: Option<Books>,
+    rubs: bool,
+) -> Box<dyn Stepper> {
     let native = mechanism.revolutes.iter().any(|j| matches!(j.bearing, Bearing::Native { .. }));
     match control {
         StepControl::Fixed(step) if native => Box::new(NativeSteps::new(mechanism, step)),
         StepControl::Fixed(step) => Box::new(FixedSteps::new(mechanism, step, books)),
         StepControl::Tolerance(tolerance) => Box::new(Adaptive::new(mechanism, tolerance, books)),
         StepControl::Direct(tolerance) => {
-            Box::new(Direct::new(mechanism, tolerance, books.is_some()))
+            Box::new(Direct::new(mechanism, tolerance, books.is_some(), rubs))
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A machine simulated for its figures.
 
 use super::summary::{Recorder, Summary};
-use crate::engine::{self, Instant};
+use crate::engine::{self, Halt, Instant, Schedule, StepControl, Work};
 use crate::mechanism::Mechanism;
 use crate::model::{IdealInstant, Machine};
 use crate::scenario::Scenario;
@@ -40,12 +40,40 @@ pub fn measured_until(
     stop: &AtomicBool,
     observe: &mut dyn FnMut(&Mechanism, &Instant, &IdealInstant),
 ) -> Summary {
+    summed_up(engine::run_balanced, (scenario, machine), stop, observe)
+}
+
+/// [`measured_until`] whose summary says nothing of wear, for tables that do not either.
+pub fn listed_until(
+    scenario: &Scenario,
+    machine: &mut Machine,
+    stop: &AtomicBool,
+    observe: &mut dyn FnMut(&Mechanism, &Instant, &IdealInstant),
+) -> Summary {
+    summed_up(engine::run_unworn, (scenario, machine), stop, observe)
+}
+
+/// A way to run a mechanism.
+type Way = fn(
+    &Mechanism,
+    StepControl,
+    Schedule,
+    &AtomicBool,
+    &mut dyn FnMut(&Instant) -> ControlFlow<()>,
+) -> Result<Work, Halt>;
+
+fn summed_up(
+    run: Way,
+    (scenario, machine): (&Scenario, &mut Machine),
+    stop: &AtomicBool,
+    observe: &mut dyn FnMut(&Mechanism, &Instant, &IdealInstant),
+) -> Summary {
     let started = Clock::now();
     let mechanism = &machine.mechanism;
     let mut recorder = Recorder::new(mechanism, scenario.simulation.settle());
     let ideal = &mut machine.ideal;
     let (control, schedule) = (machine.control, machine.schedule);
-    let ended = engine::run_balanced(mechanism, control, schedule, stop, &mut |instant| {
+    let ended = run(mechanism, control, schedule, stop, &mut |instant| {
         let ideal = recorder.ideal_at(mechanism, ideal, instant.t);
         recorder.row(mechanism, instant, &ideal);
         observe(mechanism, instant, &ideal);

@@ -20,7 +20,7 @@ pub use beforehand::checks::{doubts, driven_path, findings, findings_along};
 pub use beforehand::finding::{Finding, Severity};
 pub use beforehand::idle::neutral;
 pub use beforehand::unacting::unacting;
-pub use measured::{measured, measured_until};
+pub use measured::{listed_until, measured, measured_until};
 pub use provenance::Provenance;
 pub use summary::{JointSummary, Recorder, Summary};
 pub use timeseries::{RowColumns, TimeSeries};

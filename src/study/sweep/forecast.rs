@@ -1,7 +1,7 @@
 //! What a sweep will take, judged by a few of its runs.
 
 use super::Plan;
-use crate::simulate::measured_until;
+use crate::simulate::listed_until;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -30,7 +30,7 @@ fn time_of(plan: &Plan, run: usize, at_most: Duration) -> Option<f64> {
     let started = Instant::now();
     let (scenario, mut machine) = plan.machine(run).ok()?;
     let stop = AtomicBool::new(false);
-    let summary = measured_until(&scenario, &mut machine, &stop, &mut |_, _, _| {
+    let summary = listed_until(&scenario, &mut machine, &stop, &mut |_, _, _| {
         stop.fetch_or(started.elapsed() > at_most, Ordering::Relaxed);
     });
     let took = started.elapsed().as_secs_f64();

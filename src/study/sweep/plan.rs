@@ -8,7 +8,7 @@ use crate::measure::bounded;
 use crate::model::SharedIdeal;
 use crate::scenario::{Location, Problem, Scenario, Source};
 use crate::simulate::unacting;
-use crate::simulate::{Machine, Provenance, Severity, assemble, findings, measured_until};
+use crate::simulate::{Machine, Provenance, Severity, assemble, findings, listed_until};
 use crate::study::StudyError;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
@@ -138,7 +138,7 @@ impl Plan {
             Ok((scenario, mut machine)) => {
                 let settle = scenario.simulation.settle();
                 self.ideal.begin(&mut machine.ideal, machine.schedule, settle);
-                let summary = measured_until(&scenario, &mut machine, stop, &mut |_, _, _| {});
+                let summary = listed_until(&scenario, &mut machine, stop, &mut |_, _, _| {});
                 if summary.interrupted {
                     return None;
                 }

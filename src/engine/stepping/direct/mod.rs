@@ -82,7 +82,7 @@ pub(in crate::engine) struct Direct {
     step_error: f64,
     /// Whether the last step was taken although its error exceeds the tolerance.
     forced: bool,
-    /// What the normal force of each joint has taken since the last step began, in J, and, of balanced steps, behind
+    /// What the normal force of each joint has taken since the last step began, in J, and, where that is counted, behind
     /// that normal force times sliding distance.
     work: Vec<f64>,
 }
@@ -104,16 +104,16 @@ const LEAST_SHARE: f64 = 0.2;
 
 impl Direct {
     /// Steps that make a run about as exact as the physics engine's with `tolerance` (m/s), less where joints
-    /// are tight; `balanced` ones keep what a balance of energy needs.
-    pub fn new(mechanism: &Mechanism, tolerance: f64, balanced: bool) -> Self {
+    /// are tight; `balanced` ones keep what a balance of energy needs, and where `rubs` is true how much journals rub.
+    pub fn new(mechanism: &Mechanism, tolerance: f64, balanced: bool, rubs: bool) -> Self {
         let joints = mechanism.revolutes.len();
-        let node = Node::new(mechanism, balanced);
+        let node = Node::new(mechanism, balanced, rubs);
         let dynamics = Dynamics::new(mechanism);
         Self {
             tolerance: step_tolerance(mechanism, tolerance),
             path: Path::new(mechanism, &dynamics, &node),
             dynamics,
-            work: vec![0.0; if balanced { 2 * joints } else { joints }],
+            work: vec![0.0; if rubs { 2 * joints } else { joints }],
             start: node.clone(),
             inside: node.clone(),
             end: node,

@@ -6,8 +6,8 @@ use crate::mechanism::{BodyState, Dynamics, Evaluation, Mechanism};
 use nalgebra::Vector3;
 
 /// Where among the amounts those of the whole machine are: work of everything, of the drives, and how much
-/// changed hands. Behind them comes what the normal force took in each joint, and, where those of the whole machine are
-/// kept, normal force times sliding distance in each joint.
+/// changed hands. Behind them comes what the normal force took in each joint, and, where that is counted, normal force
+/// times sliding distance in each joint.
 const TOTAL: usize = 0;
 const DRIVES: usize = 1;
 const TURNED_OVER: usize = 2;
@@ -25,15 +25,16 @@ pub struct Node {
     /// Energies exchanged since the start in J, and their rates in W.
     pub amounts: Vec<f64>,
     pub flows: Vec<f64>,
-    /// Whether those of the whole machine are kept.
+    /// Whether those of the whole machine are kept, and how much journals rub.
     balanced: bool,
+    rubs: bool,
 }
 
 impl Node {
     /// The start of a run; nothing is evaluated yet.
-    pub fn new(mechanism: &Mechanism, balanced: bool) -> Self {
+    pub fn new(mechanism: &Mechanism, balanced: bool, rubs: bool) -> Self {
         let joints = mechanism.revolutes.len();
-        let amounts = vec![0.0; JOINTS + if balanced { 2 * joints } else { joints }];
+        let amounts = vec![0.0; JOINTS + if rubs { 2 * joints } else { joints }];
         Self {
             t: 0.0,
             states: mechanism.bodies.iter().map(|body| body.start).collect(),
@@ -41,6 +42,7 @@ impl Node {
             flows: amounts.clone(),
             amounts,
             balanced,
+            rubs,
         }
     }
 
@@ -73,7 +75,7 @@ impl Node {
         for (flow, contact) in self.flows[JOINTS..].iter_mut().zip(&self.evaluation.contacts) {
             *flow = contact.normal_force * contact.rate;
         }
-        if self.balanced {
+        if self.rubs {
             let slides = self.flows[JOINTS + mechanism.revolutes.len()..].iter_mut();
             for (flow, contact) in slides.zip(&self.evaluation.contacts) {
                 *flow = contact.rubbing_power();
