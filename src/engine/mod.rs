@@ -33,7 +33,7 @@ pub use physics::clearance_joints::{ClearanceJoint, ClearanceJoints};
 pub use physics::colliders::{JointColliders, Solver};
 pub use physics::dispatcher::RingDispatcher;
 pub use physics::ring::BearingRing;
-pub use run::{Instant, Schedule, run, run_balanced, run_unworn, run_while};
+pub use run::{Instant, Schedule, run, run_balanced, run_while, run_without_wear};
 pub use stepping::adaptive::LONGEST_STEP;
 pub use stepping::energy::Energy;
 

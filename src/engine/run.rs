@@ -155,7 +155,7 @@ pub fn run_balanced(
 ///
 /// # Errors
 /// [`Halt`] when a state turns impossible or steps too short; the rows handed out before stand.
-pub fn run_unworn(
+pub fn run_without_wear(
     mechanism: &Mechanism,
     control: StepControl,
     schedule: Schedule,

@@ -50,7 +50,7 @@ pub fn listed_until(
     stop: &AtomicBool,
     observe: &mut dyn FnMut(&Mechanism, &Instant, &IdealInstant),
 ) -> Summary {
-    summed_up(engine::run_unworn, (scenario, machine), stop, observe)
+    summed_up(engine::run_without_wear, (scenario, machine), stop, observe)
 }
 
 /// A way to run a mechanism.

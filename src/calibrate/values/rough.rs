@@ -35,7 +35,7 @@ pub fn closest(look: ResidualAt, mut free: Vec<Free>, mut values: Vec<f64>) -> O
 /// How far each value is moved both ways to look for others that leave less, in changes of the residual by a unit of noise: of a
 /// drive's backlash that takes 4000 off the sum of squares, a fit ended 30 of them beside the hidden value, behind a rise (trial
 /// 1160000026).
-const AROUND: [f64; 6] = [4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
+const AROUND: &[f64] = &[4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
 
 /// The values that leave the least, of those at which a fit ended and those with one of them [moved](AROUND): a fit does not pass a
 /// rise. None where there is no model.
