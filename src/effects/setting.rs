@@ -84,6 +84,23 @@ impl Setting {
         (self.kind.starts)(mechanism, self)
     }
 
+    /// Places of the values that say how large an effect with a list of starts is: the first, and what has its unit goes with it, as
+    /// friction near rest with friction in motion.
+    pub fn sizes(&self) -> Vec<usize> {
+        let unit = |name: &str| self.kind.parameter(name).map(|parameter| parameter.unit);
+        let units: Vec<_> = self.values().map(|(name, _)| unit(name)).collect();
+        (0..units.len()).filter(|&i| units[i] == units[0]).collect()
+    }
+
+    /// The values of a start with the first made `size`, and the other [sizes](Self::sizes) in proportion.
+    pub fn sized(&self, start: &[f64], size: f64) -> Vec<f64> {
+        let mut values = start.to_vec();
+        for i in self.sizes() {
+            values[i] *= size / start[0];
+        }
+        values
+    }
+
     /// The joint that it is given, if it is given one alone.
     pub fn joint(&self) -> Option<&str> {
         match &self.target {

@@ -71,6 +71,11 @@ fn factor(covariance: DMatrix<f64>) -> Cholesky<f64, Dyn> {
     factor.expect("positive diagonal")
 }
 
+/// Logarithm of the determinant of a factored covariance.
+fn logarithm(factor: &Cholesky<f64, Dyn>) -> f64 {
+    2.0 * factor.l_dirty().diagonal().map(f64::ln).sum()
+}
+
 /// Half the number of neighbouring frequencies over which a covariance is averaged, at least; as a
 /// share of the frequency where that is more: noise is smooth on such a scale.
 const NEIGHBOURS: usize = 8;
@@ -125,8 +130,6 @@ impl Covariances {
 
     /// The noise in which the swing is so many times as large.
     pub fn noise(&self, share: f64) -> Noise {
-        let logarithm =
-            |factor: &Cholesky<f64, Dyn>| 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
         let (mut log_determinant, mut with_swing) = (0.0, 0.0);
         let mut factors = Vec::with_capacity(self.0.len());
         for CovariancesAt { noise, swing, .. } in &self.0 {
@@ -155,6 +158,21 @@ impl Noise {
     /// more is known than its size.
     pub fn from_draws(draws: &[Vec<Vec<f64>>], swing: &[Vec<f64>]) -> Self {
         Covariances::from_draws(draws, swing).noise(1.0)
+    }
+
+    /// The noise halfway between two: the mean of their covariances, without a swing. None where they are of other channels.
+    pub fn mean(two: [&Self; 2]) -> Option<Self> {
+        let [a, b] = two;
+        if a.active != b.active {
+            return None;
+        }
+        let covariance = |factor: &Cholesky<f64, Dyn>| factor.l() * factor.l().transpose();
+        let pairs = a.factors.iter().zip(&b.factors);
+        let factors: Vec<_> =
+            pairs.map(|(a, b)| factor((covariance(a) + covariance(b)) * 0.5)).collect();
+        let log_determinant = factors.iter().map(logarithm).sum();
+        let active = a.active.clone();
+        Some(Self { factors, active, log_determinant, swinging: 0.0 })
     }
 
     /// Coefficients in units of the noise: independent, of variance one, if they are noise.

@@ -62,6 +62,8 @@ pub fn limits(search: &Search, model: &Model) -> Vec<DetectionLimit> {
         .filter_map(|candidate| {
             let (parameter, neutral) = candidate.values().next()?;
             let step = candidate.kind.parameter(parameter)?;
+            let listed = !candidate.starts(&search.problem.declared).is_empty();
+            let sizes = if listed { candidate.sizes() } else { vec![0] };
             let ways = ways(&search.problem.declared, candidate, neutral, step.step);
             let change = |values: &[f64]| {
                 let with = [model.fit.effects.as_slice(), &[candidate.with(values)]].concat();
@@ -69,7 +71,7 @@ pub fn limits(search: &Search, model: &Model) -> Vec<DetectionLimit> {
             };
             // Seen whatever its phase: the way that shows least counts.
             let smallest = ways.into_iter().try_fold(0.0f64, |worst, mut values| {
-                let column = within(&base.white, &mut values, (0, neutral), &change)?;
+                let column = within(&base.white, &mut values, (&sizes, neutral), &change)?;
                 let column = column / (values[0] - neutral).abs();
                 Some(worst.max(size(&column, own.as_ref(), &parts, model.baseline.rattles)))
             });
@@ -131,7 +133,8 @@ pub(in crate::calibrate) fn ways(
         return tried.into_iter().flat_map(with).collect();
     }
     let listed = candidate.starts(mechanism);
-    if listed.is_empty() { vec![moved(own)] } else { listed.into_iter().map(moved).collect() }
+    let listed = listed.iter().map(|start| candidate.sized(start, neutral + step));
+    if listed.len() == 0 { vec![moved(own)] } else { listed.collect() }
 }
 
 /// The size at which an effect with this column would be seen and named.

@@ -5,6 +5,7 @@
 //! takes up most of that effect's part there is simulated, too, and compared on all runs. Two models that are no further
 //! apart than chance are as good as each other.
 
+use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::Stopped;
 use crate::calibrate::sensed::rounds::rest::Rest;
 use crate::calibrate::sensed::rounds::round::{Round, Tried};
@@ -49,6 +50,14 @@ fn chosen(near: &[Setting], alike: usize) -> usize {
     inner.unwrap_or(first)
 }
 
+/// A model with an effect in place of another one.
+struct Rival {
+    effect: Setting,
+    model: Model,
+    /// What it costs on all data more than what was found.
+    cost: f64,
+}
+
 impl Search<'_> {
     /// The model, or one with rivals in place of its effects that explains all runs better; `rounds` hear what is as
     /// good as each effect.
@@ -65,16 +74,18 @@ impl Search<'_> {
             let own = best.fit.effects[i].clone();
             let [simulated, beyond] = self.rivals(&best, i);
             let mut all = self.in_its_place(&best, i, simulated)?;
-            let enough = self.whole(&all[0].1) + TWINS[usize::from(best.baseline.rattles)];
-            let as_good = all.iter().take_while(|(_, model)| self.whole(model) < enough);
-            let near: Vec<Setting> = as_good.map(|(effect, _)| effect.clone()).collect();
-            let least = self.whole(&all[0].1) + TWINS[0];
-            let alike = all.iter().take_while(|(_, model)| self.whole(model) < least).count();
+            let up_to = |chance: f64| {
+                let enough = all[0].cost + chance;
+                all.iter().take_while(move |rival| rival.cost < enough)
+            };
+            let as_good = up_to(TWINS[usize::from(best.baseline.rattles)]);
+            let near: Vec<Setting> = as_good.map(|rival| rival.effect.clone()).collect();
+            let alike = up_to(TWINS[0]).count();
             let place = chosen(&near, alike);
             let round = rounds
                 .iter_mut()
                 .find(|round| round.added.as_ref().is_some_and(|added| added.is(&own)));
-            let (won, model) = all.swap_remove(place);
+            let Rival { effect: won, model, .. } = all.swap_remove(place);
             if let Some(round) = round {
                 let not_ruled_out = match near.iter().any(|effect| effect.is(&own)) {
                     true => beyond
@@ -97,37 +108,57 @@ impl Search<'_> {
         model: &Model,
         place: usize,
         rivals: Vec<Setting>,
-    ) -> Result<Vec<(Setting, Model)>, Stopped> {
+    ) -> Result<Vec<Rival>, Stopped> {
         let mut others = model.fit.effects.clone();
         let own = others.remove(place);
-        let mut all = vec![(own.clone(), model.clone())];
+        let rattles = model.baseline.rattles;
+        let mut all = vec![Rival { effect: own.clone(), model: model.clone(), cost: 0.0 }];
         for rival in rivals {
             let effects = [others.as_slice(), std::slice::from_ref(&rival)].concat();
             (self.tell)(&format!("simulating with {} in place of {own}", names(&effects)));
             // What is told apart by ten units of thousands has to stand at its own best values.
-            let times = if model.baseline.rattles { 1 } else { 4 };
+            let times = if rattles { 1 } else { 4 };
             let enough = model.misfit + CLOSE;
             let settled = self.settle_within(&effects, times, enough)?;
             let Some(settled) = settled else { continue };
             // What does not come down to noise explains nothing, whatever it costs.
             let imitates = settled.fit.effects.last().is_some_and(|own| self.imitates(own));
             if self.is_noise(&settled) && !imitates {
-                all.push((rival, settled));
+                let cost = self.dearer(model, &settled);
+                all.push(Rival { effect: rival, model: settled, cost });
             }
         }
-        let by_cost = |(_, a): &(Setting, Model), (_, b): &(Setting, Model)| {
-            self.whole(a).total_cmp(&self.whole(b))
-        };
+        let by_cost = |a: &Rival, b: &Rival| a.cost.total_cmp(&b.cost);
         all.sort_by(by_cost);
-        let enough = self.whole(&all[0].1) + CLOSE;
-        let close = all.iter().take_while(|(_, model)| self.whole(model) < enough).count();
-        if close > 1 && !model.baseline.rattles {
-            for (_, model) in &mut all[..close] {
-                *model = self.refined(model.clone(), Far::All)?;
+        let enough = all[0].cost + CLOSE;
+        let close = all.iter().take_while(|rival| rival.cost < enough).count();
+        if close > 1 && !rattles {
+            for rival in &mut all[..close] {
+                rival.model = self.refined(rival.model.clone(), Far::All)?;
+                rival.cost = self.dearer(model, &rival.model);
             }
             all.sort_by(by_cost);
         }
         Ok(all)
+    }
+
+    /// What a rival costs on all data more than a model; where joints of both rattle, in the [noise](Baseline::in_common) that they
+    /// have in common: what each costs in its own differs by luck of few replicas.
+    fn dearer(&self, model: &Model, rival: &Model) -> f64 {
+        let both_rattle = model.baseline.rattles && rival.baseline.rattles;
+        let in_common = both_rattle.then(|| self.dearer_in_common(model, rival)).flatten();
+        in_common.unwrap_or_else(|| self.whole(rival) - self.whole(model))
+    }
+
+    /// The same by looks in common noise; none where one of the two cannot move as it was measured.
+    fn dearer_in_common(&self, model: &Model, rival: &Model) -> Option<f64> {
+        let two = Baseline::in_common(self.problem, [&model.baseline, &rival.baseline])?;
+        let cost = |model: &Model, baseline: &Baseline| {
+            let fit = self.target(baseline, false).fit(&model.fit.effects, STEPS)?;
+            let held = self.target(baseline, true).look(&fit.effects)?;
+            Some(fit.chi2 + held.chi2 + price_of_values(&fit.effects))
+        };
+        Some(cost(rival, &two[1])? - cost(model, &two[0])?)
     }
 
     /// The candidates that take up most of what an effect of a model does, in its place: those to be simulated, and those beyond
@@ -259,11 +290,16 @@ impl Search<'_> {
 
     /// What a model costs on all data: those that it was fitted to tell rivals apart as well, at Akaike's price.
     fn whole(&self, model: &Model) -> f64 {
-        let values: usize = model.fit.effects.iter().map(|effect| effect.values().count()).sum();
         let on = &self.split.on;
         let noise = self.noisiness(&model.baseline, on) + model.baseline.lost(on);
-        model.cost() + model.fit.chi2 + noise + GAIN_PER_VALUE * values as f64
+        model.cost() + model.fit.chi2 + noise + price_of_values(&model.fit.effects)
     }
+}
+
+/// Akaike's price of the values of effects.
+fn price_of_values(effects: &[Setting]) -> f64 {
+    let values: usize = effects.iter().map(|effect| effect.values().count()).sum();
+    GAIN_PER_VALUE * values as f64
 }
 
 /// Drop of the sum of squares beyond chance that so many more values of a model have to bring.

@@ -19,16 +19,16 @@ use std::sync::Arc;
 
 /// Bias and noise on one segment.
 #[derive(Clone, Debug)]
-struct BiasAndNoise {
-    segment: Segment,
+pub(super) struct BiasAndNoise {
+    pub segment: Segment,
     /// The model's machine, through which data and whole simulations are seen alike.
-    machine: Mechanism,
-    bias: Coefficients,
+    pub machine: Mechanism,
+    pub bias: Coefficients,
     /// Residuals of the data less that.
-    left: Coefficients,
-    noise: Noise,
+    pub left: Coefficients,
+    pub noise: Noise,
     /// Simulations of the model without noise, replica by replica, and draws of the first one with noise.
-    clean: Vec<View>,
+    pub clean: Vec<View>,
     noisy: Vec<View>,
     /// Σ of squares of the noise of these draws, in units of what is expected.
     power: f64,
@@ -44,7 +44,7 @@ struct BiasAndNoise {
 /// What simulations of a model say of its own residuals.
 #[derive(Clone, Debug)]
 pub struct Baseline {
-    parts: Arc<Vec<BiasAndNoise>>,
+    pub(super) parts: Arc<Vec<BiasAndNoise>>,
     /// Whether replicas differ by more than sensors see.
     pub rattles: bool,
     /// Replicas that its draws are of: the i-th one of that many in turn.

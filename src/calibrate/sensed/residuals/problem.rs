@@ -322,8 +322,13 @@ impl RigProblem {
 
     /// The same with another one.
     pub fn planar_run(name: &str, run: &str) -> Self {
+        Self::of(&format!("rigs-planar/{name}"), run)
+    }
+
+    /// A rig among the assets with one of its recordings.
+    pub fn of(folder: &str, run: &str) -> Self {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-        let folder = root.join("assets/rigs-planar").join(name);
+        let folder = root.join("assets").join(folder);
         let rig = Scenario::load(Some(&folder.join("rig.toml")), &[]).unwrap();
         let sensors = crate::model::parts_of(&rig).unwrap().sensors;
         let recording = Recording::read(&folder.join(run), &sensors, false).unwrap();

@@ -253,13 +253,15 @@ fn linear_step(
         let change: Vec<f64> = change.iter().skip(starts.len()).copied().collect();
         gain.is_finite().then_some((gain, change))
     };
-    // Of one with a list of starts the first value is an amplitude, which begins at nothing; the others are a start's.
+    // Of one with a list of starts the first value is its size, which begins at nothing; the others are a start's.
     let listed = candidate.starts(mechanism);
-    let begun = |start: &Vec<f64>| [&neutral[..1], &start[1..]].concat();
-    let slope = |values: &[f64], i: usize| derivative(look, &free, values, left, i);
+    let grows = |start: &[f64]| {
+        let look = |size: &[f64]| look(&candidate.sized(start, size[0]));
+        derivative(&look, &free[..1], &neutral[..1], left, 0)
+    };
     if let (true, [begin, next, ..]) = (turns_round(&names, &listed), listed.as_slice()) {
         let across = &listed[listed.len() / 4];
-        let columns = [begin, across].map(|start| slope(&begun(start), 0));
+        let columns = [begin, across].map(|start| grows(start));
         let [Some(first), Some(across)] = columns else { return None };
         let wide = Free { bounds: [-f64::MAX, f64::MAX], ..free[0] };
         let (gain, change) = stepped(&[first, across], &[0.0; 2], &[wide; 2])?;
@@ -269,13 +271,17 @@ fn linear_step(
         let [from, to] = [neutral[0], amplitude].map(|size| candidate.with(&[size, angle]));
         return Some(Stepped { gain, from, to });
     }
-    let mut values = listed.first().map_or_else(|| neutral.clone(), begun);
-    let moving = if listed.is_empty() { values.len() } else { 1 };
-    let columns: Vec<_> = (0..moving).map(|i| slope(&values, i)).collect::<Option<_>>()?;
-    let (gain, change) = stepped(&columns, &values[..moving], &free[..moving])?;
-    let from = candidate.with(&values);
-    values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
-    Some(Stepped { gain, from, to: candidate.with(&values) })
+    if let Some(start) = listed.first() {
+        let (gain, change) = stepped(&[grows(start)?], &neutral[..1], &free[..1])?;
+        let [from, to] = [neutral[0], neutral[0] + change[0]]
+            .map(|size| candidate.with(&candidate.sized(start, size)));
+        return Some(Stepped { gain, from, to });
+    }
+    let slope = |i: usize| derivative(look, &free, &neutral, left, i);
+    let columns: Vec<_> = (0..neutral.len()).map(slope).collect::<Option<_>>()?;
+    let (gain, change) = stepped(&columns, &neutral, &free)?;
+    let values: Vec<f64> = neutral.iter().zip(change).map(|(value, by)| value + by).collect();
+    Some(Stepped { gain, from: candidate.with(&neutral), to: candidate.with(&values) })
 }
 
 /// Whether a list of starts goes once round the period of an angle, their last value, in equal steps: what a quarter of them

@@ -58,9 +58,9 @@ impl HiddenShape {
                 }
             }
         } else if let Some(start) = dice.one_of(&starts) {
-            // The first value is the size, and what has its unit goes with it.
+            let sizes = effect.sizes();
             for (i, parameter) in parameters.iter().enumerate() {
-                if parameter.unit == parameters[0].unit && start[i] != 0.0 {
+                if sizes.contains(&i) && start[i] != 0.0 {
                     growing[i] = STEPS * parameters[0].step * start[i] / start[0].abs();
                 } else {
                     values[i] = placed(parameter, start[i], dice);

@@ -39,19 +39,18 @@ pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting) -> Vec<Setti
     if listed.is_empty() {
         return vec![candidate.clone()];
     }
-    // The first value is an amplitude: the best multiple of each start, by least squares. What was too much of it once is
-    // not tried again.
+    // The best multiple of each start, by least squares. What was too much of it once is not tried again.
+    let sizes = candidate.sizes();
     let mut share = 1.0;
-    let scored = listed.into_iter().filter_map(|mut start| {
-        let listed = start[0];
-        start[0] *= share;
-        let column = within(&model.white, &mut start, (0, 0.0), &change)?;
-        share = start[0] / listed;
+    let scored = listed.into_iter().filter_map(|listed| {
+        let mut start = candidate.sized(&listed, share * listed[0]);
+        let column = within(&model.white, &mut start, (&sizes, 0.0), &change)?;
+        share = start[0] / listed[0];
         let multiple = -column.dot(&model.white) / column.norm_squared();
         if multiple <= 0.0 || !multiple.is_finite() {
             return Some((0.0, candidate.with(&start)));
         }
-        start[0] *= multiple;
+        let start = candidate.sized(&start, multiple * start[0]);
         Some((multiple.powi(2) * column.norm_squared(), candidate.with(&start)))
     });
     let possible = |start: Setting| {
@@ -61,25 +60,29 @@ pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting) -> Vec<Setti
             if change(&values).is_some() {
                 break;
             }
-            values[0] *= 0.5;
+            values = candidate.sized(&values, 0.5 * values[0]);
         }
         candidate.with(&values)
     };
     best(scored.collect()).into_iter().map(possible).collect()
 }
 
-/// What values change of a residual, one of them brought nearer to its `neutral` value until that is not
+/// What values change of a residual, those at `places` brought nearer to a `neutral` value until that is not
 /// [too much](too_far).
 pub(in crate::calibrate::sensed) fn within(
     residual: &DVector<f64>,
     values: &mut [f64],
-    (place, neutral): (usize, f64),
+    (places, neutral): (&[usize], f64),
     change: &dyn Fn(&[f64]) -> Option<DVector<f64>>,
 ) -> Option<DVector<f64>> {
     for _ in 0..REDUCTIONS {
         match change(values) {
             Some(column) if !too_far(&column, residual) => return Some(column),
-            _ => values[place] = neutral + REDUCED * (values[place] - neutral),
+            _ => {
+                for &i in places {
+                    values[i] = neutral + REDUCED * (values[i] - neutral);
+                }
+            }
         }
     }
     change(values)
@@ -133,7 +136,7 @@ fn scanned(
                 values[over] = value;
                 values[phase] = angle;
                 values[amplitude] = *size;
-                let column = within(&model.white, &mut values, (amplitude, 0.0), change)?;
+                let column = within(&model.white, &mut values, (&[amplitude], 0.0), change)?;
                 *size = values[amplitude];
                 columns.push(column * (unit / *size));
             }
@@ -170,4 +173,33 @@ pub(super) fn of_one_phase(
 /// The size of a unit of a parameter.
 fn step(kind: &Kind, name: &str) -> f64 {
     kind.parameter(name).map_or(1.0, |parameter| parameter.step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::sensed::residuals::baseline::Baseline;
+    use crate::calibrate::sensed::residuals::problem::RigProblem;
+    use crate::effects::{Target, named};
+
+    /// Friction near rest of a machine whose friction is a fiftieth of what a search starts from goes with that in motion.
+    #[test]
+    fn what_has_the_unit_of_a_size_goes_with_it() {
+        let problem = RigProblem::planar("planar-6");
+        let values = [("coulomb_N", 2e-3), ("static_N", 4e-3), ("stribeck_m_s", 0.1)];
+        let joint = Target::Joints(vec!["slide".to_owned()]);
+        let hidden = Setting::on(named("stribeck-friction").unwrap(), joint, &values);
+        let released = problem.let_go(std::slice::from_ref(&hidden)).unwrap();
+        let recorded = problem.simulated(&released, 1).unwrap().remove(0).remove(0);
+        let problem = problem.recorded_as(recorded);
+        let on = problem.split().on;
+        let baseline = Baseline::of(&problem, &[], &[], &on).unwrap();
+        let target = FitTarget { problem: &problem, baseline: &baseline, on: &on };
+        let model = target.look(&[]).unwrap();
+        let candidate = hidden.with(&[0.0, 0.0, 0.1]);
+        let found = starts(&target, &model, &candidate).remove(0);
+        let value = |name: &str| found.value(name).unwrap();
+        assert!((1e-3..4e-3).contains(&value("coulomb_N")), "{found:?}");
+        assert!((value("static_N") / value("coulomb_N") - 2.0).abs() < 1e-9, "{found:?}");
+    }
 }
