@@ -92,7 +92,8 @@ impl Setting {
         (0..units.len()).filter(|&i| units[i] == units[0]).collect()
     }
 
-    /// The values of a start with the first made `size`, and the other [sizes](Self::sizes) in proportion.
+    /// The values of a start, whose first is not zero, with that made `size` (in its own unit) and the other [sizes](Self::sizes) in
+    /// proportion.
     pub fn sized(&self, start: &[f64], size: f64) -> Vec<f64> {
         let mut values = start.to_vec();
         for i in self.sizes() {

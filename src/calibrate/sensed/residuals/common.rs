@@ -95,14 +95,16 @@ mod tests {
     use super::*;
     use crate::calibrate::sensed::thresholds::{REPLICAS, TWINS};
     use crate::effects::{Setting, Target, named};
+    use crate::mechanism::JointIndex;
 
-    fn payload(mass: f64) -> Vec<Setting> {
+    /// A payload at the output body.
+    fn payload(problem: &RigProblem, mass: f64) -> Vec<Setting> {
         let values = [("mass_kg", mass), ("com_x_m", 0.0), ("com_y_m", 0.0)];
-        let body = Target::Body("platform".to_owned());
+        let body = Target::Body(problem.declared.names.output.clone().unwrap());
         vec![Setting::on(named("payload").unwrap(), body, &values)]
     }
 
-    /// What each of two models leaves of the data, with the determinant of its noise and without.
+    /// What a model leaves of the data, with the determinant of its noise and without.
     fn left(problem: &RigProblem, own: &[Setting], baseline: &Baseline) -> [f64; 2] {
         let segments = problem.split().hold;
         let white = baseline.white(problem, own, &segments).unwrap().unwrap();
@@ -117,8 +119,9 @@ mod tests {
         let mut problem = RigProblem::of("rigs/rig-1", "run-a.csv");
         problem.replicas = REPLICAS;
         let segments = problem.split().hold;
-        let [none, hair] = [0.0, 1e-6].map(payload);
-        let joint = Target::Joints(vec!["C2".to_owned()]);
+        let [none, hair] = [0.0, 1e-6].map(|mass| payload(&problem, mass));
+        let joint = problem.declared.joint_name(JointIndex::Revolute(0)).to_owned();
+        let joint = Target::Joints(vec![joint]);
         let kind = named("joint-wear").unwrap();
         let worn = vec![Setting::on(kind, joint, &[("clearance_m", 5e-4)])];
         let of = |effects: &[Setting]| Baseline::of(&problem, effects, &[], &segments).unwrap();
