@@ -2,7 +2,7 @@
 //! values to the next.
 
 use super::least_squares::{Best, FitEffort, Free, ResidualAt, jacobian, least_squares};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// A step of Gauss and Newton.
@@ -15,14 +15,25 @@ const STEPS: usize = 5;
 /// Factor by which a step of a derivative gets longer that is worth another.
 const LONGER: f64 = 1.5;
 
+/// Share of the change over which a derivative is taken that a jump is at most: a value is then known to an eighth less than it seems.
+const JUMP: f64 = 0.5;
+
+/// Change of a value in units of what changes a residual by one of noise, by which jumps are asked for.
+const HAIR: f64 = 1e-3;
+
 /// Least squares from values on at which a fit ended, by derivatives over changes of each value that change the residual by about
-/// a unit of noise: a jump over a shorter change is taken for a large derivative, by which a value seems known to a fraction of what
-/// it is. None where there is no model.
+/// a unit of noise, or by as much more as [jumps](JUMP) ask for: a jump over a shorter change is taken for a large derivative, by
+/// which a value seems known to a fraction of what it is. None where there is no model.
 pub fn closest(look: ResidualAt, mut free: Vec<Free>, mut values: Vec<f64>) -> Option<Best> {
-    let mut best = None;
+    let (mut best, mut known) = (None, None);
     for _ in 0..STEPS {
         let there = least_squares(look, &free, values, ONE_STEP, None)?;
-        let longer = there.jacobian.as_ref().is_some_and(|own| lengthen(&mut free, own));
+        let mut longer = false;
+        if let Some(own) = &there.jacobian {
+            let slope = own.column(0).norm();
+            let jump = *known.get_or_insert_with(|| jump(look, &free, &there, slope));
+            longer = lengthen(&mut free, own, jump);
+        }
         values = there.values.clone();
         best = Some(there);
         if !longer {
@@ -30,6 +41,15 @@ pub fn closest(look: ResidualAt, mut free: Vec<Free>, mut values: Vec<f64>) -> O
         }
     }
     best
+}
+
+/// By how much a residual changes that a thousandth of a unit of the first value away, which has this slope there, should hardly
+/// change.
+fn jump(look: ResidualAt, free: &[Free], there: &Best, slope: f64) -> f64 {
+    let mut beside = there.values.clone();
+    let hair = HAIR * unit(&free[0], slope, 1.0);
+    beside[0] += if beside[0] + hair > free[0].bounds[1] { -hair } else { hair };
+    look(&beside).map_or(0.0, |seen| (seen - &there.residual).norm())
 }
 
 /// How far each value is moved both ways to look for others that leave less, in changes of the residual by a unit of noise: of a
@@ -45,7 +65,7 @@ pub fn around(look: ResidualAt, mut free: Vec<Free>, values: &[f64]) -> Option<V
     for _ in 0..2 {
         let own = jacobian(look, &free, values, &left)?;
         for (free, column) in free.iter_mut().zip(own.column_iter()) {
-            free.step = unit(free, column.norm());
+            free.step = unit(free, column.norm(), 1.0);
         }
     }
     let moved = |(i, by): (usize, f64)| {
@@ -64,22 +84,78 @@ pub fn around(look: ResidualAt, mut free: Vec<Free>, values: &[f64]) -> Option<V
     Some(least.1)
 }
 
-/// Lengthens the steps of values by which a residual in units of noise changes by less than a unit, and says whether it
-/// lengthened one by [much](LONGER).
-fn lengthen(free: &mut [Free], jacobian: &DMatrix<f64>) -> bool {
+/// How often the step of a derivative is sought that changes a residual by what it is to change: from a unit of a value, which may
+/// be a ten thousandth of that or more than a machine can take, to within a factor of two.
+const SOUGHT: usize = 6;
+
+/// Factors by which such a step is shortened where there is no such machine, and lengthened, at least and at most: what jumps do not
+/// tell of the right one.
+const NO_MACHINE: f64 = 0.05;
+/// See [`NO_MACHINE`].
+const FURTHER: [f64; 2] = [3.0, 16.0];
+
+/// The derivative of the residual by value `i`, by a difference over as much of it as changes the residual by about `change` units of
+/// noise beside what a hair makes of it, which is `rough` at most, away from the nearest bound and no further than the other. None
+/// where there is no model beside it.
+pub fn derivative_over(
+    look: ResidualAt,
+    Free { step, bounds: [low, high] }: Free,
+    (values, i): (&[f64], usize),
+    residual: &DVector<f64>,
+    [change, rough]: [f64; 2],
+) -> Option<DVector<f64>> {
+    let up = values[i] + step <= high;
+    let (sign, room) = if up { (1.0, high - values[i]) } else { (-1.0, values[i] - low) };
+    let mut step = step.min(room);
+    let mut known = None;
+    for _ in 0..SOUGHT {
+        let mut beside = values.to_vec();
+        beside[i] += sign * step;
+        let Some(seen) = look(&beside).map(|there| there - residual) else {
+            if known.is_some() {
+                break;
+            }
+            step *= NO_MACHINE;
+            continue;
+        };
+        let told = (seen.norm_squared() - rough.powi(2)).max(0.0).sqrt();
+        known = Some(seen / (sign * step));
+        let [least, most] = FURTHER;
+        match change / told {
+            ratio if ratio < 0.5 => step *= ratio,
+            ratio if ratio > 1.5 && step < room => {
+                step = (step * ratio.clamp(least, most)).min(room);
+            }
+            _ => break,
+        }
+    }
+    known
+}
+
+/// Lengthens the steps of values by which a residual in units of noise changes by less than a unit, or than a [jump](JUMP) asks
+/// for, and says whether it lengthened one by [much](LONGER).
+fn lengthen(free: &mut [Free], jacobian: &DMatrix<f64>, jump: f64) -> bool {
+    let change = jump / JUMP;
     let mut longer = false;
     for (free, column) in free.iter_mut().zip(jacobian.column_iter()) {
-        let unit = unit(free, column.norm());
+        let jumps = jump / free.step;
+        let told = column.norm_squared() - jumps.powi(2);
+        let unit = match change > 1.0 {
+            false => unit(free, column.norm(), 1.0),
+            // What is hardly more than a jump says nothing.
+            true if told < 0.5 * jumps.powi(2) => unit(free, (FURTHER[0] * free.step).recip(), 1.0),
+            true => unit(free, told.sqrt(), change),
+        };
         longer |= unit > LONGER * free.step;
         free.step = free.step.max(unit);
     }
     longer
 }
 
-/// Change of a value that changes a residual by a unit of noise, by the size of its derivative: from one bound it leads no further
-/// than half way to the other.
-fn unit(Free { bounds, .. }: &Free, slope: f64) -> f64 {
-    slope.recip().min(0.5 * (bounds[1] - bounds[0]))
+/// Change of a value that changes a residual by so many units of noise, by the size of its derivative: from one bound it leads no
+/// further than half way to the other.
+fn unit(Free { bounds, .. }: &Free, slope: f64, change: f64) -> f64 {
+    (change / slope).min(0.5 * (bounds[1] - bounds[0]))
 }
 
 #[cfg(test)]
@@ -122,5 +198,38 @@ mod tests {
         let best = closest(&look, free, vec![1.1]).unwrap();
         assert!((known(&best).sqrt() - 0.1).abs() < 0.01, "{}", known(&best).sqrt());
         assert!((best.values[0] - 1.0).abs() < 0.01, "{:?}", best.values);
+    }
+
+    /// Hundred rows that jump by 0.3 each, anew at any value, and change by one as the value does; and hundred that nothing changes.
+    fn jumping(v: &[f64]) -> Option<DVector<f64>> {
+        let mut random = ChaCha8Rng::seed_from_u64(v[0].to_bits());
+        let mut rough = || -> f64 { StandardNormal.sample(&mut random) };
+        let mut row = |k: usize| if k < 100 { (v[0] - 1.0) + 0.3 * rough() } else { 1.0 };
+        Some(DVector::from_fn(200, |k, _| row(k)))
+    }
+
+    /// Jumps that are larger than a unit of noise are told from what a value changes, too.
+    #[test]
+    fn derivatives_are_taken_over_more_than_jumps() {
+        let free = vec![Free { step: 0.03, bounds: [-10.0, 10.0] }];
+        let best = closest(&jumping, free, vec![1.1]).unwrap();
+        let known = inverse_normal(best.jacobian.as_ref().unwrap()).unwrap()[(0, 0)].sqrt();
+        assert!((known - 0.1).abs() < 0.03, "{known}");
+    }
+
+    /// A derivative over as much of a value as changes hundred rows by ten units beside jumps of four, and over as much as there is.
+    #[test]
+    fn a_derivative_is_sought_beyond_jumps() {
+        let slope = |bounds: [f64; 2], now: f64, asked: [f64; 2]| {
+            let left = jumping(&[now]).unwrap();
+            let free = Free { step: 1e-4, bounds };
+            let slope = derivative_over(&jumping, free, (&[now], 0), &left, asked).unwrap();
+            slope.rows(0, 100).mean()
+        };
+        let wide = [-10.0, 10.0];
+        assert!((slope(wide, 0.0, [0.1, 0.0]) - 1.0).abs() > 1.0, "the test rests on it");
+        assert!((slope(wide, 0.0, [10.0, 5.0]) - 1.0).abs() < 0.1);
+        assert!((slope(wide, 10.0, [10.0, 5.0]) - 1.0).abs() < 0.1, "away from a bound");
+        assert!((slope([0.0, 0.5], 0.0, [100.0, 5.0]) - 1.0).abs() < 0.2, "and up to one");
     }
 }

@@ -3,7 +3,7 @@
 
 use super::problem::{RigProblem, Segment, Start, Stopped};
 use super::swing::{Likeliest, swing};
-use crate::calibrate::sensed::motion::simulate::{apart, with_noise};
+use crate::calibrate::sensed::motion::simulate::with_noise;
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
@@ -304,14 +304,6 @@ fn replicas(
     deviations: &[f64],
     starts: &[Start],
 ) -> Result<(Vec<Vec<Recording>>, bool), Stopped> {
-    let sensors = &problem.declared.sensors;
-    let farthest = |simulated: &[Vec<Recording>]| {
-        let beside = |logs: &Vec<Recording>| {
-            let others = logs[1..].iter().map(|other| apart(sensors, &logs[0], other));
-            others.fold(0.0, f64::max)
-        };
-        simulated.iter().map(beside).fold(0.0, f64::max)
-    };
     let with_others = |mut own: Vec<Vec<Recording>>, kept: usize, deviations: &[f64]| {
         own.iter_mut().for_each(|logs| logs.truncate(kept));
         let others =
@@ -321,12 +313,12 @@ fn replicas(
     };
     let two = problem.replicas.min(2);
     let mut simulated = problem.simulated(starts, two)?;
-    let gap = farthest(&simulated);
+    let gap = problem.apart(&simulated);
     let about = gap > SEEN && !deviations.is_empty();
     if gap > NEARLY_SEEN && !about {
         simulated = with_others(simulated, two, &[])?;
     }
-    let rattles = farthest(&simulated) > SEEN;
+    let rattles = problem.apart(&simulated) > SEEN;
     match rattles {
         true if deviations.is_empty() => {}
         true => simulated = with_others(simulated, 1, deviations)?,

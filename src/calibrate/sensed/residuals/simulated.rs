@@ -55,13 +55,16 @@ impl RigProblem {
                 let record = |machine: &Mechanism| self.record(machine, like, replica);
                 // Where joints rattle a hair at the start is another run soon, and what nobody knows of it no hair.
                 let open = self.replicas > 1 && replica > 0 && start.released.is_fitted();
-                Ok(match &about[replica as usize - replicas.start] {
-                    Some(drawn) => record(&self.let_go_like(start, drawn, run, replica)?)?,
-                    None if open => {
-                        record(&self.let_go_like(start, &start.effects, run, replica)?)?
-                    }
-                    None => record(&start.released.machine)?,
-                })
+                let as_let_go = || record(&start.released.machine);
+                let anywhere = |effects: &[Setting]| {
+                    record(&self.let_go_like(start, effects, run, replica)?).map_err(Stopped::from)
+                };
+                match &about[replica as usize - replicas.start] {
+                    // Values that the machine cannot have are none that it may have.
+                    Some(drawn) => anywhere(drawn).or_else(|_| Ok(as_let_go()?)),
+                    None if open => anywhere(&start.effects),
+                    None => Ok(as_let_go()?),
+                }
             })
             .collect::<Result<Vec<Recording>, Stopped>>()?;
         Ok(recorded.chunks(replicas.len()).map(<[Recording]>::to_vec).collect())
@@ -185,6 +188,20 @@ impl RigProblem {
         Ok(self.rattle(&logs))
     }
 
+    /// The same of the declared machine, which nothing holds, let go from anywhere that is as likely as where one simulation of it
+    /// was: two that part by a hair may fall alike, and others not.
+    ///
+    /// # Errors
+    /// A run that broke down.
+    pub fn look_for_rattle_nearby(&mut self) -> Result<f64, Stopped> {
+        self.replicas = REPLICAS;
+        let largest = self.apart(&self.simulated(&self.let_go(&[])?, REPLICAS)?);
+        if largest <= SEEN {
+            self.replicas = 1;
+        }
+        Ok(largest)
+    }
+
     /// The same by simulations of two replicas or more of each run.
     pub fn rattle(&mut self, logs: &[Vec<Recording>]) -> f64 {
         let largest = self.apart(logs);
@@ -194,11 +211,13 @@ impl RigProblem {
         largest
     }
 
-    /// Largest difference of the first two replicas of a run, in units of the sensors' noise.
-    fn apart(&self, logs: &[Vec<Recording>]) -> f64 {
+    /// Largest difference of a replica of a run from the first one, in units of the sensors' noise.
+    pub(super) fn apart(&self, logs: &[Vec<Recording>]) -> f64 {
         let sensors = &self.declared.sensors;
-        let apart = |pair: &Vec<Recording>| simulate::apart(sensors, &pair[0], &pair[1]);
-        logs.iter().map(apart).fold(0.0, f64::max)
+        let others = logs.iter().flat_map(|logs| {
+            logs[1..].iter().map(|other| simulate::apart(sensors, &logs[0], other))
+        });
+        others.fold(0.0, f64::max)
     }
 
     /// Whether joints lift off with these effects that rest as declared: what one simulation leaves is no measure of a model

@@ -186,6 +186,14 @@ fn searched(
 ) -> Result<Found, Stopped> {
     let mut found = asked.search(problem).run()?;
     let effects = found.best.fit.effects.clone();
+    let none = effects.is_empty() && !asked.search(problem).is_noise(&found.best);
+    if problem.replicas == 1 && none && problem.falls(&[])? && !problem.is_worn_out() {
+        *rattle = rattle.max(problem.look_for_rattle_nearby()?);
+        if problem.replicas > 1 {
+            (asked.tell)("simulating replicas: where it was let go decides how it falls");
+            return asked.search(problem).run();
+        }
+    }
     if problem.replicas == 1 && !effects.is_empty() {
         *rattle = rattle.max(problem.look_for_rattle(&effects)?);
         if problem.replicas > 1 {

@@ -90,9 +90,14 @@ impl<'a> Search<'a> {
         // What is no larger than noise as a whole may still be an effect that stands out of it.
         let mut lacks = !self.is_noise(&best) || !self.standing_out(&best).is_empty();
         while best.fit.effects.len() < EFFECTS && !self.is_spent() && lacks {
-            let NextRound { mut round, next, lifts_off } = self.beside_all(&hypotheses)?;
-            let won = next.first().is_some_and(|first| first.cost() < best.cost() - price(&best));
-            if !won {
+            let NextRound { mut round, mut next, lifts_off } = self.beside_all(&hypotheses)?;
+            let won = |next: &[Model]| {
+                next.first().is_some_and(|first| first.cost() < best.cost() - price(&best))
+            };
+            if !won(&next) {
+                next = self.over_all(&best, &mut round.tried)?;
+            }
+            if !won(&next) {
                 rounds.push(round);
                 break;
             }

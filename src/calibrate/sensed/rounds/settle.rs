@@ -112,17 +112,18 @@ impl Search<'_> {
         model: Model,
         far: Far,
     ) -> Result<Model, Stopped> {
-        let effects = &model.fit.effects;
-        let lost = || -> Result<bool, Stopped> {
-            let lengths = followed(self.problem, effects, &self.split.on)?;
-            Ok(lengths.last() != Some(&None))
-        };
-        if effects.is_empty() || model.baseline.rattles && lost()? {
+        if model.fit.effects.is_empty() || self.is_lost(&model)? {
             return Ok(model);
         }
         (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
         let refined = self.fitted(&model.fit.effects, far)?;
         Ok(refined.filter(|refined| refined.misfit < model.misfit).unwrap_or(model))
+    }
+
+    /// Whether a model's joints rattle, so that no simulation of it can be followed to the end.
+    fn is_lost(&self, model: &Model) -> Result<bool, Stopped> {
+        let followed = || followed(self.problem, &model.fit.effects, &self.split.on);
+        Ok(model.baseline.rattles && followed()?.last() != Some(&None))
     }
 
     /// A model with values from whole simulations, from these on; none where it cannot be. Simulations say how well they are
@@ -132,7 +133,12 @@ impl Search<'_> {
         effects: &[Setting],
         far: Far,
     ) -> Result<Option<Model>, Stopped> {
-        let mut model = self.at(&fitted(self.problem, effects, &self.split.on, far)?, &[])?;
+        let values = match fitted(self.problem, effects, &self.split.on, far) {
+            Ok(values) => values,
+            Err(_) if !effects.is_empty() => return Ok(None),
+            Err(stopped) => return Err(stopped),
+        };
+        let mut model = self.at(&values, &[])?;
         if let Some(model) = &mut model {
             model.fit.told = self.over_whole(model, |whole, effects| {
                 let told = whole.falls() || !model.baseline.rattles;
@@ -155,8 +161,8 @@ impl Search<'_> {
         Ok(said(&whole, &fit.effects))
     }
 
-    /// A model whose values whole simulations tell at the [closest](Whole::closest) ones; none where they do not tell any, or where
-    /// it leaves more than noise with these.
+    /// A model whose values whole simulations tell at the [closest](Whole::closest) ones; none where they do not tell any, or cannot
+    /// be followed, or where it leaves more than noise with these.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
@@ -164,7 +170,7 @@ impl Search<'_> {
         &self,
         model: &Model,
     ) -> Result<Option<Model>, Stopped> {
-        if model.fit.told.is_none() || self.problem.is_worn_out() {
+        if model.fit.told.is_none() || self.problem.is_worn_out() || self.is_lost(model)? {
             return Ok(None);
         }
         (self.tell)(&format!("fitting whole simulations with {}", names(&model.fit.effects)));
@@ -244,7 +250,8 @@ impl Search<'_> {
             return Ok(None);
         }
         (self.tell)(&format!("fitting predictions with {}", names(&model.fit.effects)));
-        let effects = predicted(self.problem, &model.fit.effects, &self.split.on)?;
+        let predicted = predicted(self.problem, &model.fit.effects, &self.split.on);
+        let Ok(effects) = predicted else { return Ok(None) };
         let foretold = self.at(&effects, &model.fit.deviations()).ok().flatten();
         Ok(foretold.filter(|foretold| self.is_noise(foretold)))
     }
@@ -273,7 +280,12 @@ impl Search<'_> {
         deviations: &[f64],
     ) -> Result<Option<Model>, Stopped> {
         let segments = [self.split.on.as_slice(), &self.split.hold].concat();
-        let baseline = Baseline::of(self.problem, effects, deviations, &segments)?;
+        let baseline = match Baseline::of(self.problem, effects, deviations, &segments) {
+            Ok(baseline) => baseline,
+            // What cannot be simulated is no model.
+            Err(_) if !effects.is_empty() => return Ok(None),
+            Err(stopped) => return Err(stopped),
+        };
         let on = self.target(&baseline, false);
         let Some(mut fit) = on.look(effects) else { return Ok(None) };
         fit.jacobian = on.jacobian(&fit);
@@ -341,5 +353,28 @@ mod tests {
         };
         let [all, few] = [f64::INFINITY, f64::NEG_INFINITY].map(simulations);
         assert!(all > few && all.is_multiple_of(few / 2), "{all} simulations, and {few}");
+    }
+
+    /// An oil film so stiff that no step is short enough for it is no model, and stops no search.
+    #[test]
+    fn what_cannot_be_simulated_is_no_model() {
+        let problem = RigProblem::planar("planar-1");
+        let split = problem.split();
+        let search = Search::new(&problem, &split, &[], &|_| {});
+        let joint = Target::Joints(vec!["A".to_owned()]);
+        let kind = named("lubricant-film").unwrap();
+        let film = |damping: f64| Setting::on(kind, joint.clone(), &[("damping_Ns_m", damping)]);
+        let stiff = [film(1e15)];
+        let starts = problem.let_go(&stiff).unwrap();
+        assert!(problem.simulated(&starts, 1).is_err(), "the test rests on it");
+        assert!(search.at(&stiff, &[]).unwrap().is_none());
+        assert!(search.fitted(&stiff, Far::All).unwrap().is_none());
+        // Nor is what some of its values may be.
+        let thin = [film(1.0)];
+        let starts = problem.let_go(&thin).unwrap();
+        let about = problem.simulated_about(&thin, &[1e15], &starts, 0..3).unwrap();
+        let exact = problem.simulated(&starts, 1).unwrap();
+        assert_eq!(about[0].len(), 3);
+        assert_eq!(about[0][0].get(0), exact[0][0].get(0));
     }
 }

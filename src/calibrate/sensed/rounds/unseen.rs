@@ -5,18 +5,14 @@ use super::round::Tried;
 use super::search::Search;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
-use crate::calibrate::sensed::thresholds::{MOMENT, NEAR};
-use crate::calibrate::sensed::values::linear::{remains, stepped_along};
+use crate::calibrate::sensed::thresholds::{GAIN, GAIN_PER_VALUE, MOMENT, NEAR, NOISE};
 use crate::calibrate::sensed::values::model::{Model, price};
+use crate::calibrate::sensed::values::stepped::{StepLength, Stepped, Variants, linear_step};
 use crate::calibrate::sensed::values::trajectory::{Far, followed, shorter};
 use crate::calibrate::sensed::values::whole::Whole;
-use crate::calibrate::values::least_squares::free;
-use crate::calibrate::values::least_squares::{Free, ResidualAt, derivative};
 use crate::effects::Setting;
-use crate::mechanism::Mechanism;
 use nalgebra::DVector;
 use rayon::prelude::*;
-use std::f64::consts::TAU;
 
 /// How far from its neutral value an effect that only simulations show is tried, in steps of its parameters: a
 /// joint's clearance of 0.05 mm more.
@@ -26,11 +22,13 @@ const AWAY: f64 = 10.0;
 /// in phase, and a machine has come up to speed.
 const SECONDS: f64 = 0.5;
 
-/// How often a step that keeps less than half of what it promises is halved: a long one of what hardly acts promises much.
-const HALVED: i32 = 3;
+/// Squares of what is missing in units of those by which replicas differ, from which simulations of all of a run tell effects
+/// apart: of an oval ring that changes as much as they do as many others, each drawn once, seemed to explain more (1160000001).
+const TOLD: f64 = 2.0;
 
-/// How often one is doubled as long as that takes more off: what gives way acts the less by a hair the stiffer it is as declared.
-const DOUBLED: i32 = 4;
+/// What is missing in units of noise that shows clearly: what takes up two thirds of it is told from what takes up all by a [gain
+/// that no chance brings](GAIN), three times over.
+const CLEARLY: f64 = 10.0 * GAIN[0];
 
 /// Candidates that are fitted to whole simulations, of those that take most off some way along one step of all their values.
 const FITTED: usize = 3;
@@ -72,11 +70,7 @@ impl Search<'_> {
             }
         }
         for (gain, there) in &found {
-            let Some(effect) = there.fit.effects.last().cloned() else { continue };
-            match tried.iter_mut().find(|tried| tried.effect.is(&effect)) {
-                Some(tried) => (tried.simulated, tried.gain) = (true, *gain),
-                None => tried.push(Tried::simulated(effect, *gain, model)),
-            }
+            heard(tried, model, there, *gain);
         }
         found.retain(|(gain, _)| *gain > price(model));
         found.sort_by(|(a, _), (b, _)| b.total_cmp(a));
@@ -96,7 +90,7 @@ impl Search<'_> {
 
     /// Candidates beside a model that explain most by one linear step, each simulated a hair from neutral for [`SECONDS`]; a
     /// machine that nothing holds and that does as it was let go adds up what acts on it over the whole run, or as much of it as
-    /// takes a [moment](MOMENT).
+    /// takes a [moment](MOMENT). None of a machine that something holds where these leave no more than noise.
     fn promising(&self, model: &Model) -> Result<Vec<Setting>, Stopped> {
         let own = &model.fit.effects;
         let falls = self.problem.falls(own)?;
@@ -122,9 +116,14 @@ impl Search<'_> {
         let baseline = || Baseline::of(self.problem, own, &[], &first);
         let whole = Whole::of(self.problem, own, &first, baseline)?;
         let Some(left) = whole.look(own) else { return Ok(Vec::new()) };
+        let is_noise = left.norm_squared() < NOISE[0] * left.len() as f64;
+        if !falls && is_noise {
+            return Ok(Vec::new());
+        }
         let Some(starts) = whole.by_start(own, &left) else { return Ok(Vec::new()) };
         (self.tell)("simulating every effect for a moment");
-        let mut kept = self.stepped(model, &whole, (&starts, &left));
+        let stepped = self.stepped(model, &whole, (&starts, &left), StepLength::Hair);
+        let mut kept: Vec<Setting> = stepped.into_iter().map(|(_, start)| start).collect();
         if follows && !self.problem.is_worn_out() {
             kept.extend(other_laws(
                 &whole,
@@ -137,158 +136,153 @@ impl Search<'_> {
         Ok(kept)
     }
 
+    /// Models with one more effect that shows later in a run, where what hits make of a hair is no measure of what acts. Candidates
+    /// are simulated as far from neutral as changes residuals by all that the model leaves of them above noise; those that
+    /// take up nearly as much as the best are models, with values fitted over all of the run where these leave more than noise.
+    /// The best one comes first.
+    pub(super) fn over_all(
+        &self,
+        model: &Model,
+        tried: &mut Vec<Tried>,
+    ) -> Result<Vec<Model>, Stopped> {
+        let own = &model.fit.effects;
+        if self.is_spent() || self.problem.falls(own)? {
+            return Ok(Vec::new());
+        }
+        let Some(ShowingPart { on, baseline, over }) = self.shown(model)? else {
+            return Ok(Vec::new());
+        };
+        (self.tell)("simulating more of a run with every effect");
+        let whole = Whole::of(self.problem, own, &on, || Ok(baseline))?;
+        let Some(left) = whole.look(own) else { return Ok(Vec::new()) };
+        let kept = self.stepped(model, &whole, (&[], &left), over);
+        if self.problem.is_worn_out() {
+            return Ok(Vec::new());
+        }
+        let most = kept.first().map_or(0.0, |(gain, _)| *gain);
+        let near = kept.into_iter().filter(|(gain, _)| *gain >= NEAR * most);
+        let near: Vec<Setting> = near.map(|(_, start)| start).collect();
+        // Values near the best ones: fits over the first half second would lead away from them.
+        let whole = Whole::of(self.problem, own, &self.split.on, || Ok(model.baseline.clone()))?;
+        let fitted = |start: &Setting| {
+            let effects = [own.as_slice(), std::slice::from_ref(start)].concat();
+            let mut there = self.at(&effects, &[]).ok().flatten()?;
+            there.fit.told = match self.is_noise(&there) {
+                true => whole.covariance(&effects),
+                false => {
+                    let (effects, covariance) = whole.closest(&effects)?;
+                    there = self.at(&effects, &[]).ok().flatten()?;
+                    Some(covariance)
+                }
+            };
+            Some(there)
+        };
+        let mut found: Vec<Model> = near.par_iter().filter_map(fitted).collect();
+        found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        for there in &found {
+            heard(tried, model, there, model.cost() - there.cost());
+        }
+        Ok(found)
+    }
+
+    /// As much of the runs that values are fitted to, from their beginning on, as shows [clearly](CLEARLY) what a model lacks, or all of
+    /// it; none where simulations do not tell it from what hits make of a hair.
+    fn shown(&self, model: &Model) -> Result<Option<ShowingPart>, Stopped> {
+        let (on, own) = (&self.split.on, &model.fit.effects);
+        let longest = on.iter().map(|segment| self.problem.runs[segment.run].recording.duration());
+        let longest = longest.fold(0.0, f64::max);
+        let mut seconds = 2.0 * SECONDS;
+        loop {
+            let whole = seconds >= longest;
+            let part = on.iter().map(|all| shorter(self.problem, all, (!whole).then_some(seconds)));
+            let part: Vec<Segment> = part.collect();
+            let baseline = match whole {
+                true => model.baseline.clone(),
+                false => Baseline::of(self.problem, own, &[], &part)?,
+            };
+            let seen = |replica| baseline.white_of(self.problem, own, &part, replica);
+            let others = (1..baseline.replicas).filter_map(seen);
+            let rough = seen(0).map_or(0.0, |first| {
+                others.map(|other| (other - &first).norm()).fold(0.0, f64::max)
+            });
+            let look = baseline.simulated_white(self.problem, own, &part)?;
+            let Some(left) = look else { return Ok(None) };
+            let missing = left.norm_squared() - left.len() as f64;
+            let told = missing > TOLD * rough.powi(2);
+            if told && (missing > CLEARLY || whole && missing > price(model)) {
+                let over = StepLength::Change { change: missing.sqrt(), rough };
+                return Ok(Some(ShowingPart { on: part, baseline, over }));
+            }
+            if whole {
+                return Ok(None);
+            }
+            seconds *= 2.0;
+        }
+    }
+
     /// Candidates beside a model that simulations some way along one linear step of their values say most for, beside what other
-    /// coordinates to let the machine go from make up for, by which `starts` are the derivatives of what is `left`.
+    /// coordinates to let the machine go from make up for, by which `starts` are the derivatives of what is `left`, and what they
+    /// take off it.
     fn stepped(
         &self,
         model: &Model,
         whole: &Whole,
         (starts, left): (&[DVector<f64>], &DVector<f64>),
-    ) -> Vec<Setting> {
+        over: StepLength,
+    ) -> Vec<(f64, Setting)> {
         let own = &model.fit.effects;
         let fresh = |candidate: &&Setting| {
             candidate.kind.scan.is_none() && !own.iter().any(|effect| effect.is(candidate))
         };
-        let candidates: Vec<&Setting> = self.candidates.iter().filter(fresh).collect();
-        let stepped = |candidate: &&Setting| {
-            let with =
-                |values: &[f64]| whole.look(&[own.as_slice(), &[candidate.with(values)]].concat());
-            linear_step(&with, (&self.problem.declared, candidate), starts, left)
-        };
-        let mut steps: Vec<Stepped> = candidates
-            .par_iter()
-            .filter_map(stepped)
-            .filter(|step| step.gain > price(model))
-            .collect();
-        steps.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        // Variants of one effect are one candidate.
-        let mut apart: Vec<Stepped> = Vec::new();
-        for step in steps {
-            if !apart.iter().any(|known| known.to.is(&step.to)) {
-                apart.push(step);
+        let mut all: Vec<Vec<&Setting>> = Vec::new();
+        for candidate in self.candidates.iter().filter(fresh) {
+            match all.iter_mut().find(|variants| variants[0].is(candidate)) {
+                Some(variants) => variants.push(candidate),
+                None => all.push(vec![candidate]),
             }
         }
-        let mut tried: Vec<(f64, Setting)> = apart
+        let look =
+            |effect: &Setting| whole.look(&[own.as_slice(), std::slice::from_ref(effect)].concat());
+        // Variants of one effect are one candidate.
+        let stepped = |variants: &Vec<&Setting>| {
+            let seen = Variants::new(&look);
+            let one = |candidate: &&Setting| {
+                let with = |values: &[f64]| seen.look(&candidate.with(values));
+                linear_step(&with, (&self.problem.declared, candidate), starts, left, over)
+            };
+            let paid =
+                |step: &Stepped| step.gain - GAIN_PER_VALUE * step.to.values().count() as f64;
+            variants.iter().filter_map(one).max_by(|a, b| paid(a).total_cmp(&paid(b)))
+        };
+        let steps: Vec<Stepped> = all.par_iter().filter_map(stepped).collect();
+        let mut tried: Vec<(f64, Setting)> = steps
             .par_iter()
+            .filter(|step| step.gain > price(model))
             .filter_map(|step| step.tried(whole, own, starts, left))
             .filter(|(gain, _)| *gain > price(model))
             .collect();
         tried.sort_by(|a, b| b.0.total_cmp(&a.0));
-        tried.into_iter().take(FITTED).map(|(_, start)| start).collect()
+        tried.truncate(FITTED);
+        tried
     }
 }
 
-/// A candidate and one linear step of its values.
-struct Stepped {
-    /// Drop of the sum of squares that it promises.
-    gain: f64,
-    /// Before it.
-    from: Setting,
-    /// After it.
-    to: Setting,
-}
-
-impl Stepped {
-    /// What a simulation some way along the step takes off the sum of squares of what is `left` beside `own` effects, less what
-    /// other coordinates to let the machine go from make up for, by which `starts` are the derivatives; and the candidate there.
-    /// None where such a machine cannot be.
-    fn tried(
-        &self,
-        whole: &Whole,
-        own: &[Setting],
-        starts: &[DVector<f64>],
-        left: &DVector<f64>,
-    ) -> Option<(f64, Setting)> {
-        let before = remains(starts, left)?;
-        let gain = |times: f64| {
-            let there = self.times(times);
-            let seen = whole.look(&[own, std::slice::from_ref(&there)].concat())?;
-            Some((before - remains(starts, &seen)?, there))
-        };
-        let kept = |tried: &(f64, Setting)| tried.0 > 0.5 * self.gain;
-        let first = gain(1.0);
-        let Some(mut best) = first.clone().filter(kept) else {
-            let shorter = (1..=HALVED).filter_map(|halved| gain(0.5f64.powi(halved)));
-            return first.into_iter().chain(shorter).max_by(|a, b| a.0.total_cmp(&b.0));
-        };
-        for doubled in 1..=DOUBLED {
-            let more = gain(2.0f64.powi(doubled)).filter(|more| more.0 > best.0);
-            let Some(more) = more else { break };
-            best = more;
-        }
-        Some(best)
-    }
-
-    /// The candidate so many times along the step, as far as its values make sense.
-    fn times(&self, times: f64) -> Setting {
-        let bounds = free(std::slice::from_ref(&self.from)).into_iter().map(|free| free.bounds);
-        let ends = self.from.values().zip(self.to.values()).zip(bounds);
-        let values =
-            ends.map(
-                |(((_, from), (_, to)), [low, high])| {
-                    if from == to { from } else { (from + times * (to - from)).clamp(low, high) }
-                },
-            );
-        self.from.with(&values.collect::<Vec<f64>>())
+/// Says of the last effect of a simulated model what it gains over one without it.
+fn heard(tried: &mut Vec<Tried>, model: &Model, there: &Model, gain: f64) {
+    let Some(effect) = there.fit.effects.last().cloned() else { return };
+    match tried.iter_mut().find(|tried| tried.effect.is(&effect)) {
+        Some(tried) => (tried.simulated, tried.gain) = (true, gain),
+        None => tried.push(Tried::simulated(effect, gain, model)),
     }
 }
 
-/// A linear step of a candidate's values, whose gain is the drop of the sum of squares of what is `left` beyond that by one of the
-/// coordinates from which a machine that nothing holds was let go, by which `starts` are the derivatives. None where such a
-/// machine cannot be.
-fn linear_step(
-    look: ResidualAt,
-    (mechanism, candidate): (&Mechanism, &Setting),
-    starts: &[DVector<f64>],
-    left: &DVector<f64>,
-) -> Option<Stepped> {
-    let names: Vec<&str> = candidate.values().map(|(name, _)| name).collect();
-    let neutral: Vec<f64> = candidate.values().map(|(_, value)| value).collect();
-    let free = free(std::slice::from_ref(candidate));
-    let alone = remains(starts, left)?;
-    let stepped = |columns: &[DVector<f64>], own: &[f64], free: &[Free]| {
-        let all = [starts, columns].concat();
-        let (least, change) = stepped_along(&all, starts.len(), left, own, free)?;
-        let gain = alone - least;
-        let change: Vec<f64> = change.iter().skip(starts.len()).copied().collect();
-        gain.is_finite().then_some((gain, change))
-    };
-    // Of one with a list of starts the first value is its size, which begins at nothing; the others are a start's.
-    let listed = candidate.starts(mechanism);
-    let grows = |start: &[f64]| {
-        let look = |size: &[f64]| look(&candidate.sized(start, size[0]));
-        derivative(&look, &free[..1], &neutral[..1], left, 0)
-    };
-    if let (true, [begin, next, ..]) = (turns_round(&names, &listed), listed.as_slice()) {
-        let across = &listed[listed.len() / 4];
-        let columns = [begin, across].map(|start| grows(start));
-        let [Some(first), Some(across)] = columns else { return None };
-        let wide = Free { bounds: [-f64::MAX, f64::MAX], ..free[0] };
-        let (gain, change) = stepped(&[first, across], &[0.0; 2], &[wide; 2])?;
-        let turn = change[1].atan2(change[0]).rem_euclid(TAU) / TAU;
-        let angle = begin[1] + turn * listed.len() as f64 * (next[1] - begin[1]);
-        let amplitude = neutral[0] + change[0].hypot(change[1]);
-        let [from, to] = [neutral[0], amplitude].map(|size| candidate.with(&[size, angle]));
-        return Some(Stepped { gain, from, to });
-    }
-    if let Some(start) = listed.first() {
-        let (gain, change) = stepped(&[grows(start)?], &neutral[..1], &free[..1])?;
-        let [from, to] = [neutral[0], neutral[0] + change[0]]
-            .map(|size| candidate.with(&candidate.sized(start, size)));
-        return Some(Stepped { gain, from, to });
-    }
-    let slope = |i: usize| derivative(look, &free, &neutral, left, i);
-    let columns: Vec<_> = (0..neutral.len()).map(slope).collect::<Option<_>>()?;
-    let (gain, change) = stepped(&columns, &neutral, &free)?;
-    let values: Vec<f64> = neutral.iter().zip(change).map(|(value, by)| value + by).collect();
-    Some(Stepped { gain, from: candidate.with(&neutral), to: candidate.with(&values) })
-}
-
-/// Whether a list of starts goes once round the period of an angle, their last value, in equal steps: what a quarter of them
-/// apart is then is the cosine and the sine of one wave, in which a response is linear.
-fn turns_round(names: &[&str], listed: &[Vec<f64>]) -> bool {
-    let angle = names.last().is_some_and(|name| name.ends_with("_rad"));
-    angle && names.len() == 2 && listed.len() >= 4 && listed.len().is_multiple_of(4)
+/// What shows what a model lacks.
+struct ShowingPart {
+    on: Vec<Segment>,
+    /// The model's there.
+    baseline: Baseline,
+    /// How far values of candidates are moved.
+    over: StepLength,
 }
 
 /// An effect some way from its values, for what only simulations show.
@@ -330,7 +324,7 @@ mod tests {
         let baseline = || Baseline::of(&problem, &[], &[], &first);
         let whole = Whole::of(&problem, &[], &first, baseline).unwrap();
         let left = whole.look(&[]).unwrap();
-        let start = search.stepped(&declared, &whole, (&[], &left)).remove(0);
+        let start = search.stepped(&declared, &whole, (&[], &left), StepLength::Hair).remove(0).1;
         let value = start.values().next().unwrap().1;
         assert!((0.6..1.5).contains(&(value / compliance)), "{value} of {compliance} rad/Nm");
     }

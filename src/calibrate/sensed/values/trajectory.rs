@@ -38,7 +38,12 @@ pub fn followed(
     if problem.replicas == 1 && !falls {
         return Ok(lengths);
     }
-    let logs = problem.simulated(&problem.let_go(effects)?, 2)?;
+    let logs = match problem.let_go(effects).and_then(|starts| problem.simulated(&starts, 2)) {
+        Ok(logs) => logs,
+        // One that breaks down beside another that does not is followed no further than any that rattles.
+        Err(_) if !effects.is_empty() => return Ok(lengths.into_iter().take(1).collect()),
+        Err(stopped) => return Err(stopped),
+    };
     let alike = |length: &Option<f64>| {
         on.iter().all(|segment| {
             let [first, other] = [0, 1].map(|k| {
