@@ -5,7 +5,9 @@ use super::round::Tried;
 use super::search::Search;
 use crate::calibrate::sensed::residuals::baseline::Baseline;
 use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
-use crate::calibrate::sensed::thresholds::{GAIN, GAIN_PER_VALUE, MOMENT, NEAR, NOISE};
+use crate::calibrate::sensed::thresholds::{
+    BEYOND_HITS, CLEARLY, GAIN_PER_VALUE, MOMENT, NEAR, NOISE,
+};
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::stepped::{StepLength, Stepped, Variants, linear_step};
 use crate::calibrate::sensed::values::trajectory::{Far, followed, shorter};
@@ -21,14 +23,6 @@ const AWAY: f64 = 10.0;
 /// First seconds of a run that simulations show effects on: a swing whose frequency is off by a few hundredths is still
 /// in phase, and a machine has come up to speed.
 const SECONDS: f64 = 0.5;
-
-/// Squares of what is missing in units of those by which replicas differ, from which simulations of all of a run tell effects
-/// apart: of an oval ring that changes as much as they do as many others, each drawn once, seemed to explain more (1160000001).
-const TOLD: f64 = 2.0;
-
-/// What is missing in units of noise that shows clearly: what takes up two thirds of it is told from what takes up all by a [gain
-/// that no chance brings](GAIN), three times over.
-const CLEARLY: f64 = 10.0 * GAIN[0];
 
 /// Candidates that are fitted to whole simulations, of those that take most off some way along one step of all their values.
 const FITTED: usize = 3;
@@ -208,7 +202,7 @@ impl Search<'_> {
             let look = baseline.simulated_white(self.problem, own, &part)?;
             let Some(left) = look else { return Ok(None) };
             let missing = left.norm_squared() - left.len() as f64;
-            let told = missing > TOLD * rough.powi(2);
+            let told = missing > BEYOND_HITS * rough.powi(2);
             if told && (missing > CLEARLY || whole && missing > price(model)) {
                 let over = StepLength::Change { change: missing.sqrt(), rough };
                 return Ok(Some(ShowingPart { on: part, baseline, over }));
