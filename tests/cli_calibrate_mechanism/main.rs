@@ -6,6 +6,7 @@ mod hidden;
 mod laws;
 mod refusals;
 mod rigs;
+mod shaper;
 
 /// A crank-rocker on a servo, with play in two joints, an encoder on either side and a torque.
 pub const FOUR_BAR: &str = r#"name = "four-bar"

@@ -68,7 +68,14 @@ fn within_chance(away: &[Vec<f64>], covariance: &DMatrix<f64>) -> Option<usize> 
     })
 }
 
-/// Values with [standard deviations](covariance). Values that nothing depends on are left out.
+/// Whether an interval says something of a value: some of what makes sense lies outside.
+fn says_something(fitted: &Fitted, [least, largest]: [f64; 2]) -> bool {
+    let [low, high] = fitted.ci95;
+    low > least || high < largest || fitted.std.is_nan()
+}
+
+/// Values with [standard deviations](covariance). Values that nothing depends on, and those of which recordings
+/// [say nothing](says_something), are left out.
 pub fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
     // What nothing depends on is not known at all.
     let deviation = |square: f64| if square > 0.0 { square.sqrt() } else { f64::NAN };
@@ -80,8 +87,11 @@ pub fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
             let fitted = effect.values().filter_map(|(name, value)| {
                 let std = deviations.as_ref().map(|all| all[next]);
                 next += 1;
-                let told = std.is_none_or(f64::is_finite);
-                told.then(|| (name, Fitted::new(value, std.unwrap_or(f64::NAN))))
+                let fitted = Fitted::new(value, std.unwrap_or(f64::NAN));
+                let bounds = effect.kind.parameter(name).map(|parameter| parameter.bounds);
+                let told = std.is_none_or(f64::is_finite)
+                    && bounds.is_none_or(|bounds| says_something(&fitted, bounds));
+                told.then_some((name, fitted))
             });
             (effect.clone(), fitted.collect())
         })
@@ -91,6 +101,14 @@ pub fn estimated(model: &Model, on: &[Segment]) -> Vec<Estimated> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What may be anything says nothing; one end that is known, or no deviation at all, does.
+    #[test]
+    fn an_interval_that_holds_all_that_makes_sense_says_nothing() {
+        let says = |value, std| says_something(&Fitted::new(value, std), [-3.0, 3.0]);
+        assert!(!says(0.07, 9e7));
+        assert!(says(0.07, 1.0) && says(2.9, 2.0) && says(0.07, f64::NAN));
+    }
 
     #[test]
     fn effects_within_two_standard_deviations_of_nothing_may_not_be_there() {
