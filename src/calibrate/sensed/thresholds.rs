@@ -91,14 +91,6 @@ pub const NEAR: f64 = 0.7;
 pub const HYPOTHESES: usize = 4;
 /// See [`HYPOTHESES`].
 pub const CLOSER: usize = 8;
-
-/// Starts that are fitted where a candidate's fit ends far off the machine: two of twelve led to the anchor that a spring at a
-/// lever has, and most others near it.
-pub const NEARER: usize = 12;
-
-/// Share by which what a fit leaves above noise may grow for values that do not end far off the machine: of a spring at a lever whose own
-/// simulation leaves noise, looks left 300 times that with anchors anywhere from 0.2 to 6 m away, the same to within a quarter of a per cent.
-pub const HARDLY: f64 = 0.01;
 /// See [`HYPOTHESES`].
 pub const SIMULATED: usize = 5;
 

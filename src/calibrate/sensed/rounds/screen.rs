@@ -2,11 +2,9 @@
 
 use super::round::Tried;
 use super::search::Search;
-use crate::calibrate::sensed::thresholds::{
-    AS_MUCH, CLOSER, GAIN, GAIN_PER_VALUE, HARDLY, JUDGED, NEARER,
-};
-use crate::calibrate::sensed::values::candidates::{KEPT, starts};
-use crate::calibrate::sensed::values::fit::{Fit, FitTarget};
+use crate::calibrate::sensed::thresholds::{AS_MUCH, CLOSER, GAIN, GAIN_PER_VALUE, JUDGED};
+use crate::calibrate::sensed::values::candidates::starts;
+use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::linear::{Derivatives, LinearStep, step as linear_step};
 use crate::calibrate::sensed::values::model::Model;
 use crate::calibrate::values::least_squares::derivative;
@@ -29,7 +27,7 @@ impl Search<'_> {
         });
         let draws = self.draws(model);
         let linear = |candidate: &&Setting| {
-            let found = starts(&on, &model.fit, candidate, KEPT).into_iter();
+            let found = starts(&on, &model.fit, candidate).into_iter();
             let found = found.filter_map(|start| {
                 // At neutral values it is the model as it is.
                 let base = start.values().eq(candidate.values()).then_some(&model.fit.white);
@@ -81,35 +79,14 @@ impl Search<'_> {
         near: &Tried,
         held: f64,
     ) -> Option<Tried> {
-        let fit = self.fitted_near(model, &near.effect)?;
+        let start = [model.fit.effects.as_slice(), std::slice::from_ref(&near.effect)].concat();
+        let fit = self.target(&model.baseline, false).fit(&start, 8)?;
         let gain = held - self.target(&model.baseline, true).look(&fit.effects)?.chi2;
         let shrunk = || model.baseline.shrunk(self.problem, &fit.effects, &self.split.hold);
         let gain = if gain > 0.0 { gain - shrunk()? } else { gain };
         let share = (gain / held).clamp(0.0, 1.0);
         let effect = fit.effects.last()?.clone();
         Some(Tried { effect, gain, share, fitted: true, ..near.clone() })
-    }
-
-    /// Values of a candidate beside those of a model by a few steps. Where they end [far off the machine](Search::imitates), those
-    /// that other starts lead to, if they do not and leave [hardly more](HARDLY): what small motions show of a spring they
-    /// show as well of one whose anchor is afar, and a look is off by more than the two differ.
-    fn fitted_near(&self, model: &Model, start: &Setting) -> Option<Fit> {
-        let target = self.target(&model.baseline, false);
-        let from = |start: &Setting| {
-            let start = [model.fit.effects.as_slice(), std::slice::from_ref(start)].concat();
-            target.fit(&start, 8)
-        };
-        let imitates = |fit: &Fit| fit.effects.last().is_some_and(|own| self.imitates(own));
-        let fit = from(start)?;
-        if !imitates(&fit) {
-            return Some(fit);
-        }
-        let count = fit.white.len() as f64;
-        let enough = count + (1.0 + HARDLY) * (fit.chi2 - count).max(0.0);
-        let others = starts(&target, &model.fit, start, NEARER);
-        let others = others.iter().filter_map(from).filter(|near| !imitates(near));
-        let near = others.min_by(|a, b| a.chi2.total_cmp(&b.chi2));
-        Some(near.filter(|near| near.chi2 < enough).unwrap_or(fit))
     }
 
     /// Draws of a model's noise, on the data that values are fitted on and on those that candidates are judged on.
