@@ -164,6 +164,27 @@ fn sensors_and_motions_that_mean_nothing() {
             &["[[drive]]"],
         ),
         wrong(
+            moved("point = \"rocker.B\"\nkind = \"line\"\nphi = 0.1\n"),
+            "phi = 0.1",
+            "motion.phi: is not used",
+            &["a point has no angle: take it out"],
+        ),
+        wrong(
+            moved("point = \"rocker.B\"\nkind = \"multisine\"\ncenter = [0.1, 0.2, 0.3]\n"),
+            "center = [0.1, 0.2, 0.3]",
+            "motion.center: turns, which is not used",
+            &["a point has no angle: write 0 for the third number"],
+        ),
+        wrong(
+            moved(
+                "point = \"rocker.B\"\nkind = \"multisine\"\nterms = [{ amplitude = [0.1, 0.0, 0.0] }, { \
+                 amplitude = [0.0, 0.0, 0.1] }]\n",
+            ),
+            "terms = [",
+            "motion.terms.1.amplitude: turns, which is not used",
+            &["a point has no angle"],
+        ),
+        wrong(
             moved("kind = \"table\"\nfile = \"none.csv\"\n"),
             "file = \"none.csv\"",
             "motion.file: none.csv: No such file",

@@ -94,6 +94,10 @@ pub const CLOSER: usize = 8;
 /// See [`HYPOTHESES`].
 pub const SIMULATED: usize = 5;
 
+/// Starts that are fitted where those that promise most lead far off the machine: two of twelve led to the anchor that a spring at a
+/// lever has, and most others near it.
+pub const NEARER: usize = 12;
+
 /// Candidates that are judged on data that they were not fitted to, of those that one linear step leaves least with on
 /// the data that they were: three times as many as are [followed closer](CLOSER).
 pub const JUDGED: usize = 24;

@@ -85,13 +85,32 @@ pub(super) fn described_motion(
         let help = "write joint = \"…\", body = \"…\" or point = \"body.point\"; or a table of joint coordinates";
         reader.complain("motion", "does not say what it moves".to_owned(), help.to_owned());
     }
-    if let Some(MotionTarget::Point(_)) = target
-        && table.contains_key("phi")
-    {
-        let help = "a point has no angle: take it out, or move a body";
-        reader.complain("motion.phi", "is not used".to_owned(), help.to_owned());
+    if let Some(MotionTarget::Point(_)) = target {
+        let mut unused = |at: &str, what: &str, instead: &str| {
+            let help = format!("a point has no angle: {instead}, or move a body");
+            reader.complain(&format!("motion.{at}"), what.to_owned(), help);
+        };
+        if table.contains_key("phi") {
+            unused("phi", "is not used", "take it out");
+        }
+        for at in turning(&table) {
+            unused(&at, "turns, which is not used", "write 0 for the third number");
+        }
     }
     (path(reader, table, Motion::Rest), target)
+}
+
+/// Poses of a motion that turn, by keys.
+fn turning(motion: &Table) -> Vec<String> {
+    let turns = |pose: Option<&Value>| {
+        let angle = pose.and_then(Value::as_array).and_then(|pose| pose.get(2));
+        angle.is_some_and(|angle| angle.as_float() != Some(0.0) && angle.as_integer() != Some(0))
+    };
+    let poses = ["center", "from", "to"].into_iter().filter(|key| turns(motion.get(*key)));
+    let terms = motion.get("terms").and_then(Value::as_array).into_iter().flatten().enumerate();
+    let terms = terms.filter(|(_, term)| turns(term.get("amplitude")));
+    let terms = terms.map(|(i, _)| format!("terms.{i}.amplitude"));
+    poses.map(str::to_owned).chain(terms).collect()
 }
 
 fn joint_motion(reader: &mut Reader<'_>, path: &str, mut table: Table) -> Option<JointMotion> {

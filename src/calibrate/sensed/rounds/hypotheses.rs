@@ -5,10 +5,15 @@ use super::search::Search;
 use super::words::names;
 use crate::calibrate::sensed::judged::left::Left;
 use crate::calibrate::sensed::residuals::problem::{Run, Stopped};
-use crate::calibrate::sensed::thresholds::{AFAR, GAIN, MOSTLY, NOISE, PROMISING, SIMULATED};
+use crate::calibrate::sensed::thresholds::{
+    AFAR, GAIN, MOSTLY, NEARER, NOISE, PROMISING, SIMULATED,
+};
+use crate::calibrate::sensed::values::candidates::starts;
+use crate::calibrate::sensed::values::fit::Fit;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::effects::{Parameter, ScanRange, Setting};
 use crate::mechanism::{Mechanism, Reads, Sensor};
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 impl Search<'_> {
@@ -42,7 +47,9 @@ impl Search<'_> {
             }
         }
         self.again(model, &mut found, &mut tried)?;
+        let nearer = self.nearer(model, &found, &mut tried)?;
         found.retain(|rival| !rival.fit.effects.last().is_some_and(|own| self.imitates(own)));
+        found.extend(nearer);
         let seen =
             |tried: &Tried| tried.simulated && tried.gain > price(model) && tried.share > MOSTLY;
         // What leaves little more than noise of what was much more.
@@ -58,6 +65,40 @@ impl Search<'_> {
         };
         found.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
         Ok(Beside { round: Round { tried, ..Round::default() }, found, sight })
+    }
+
+    /// The best of what was simulated, where that [imitates](Self::imitates) another effect, at values by which it does not and leaves
+    /// no more than noise: small motions show a spring as well with its anchor afar, and looks are off by more than the two differ.
+    fn nearer(
+        &self,
+        model: &Model,
+        found: &[Model],
+        tried: &mut [Tried],
+    ) -> Result<Option<Model>, Stopped> {
+        let best = found.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let Some(last) = best.and_then(|best| best.fit.effects.last()) else { return Ok(None) };
+        if !self.imitates(last) {
+            return Ok(None);
+        }
+        let target = self.target(&model.baseline, false);
+        let starts = starts(&target, &model.fit, last, NEARER);
+        let own = &model.fit.effects;
+        let fitted = |start: &Setting| {
+            target.fit(&[own.as_slice(), std::slice::from_ref(start)].concat(), 8)
+        };
+        let near = |fit: &Fit| fit.effects.last().is_some_and(|own| !self.imitates(own));
+        let fits = starts.par_iter().filter_map(fitted).filter(near);
+        let Some(fit) = fits.min_by(|a, b| a.chi2.total_cmp(&b.chi2)) else { return Ok(None) };
+        (self.tell)(&format!("simulating with {}", names(&fit.effects)));
+        let Some(settled) = self.settle(&fit.effects, 2)? else { return Ok(None) };
+        if !self.is_noise(&settled) {
+            return Ok(None);
+        }
+        if let Some(tried) = tried.iter_mut().find(|tried| tried.simulated && tried.effect.is(last))
+        {
+            tried.gain = model.cost() - settled.cost();
+        }
+        Ok(Some(settled))
     }
 
     /// Simulates rivals again at the values that their first simulations led to, those that promise nearly as much

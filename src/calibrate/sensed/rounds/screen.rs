@@ -3,7 +3,7 @@
 use super::round::Tried;
 use super::search::Search;
 use crate::calibrate::sensed::thresholds::{AS_MUCH, CLOSER, GAIN, GAIN_PER_VALUE, JUDGED};
-use crate::calibrate::sensed::values::candidates::starts;
+use crate::calibrate::sensed::values::candidates::{KEPT, starts};
 use crate::calibrate::sensed::values::fit::FitTarget;
 use crate::calibrate::sensed::values::linear::{Derivatives, LinearStep, step as linear_step};
 use crate::calibrate::sensed::values::model::Model;
@@ -27,7 +27,7 @@ impl Search<'_> {
         });
         let draws = self.draws(model);
         let linear = |candidate: &&Setting| {
-            let found = starts(&on, &model.fit, candidate).into_iter();
+            let found = starts(&on, &model.fit, candidate, KEPT).into_iter();
             let found = found.filter_map(|start| {
                 // At neutral values it is the model as it is.
                 let base = start.values().eq(candidate.values()).then_some(&model.fit.white);

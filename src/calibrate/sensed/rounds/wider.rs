@@ -4,7 +4,7 @@ use super::round::{Round, Tried};
 use super::search::Search;
 use super::words::names;
 use crate::calibrate::sensed::residuals::problem::{Segment, Stopped};
-use crate::calibrate::sensed::values::candidates::starts;
+use crate::calibrate::sensed::values::candidates::{KEPT, starts};
 use crate::calibrate::sensed::values::model::Model;
 use crate::calibrate::sensed::values::trajectory::Far;
 
@@ -53,7 +53,7 @@ impl Search<'_> {
             let mut others = effects.clone();
             others.remove(i);
             let Some(without) = target.look(&others) else { continue };
-            for start in starts(&target, &without, candidate) {
+            for start in starts(&target, &without, candidate, KEPT) {
                 let effects = [others.as_slice(), &[start]].concat();
                 (self.tell)(&format!("fitting whole simulations with {}", names(&effects)));
                 if let Some(wider) = self.fitted(&effects, Far::All).ok().flatten()

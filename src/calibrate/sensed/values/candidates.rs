@@ -24,13 +24,13 @@ pub fn candidates(mechanism: &Mechanism, without: &[&str]) -> Vec<Setting> {
 const HALVED: usize = 7;
 
 /// Starts of a candidate that are fitted.
-const KEPT: usize = 2;
+pub(in crate::calibrate::sensed) const KEPT: usize = 2;
 
 /// Periods that are looked at, at most.
 const TRIED: usize = 12;
 
-/// A candidate beside the effects of a model, at its most promising values.
-pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting) -> Vec<Setting> {
+/// A candidate beside the effects of a model, at its most promising values: of a list of starts the best `kept`.
+pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting, kept: usize) -> Vec<Setting> {
     let change = |values: &[f64]| target.response(&candidate.with(values));
     if let Some(scan) = candidate.kind.scan {
         return scanned(target, model, candidate, scan, &change);
@@ -64,7 +64,7 @@ pub fn starts(target: &FitTarget, model: &Fit, candidate: &Setting) -> Vec<Setti
         }
         candidate.with(&values)
     };
-    best(scored.collect()).into_iter().map(possible).collect()
+    best(scored.collect(), kept).into_iter().map(possible).collect()
 }
 
 /// What values change of a residual, those at `places` brought nearer to a `neutral` value until that is not
@@ -89,9 +89,9 @@ pub(in crate::calibrate::sensed) fn within(
 }
 
 /// The starts that promise most.
-fn best(mut scored: Vec<(f64, Setting)>) -> Vec<Setting> {
+fn best(mut scored: Vec<(f64, Setting)>, kept: usize) -> Vec<Setting> {
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));
-    scored.truncate(KEPT);
+    scored.truncate(kept);
     scored.into_iter().map(|(_, start)| start).collect()
 }
 
@@ -150,7 +150,7 @@ fn scanned(
         }
         Some((removed, candidate.with(&values)))
     });
-    best(scored.collect())
+    best(scored.collect(), KEPT)
 }
 
 /// Amplitudes that repeat with one phase, fitted to a residual by least squares: `columns` hold what a unit of each changes
@@ -197,7 +197,7 @@ mod tests {
         let target = FitTarget { problem: &problem, baseline: &baseline, on: &on };
         let model = target.look(&[]).unwrap();
         let candidate = hidden.with(&[0.0, 0.0, 0.1]);
-        let found = starts(&target, &model, &candidate).remove(0);
+        let found = starts(&target, &model, &candidate, KEPT).remove(0);
         let value = |name: &str| found.value(name).unwrap();
         assert!((1e-3..4e-3).contains(&value("coulomb_N")), "{found:?}");
         assert!((value("static_N") / value("coulomb_N") - 2.0).abs() < 1e-9, "{found:?}");
