@@ -32,7 +32,7 @@ pub use equations::closing::ClosingLength;
 pub use equations::freedoms::{Freedoms, Hold};
 pub use equations::inverse::{Posed, Taken};
 pub use equations::loops::Loop;
-pub use equations::tracker::{Closing, Imposed, Stuck, Tracker};
+pub use equations::tracker::{Closing, Imposed, Place, Stuck, Tracker};
 pub use evaluation::Evaluation;
 pub use legs::TelescopicLegs;
 pub use parts::body::{Attachment, Body, BodyState, turn};

@@ -2,6 +2,7 @@
 
 #[path = "../cli_common/mod.rs"]
 mod cli_common;
+mod crane;
 mod hidden;
 mod laws;
 mod refusals;

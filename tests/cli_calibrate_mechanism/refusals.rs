@@ -56,7 +56,7 @@ fn recordings_that_do_not_say_how_a_machine_stands_are_refused() {
     place.write("bad.csv", &format!("t,q_O\n{rows}"));
     place.refused(
         &format!("calibrate --rig {rig} --data bad.csv --quiet"),
-        &["do not say how the machine stands", "fewer joints than it has freedoms"],
+        &["do not say how the machine stands", "are measured than it has freedoms"],
     );
 }
 

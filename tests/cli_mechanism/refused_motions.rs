@@ -164,6 +164,18 @@ fn sensors_and_motions_that_mean_nothing() {
             &["[[drive]]"],
         ),
         wrong(
+            moved("kind = \"table\"\nfile = \"none.csv\"\n"),
+            "file = \"none.csv\"",
+            "motion.file: none.csv: No such file",
+            &["t,q_O"],
+        ),
+    ]);
+}
+
+#[test]
+fn a_point_that_should_turn() {
+    refuse(vec![
+        wrong(
             moved("point = \"rocker.B\"\nkind = \"line\"\nphi = 0.1\n"),
             "phi = 0.1",
             "motion.phi: is not used",
@@ -183,12 +195,6 @@ fn sensors_and_motions_that_mean_nothing() {
             "terms = [",
             "motion.terms.1.amplitude: turns, which is not used",
             &["a point has no angle"],
-        ),
-        wrong(
-            moved("kind = \"table\"\nfile = \"none.csv\"\n"),
-            "file = \"none.csv\"",
-            "motion.file: none.csv: No such file",
-            &["t,q_O"],
         ),
     ]);
 }

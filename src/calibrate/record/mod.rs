@@ -22,6 +22,7 @@ use crate::report::{Picture, Style};
 use crate::results::{Folder, Forecast, PAGE_FILE, RunError};
 use crate::scenario::{self, Law, Scenario};
 use crate::simulate::{Machine, Provenance};
+use run::timed;
 pub(super) use run::{RecordingSetup, like};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -213,17 +214,18 @@ impl PreparedRecord {
     pub fn forecast(&self) -> Result<Forecast, CalibrateError> {
         let PreparedRecord { truth, rows, likes, .. } = self;
         let judged = rows.duration.min(JUDGED);
-        let started = Clock::now();
         let first = first(truth, &likes[0])?;
-        clean((truth, &[]), &first, &likes[0].first(judged), control(truth), 1)
+        let [let_go, recorded] = timed(truth, &first, &likes[0].first(judged), control(truth))
             .map_err(CalibrateError::from)?;
         let models = if truth.effects.is_empty() { 1 } else { 2 };
         let simulations = RUNS.len() * (1 + models * PREDICTING);
         let at_once = rayon::current_num_threads().min(PREDICTING);
-        let each = started.elapsed().as_secs_f64() * rows.duration / judged;
         let columns = crate::model::parts_of(truth)?.sensors.len() + 1;
         let numbers = rows.rate * rows.duration * (columns * RUNS.len()) as f64;
-        let seconds = Some(each * simulations as f64 / at_once as f64);
+        // A machine is let go once for all that is recorded from there, which takes as long however long that is.
+        let let_go = let_go * (RUNS.len() * (1 + models)) as f64;
+        let recorded = recorded * rows.duration / judged * simulations as f64 / at_once as f64;
+        let seconds = Some(let_go + recorded);
         Ok(Forecast { seconds, bytes: BYTES * numbers })
     }
 }

@@ -7,9 +7,10 @@ use crate::calibrate::sensed::released::released;
 use crate::calibrate::sensed::simulate::record;
 use crate::effects::Setting;
 use crate::engine::StepControl;
-use crate::mechanism::{Command, Mechanism, Reads};
+use crate::mechanism::{BodyState, Command, Mechanism, Reads};
 use crate::scenario::Scenario;
 use rayon::prelude::*;
+use std::time::Instant;
 
 /// The replica that is recorded, of those that calibrations do not have: its tolerance is a fifth of theirs.
 const RECORDED: u64 = 16;
@@ -31,6 +32,23 @@ pub fn clean(
         .into_par_iter()
         .map(|replica| Ok(record(&machine, control, like, RECORDED + replica)?))
         .collect()
+}
+
+/// Times in s that it takes to let such a machine go, and to record `like` from there, once.
+///
+/// # Errors
+/// As of [`clean`].
+pub fn timed(
+    rig: &Scenario,
+    first: &Recording,
+    like: &Recording,
+    control: StepControl,
+) -> Result<[f64; 2], Stopped> {
+    let started = Instant::now();
+    let machine = released(rig, &[], first, control)?.machine;
+    let let_go = started.elapsed().as_secs_f64();
+    record(&machine, control, like, RECORDED)?;
+    Ok([let_go, started.elapsed().as_secs_f64() - let_go])
 }
 
 /// How a recording is made.
@@ -62,13 +80,18 @@ pub fn like(mechanism: &Mechanism, made: RecordingSetup) -> Recording {
             told.push((command.position * 1e9).round() * 1e-9);
         }
     }
+    let share = if falls { pace } else { 1.0 };
+    let states: Vec<BodyState> = mechanism.bodies.iter().map(|body| body.start).collect();
+    let stands = |reads: Reads| match reads {
+        Reads::Position(joint) => share * mechanism.start_coordinate(joint),
+        Reads::Angle(Some(body), angle) => share * (mechanism.bodies[body].angle + angle),
+        Reads::X(mark) => mark.attachment(mechanism).centre(&states).x,
+        Reads::Y(mark) => mark.attachment(mechanism).centre(&states).y,
+        _ => 0.0,
+    };
     let column = |reads: Reads| match reads {
         Reads::Command(drive) => told[drive].clone(),
-        Reads::Position(joint) => {
-            let share = if falls { pace } else { 1.0 };
-            vec![share * mechanism.start_coordinate(joint); samples]
-        }
-        _ => vec![0.0; samples],
+        reads => vec![stands(reads); samples],
     };
     let columns = mechanism.sensors.iter().map(|sensor| Some(column(sensor.reads)));
     Recording::of(name, interval, samples, columns.collect())

@@ -2,6 +2,8 @@
 //! the same twice.
 
 use super::assembly::matrix;
+use super::rows::Row;
+use super::tracker::Place;
 use crate::mechanism::{Attachment, Bearing, BodyState, Command, Drive, JointIndex, Mechanism};
 use nalgebra::{DMatrix, DVector, UnitComplex, Vector2, Vector3};
 
@@ -119,6 +121,27 @@ impl Mechanism {
             overdriven,
             loose: loose(&all, bodies),
         }
+    }
+
+    /// Which of these places, one after another, say something of how the mechanism, without clearance, stands at the given
+    /// states that drives' coordinates and those before do not. None where all of them together leave it a freedom.
+    pub fn determining(&self, states: &[BodyState], places: &[Place]) -> Option<Vec<usize>> {
+        let commands = vec![Command::default(); self.actuators.len()];
+        let mut rows = self.closure(states, &commands).rows;
+        let rank = |rows: &[Row]| dependent_rows(&self.scaled(matrix(rows, states.len()))).0;
+        let (mut known, mut chosen) = (rank(&rows), Vec::new());
+        for (i, place) in places.iter().enumerate() {
+            let Some((row, _)) = place.row(states, 0.0) else { continue };
+            rows.push(row);
+            let with = rank(&rows);
+            if with > known {
+                chosen.push(i);
+                known = with;
+            } else {
+                rows.pop();
+            }
+        }
+        (known == 3 * states.len()).then_some(chosen)
     }
 
     /// Columns of angles as arcs at the distance of the mechanism's size, so that all are in m.

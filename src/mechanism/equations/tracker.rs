@@ -39,6 +39,43 @@ pub enum Imposed {
         /// Where they go: x, y and, of axes, φ.
         motion: Arc<dyn Motion>,
     },
+    /// The same commands, each of a place of the machine: coordinates of the drives follow.
+    Places(Vec<Place>),
+}
+
+/// A number that says where a part of a mechanism is.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    /// The coordinate of a drive, by its index, in m or rad.
+    Drive(usize),
+    /// World coordinate x of a point, m.
+    X(Attachment),
+    /// World coordinate y of a point, m.
+    Y(Attachment),
+    /// Angle of the axes of the body that carries a point, turned by a constant, rad.
+    Angle(Attachment, f64),
+}
+
+impl Place {
+    /// By how much a place that no drive has is off `asked`, in m or rad, and the row by which it moves.
+    pub(super) fn row(&self, states: &[BodyState], asked: f64) -> Option<(Row, f64)> {
+        let along = |point: &Attachment, e: Vector2<f64>| {
+            let frame = point.frame(states);
+            let jacobian = Vector3::new(e.x, e.y, frame.arm.perp(&e));
+            let bias = (frame.arm * -(frame.spin * frame.spin)).dot(&e);
+            (on(point.body, jacobian, bias), frame.centre.dot(&e) - asked)
+        };
+        match self {
+            Place::Drive(_) => None,
+            Place::X(point) => Some(along(point, Vector2::x())),
+            Place::Y(point) => Some(along(point, Vector2::y())),
+            Place::Angle(point, angle) => {
+                let rotation = point.rotation(states) * UnitComplex::new(*angle);
+                let off = UnitComplex::new(asked).rotation_to(&rotation).angle();
+                Some((on(point.body, Vector3::z(), 0.0), off))
+            }
+        }
+    }
 }
 
 /// What closes joints from one instant to the next.
@@ -260,7 +297,7 @@ impl Tracker {
         (&self.rows, &self.factors)
     }
 
-    /// Whether drives impose the motion.
+    /// Whether drives' coordinates impose the motion.
     pub(super) fn by_drives(&self) -> bool {
         matches!(self.imposed, Imposed::Drives)
     }
@@ -269,44 +306,53 @@ impl Tracker {
         let mut commands = vec![Command::default(); self.mechanism.actuators.len()];
         self.mechanism.true_commands(t, &mut commands);
         let closure = self.mechanism.closure(states, &commands);
-        let by_drives = matches!(self.imposed, Imposed::Drives);
-        // A target has three rows at most.
-        let count = closure.rows.len() + 3;
+        let imposed = self.asked(t, &commands);
+        let count = closure.rows.len() + imposed.len();
         let mut rows = Vec::with_capacity(count);
         let [mut gaps, mut rates, mut accelerations] = [(); 3].map(|()| Vec::with_capacity(count));
-        for ((row, gap), drive) in closure.rows.iter().zip(&closure.gaps).zip(&closure.driven) {
-            if drive.is_some() && !by_drives {
-                continue;
+        let mut push = |row: Row, gap: f64, asked: Command| {
+            gaps.push(gap);
+            rates.push(asked.rate);
+            accelerations.push(asked.acceleration - row.bias);
+            rows.push(row);
+        };
+        let all = || closure.rows.iter().zip(&closure.gaps).zip(&closure.driven);
+        for ((row, gap), drive) in all() {
+            if drive.is_none() || self.by_drives() {
+                push(*row, *gap, drive.map(|drive| commands[drive]).unwrap_or_default());
             }
-            let command = drive.map(|drive| commands[drive]).unwrap_or_default();
-            rows.push(*row);
-            gaps.push(*gap);
-            rates.push(command.rate);
-            accelerations.push(command.acceleration - row.bias);
         }
-        if let Imposed::Target { point, angle, motion } = &self.imposed {
-            let asked = motion.at(self.mechanism.epoch + t);
-            let frame = point.frame(states);
-            let off = frame.centre - asked.pose.xy();
-            let centripetal = frame.arm * -(frame.spin * frame.spin);
-            for (k, e) in [Vector2::x(), Vector2::y()].into_iter().enumerate() {
-                let jacobian = Vector3::new(e.x, e.y, frame.arm.perp(&e));
-                let bias = centripetal.dot(&e);
-                rows.push(on(point.body, jacobian, bias));
-                gaps.push(off[k]);
-                rates.push(asked.rate[k]);
-                accelerations.push(asked.acceleration[k] - bias);
-            }
-            if let Some(angle) = angle {
-                let rotation = point.rotation(states) * UnitComplex::new(*angle);
-                rows.push(on(point.body, Vector3::z(), 0.0));
-                gaps.push(UnitComplex::new(asked.pose.z).rotation_to(&rotation).angle());
-                rates.push(asked.rate.z);
-                accelerations.push(asked.acceleration.z);
+        for (place, asked) in imposed {
+            if let Place::Drive(own) = place {
+                let own = all().filter(|(_, drive)| **drive == Some(own));
+                own.for_each(|((row, gap), _)| push(*row, *gap, asked));
+            } else if let Some((row, gap)) = place.row(states, asked.position) {
+                push(row, gap, asked);
             }
         }
         let [gaps, rates, accelerations] = [gaps, rates, accelerations].map(DVector::from_vec);
         System { rows, gaps, rates, accelerations }
+    }
+
+    /// What is imposed at a time in s beside drives' own coordinates, or in place of them.
+    fn asked(&self, t: f64, commands: &[Command]) -> Vec<(Place, Command)> {
+        match &self.imposed {
+            Imposed::Drives => Vec::new(),
+            Imposed::Places(places) => {
+                places.iter().copied().zip(commands.iter().copied()).collect()
+            }
+            Imposed::Target { point, angle, motion } => {
+                let at = motion.at(self.mechanism.epoch + t);
+                let angle = angle.map(|angle| Place::Angle(*point, angle));
+                let places = [Some(Place::X(*point)), Some(Place::Y(*point)), angle];
+                let asked = |(k, place): (usize, Option<Place>)| {
+                    let [position, rate, acceleration] =
+                        [at.pose[k], at.rate[k], at.acceleration[k]];
+                    place.map(|place| (place, Command { position, rate, acceleration }))
+                };
+                places.into_iter().enumerate().filter_map(asked).collect()
+            }
+        }
     }
 }
 

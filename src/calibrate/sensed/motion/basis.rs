@@ -2,14 +2,15 @@
 //!
 //! A body whose place and angle a tracker shows, and that leaves the machine no other freedom, is known better
 //! than the joints' encoders know it: between them lies the play of joints, and a body that floats in it
-//! accelerates otherwise than any encoder does. Without one the coordinates of joints say it, and the commands of drives whose
-//! joints nobody measures.
+//! accelerates otherwise than any encoder does. Without one [sources] of
+//! joints' coordinates say it.
 
-use super::shown::{MeasuredCommands, MeasuredPose, commanded, coordinate, pose};
+use super::shown::{MeasuredCommands, MeasuredPose, commanded, coordinate, placed, pose};
+use super::sources::{CoordinateSource, freedoms, place, sources, starts};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
 use crate::mechanism::{
-    Actuator, Bearing, BodyState, Drive, Idle, Imposed, JointIndex, Mark, Mechanism, Reads, Tracker,
+    Actuator, Bearing, Drive, Idle, Imposed, JointIndex, Mark, Mechanism, Place, Reads, Tracker,
 };
 use nalgebra::UnitComplex;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -34,46 +35,13 @@ enum Shown {
     Pose([usize; 3]),
 }
 
-/// What says a coordinate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum CoordinateSource {
-    /// A sensor of it.
-    Sensor(usize),
-    /// The command of a drive whose joint nobody measures, less what the drive yields under its effort.
-    Command(usize),
-}
-
 impl Basis {
     /// What of a recording determines the machine; none where nothing does.
     pub fn of(mechanism: &Mechanism, recording: &Recording) -> Option<Self> {
-        Self::tracked(mechanism, recording).or_else(|| Self::measured(mechanism, recording))
-    }
-
-    /// Sensors of joints, and commands of drives whose joints have none: those of driven joints first, then others, each
-    /// if it adds something.
-    fn measured(mechanism: &Mechanism, recording: &Recording) -> Option<Self> {
-        let read = |reads: &dyn Fn(&Reads) -> bool| {
-            let mut sensors = mechanism.sensors.iter().enumerate();
-            sensors.find(|(i, sensor)| recording.get(*i).is_some() && reads(&sensor.reads))
-        };
-        let drives = mechanism.actuators.iter().enumerate().filter_map(|(index, drive)| {
-            let holds = matches!(drive.drive, Drive::Servo { .. } | Drive::Prescribed);
-            let told = read(&|reads| matches!(reads, Reads::Command(of) if *of == index));
-            let seen =
-                read(&|reads| matches!(reads, Reads::Position(joint) if *joint == drive.joint));
-            (holds && told.is_some() && seen.is_none())
-                .then_some((drive.joint, CoordinateSource::Command(index)))
-        });
-        let sensors = mechanism.sensors.iter().enumerate();
-        let joints = sensors.filter_map(|(i, sensor)| match sensor.reads {
-            Reads::Position(joint) => {
-                recording.get(i).map(|_| (joint, CoordinateSource::Sensor(i)))
-            }
-            _ => None,
-        });
-        let found = independent(mechanism, drives.chain(joints).collect())?;
-        let (joints, sources) = found.into_iter().unzip();
-        Some(Self { joints, shown: Shown::Coordinates(sources), lean: 1.0 })
+        Self::tracked(mechanism, recording).or_else(|| {
+            let (joints, sources) = sources(mechanism, recording)?.into_iter().unzip();
+            Some(Self { joints, shown: Shown::Coordinates(sources), lean: 1.0 })
+        })
     }
 
     /// A tracked body that determines a machine whose joints have play.
@@ -82,9 +50,7 @@ impl Basis {
         if !mechanism.revolutes.iter().any(|joint| play(&joint.bearing)) {
             return None;
         }
-        let joints = mechanism.joints().map(|(_, joint)| (joint, ())).collect();
-        let joints: Vec<JointIndex> =
-            independent(mechanism, joints)?.into_iter().map(|(joint, ())| joint).collect();
+        let joints = freedoms(mechanism)?;
         let read = |reads: &dyn Fn(&Reads) -> bool| {
             let mut sensors = mechanism.sensors.iter().enumerate();
             let found = |(i, sensor): &(usize, &crate::mechanism::Sensor)| {
@@ -135,7 +101,10 @@ impl Basis {
     /// Whether the motion is taken from a sensor.
     pub fn needs(&self, sensor: usize) -> bool {
         match &self.shown {
-            Shown::Coordinates(sources) => sources.contains(&CoordinateSource::Sensor(sensor)),
+            Shown::Coordinates(sources) => sources.iter().any(|source| match source {
+                CoordinateSource::Sensor(own) | CoordinateSource::Place(own) => *own == sensor,
+                CoordinateSource::Command(_) => false,
+            }),
             Shown::Pose(sensors) => sensors.contains(&sensor),
         }
     }
@@ -183,12 +152,14 @@ impl Basis {
                             coordinate(view, mechanism, *joint, *sensor)
                         }
                         CoordinateSource::Command(drive) => commanded(view, mechanism, *drive),
+                        CoordinateSource::Place(sensor) => placed(view, mechanism, *sensor),
                     })
                     .collect();
                 measured.iter().for_each(|columns_of| hash(columns_of, &mut columns));
                 ideal.commands =
                     Arc::new(MeasuredCommands { interval: view.interval, columns: measured });
-                Moved { ideal, imposed: Imposed::Drives, columns: columns.finish() }
+                let imposed = of_places(&ideal, sources);
+                Moved { ideal, imposed, columns: columns.finish() }
             }
         }
     }
@@ -214,8 +185,12 @@ impl Moved {
         let starts = starts(&self.ideal);
         let joints: Vec<_> = joints.collect();
         format!("{joints:?} {prismatics:?} {actuators:?} {starts:?}").hash(&mut hasher);
-        if let Imposed::Target { point, angle, .. } = &self.imposed {
-            format!("{point:?} {angle:?}").hash(&mut hasher);
+        match &self.imposed {
+            Imposed::Drives => {}
+            Imposed::Target { point, angle, .. } => {
+                format!("{point:?} {angle:?}").hash(&mut hasher);
+            }
+            Imposed::Places(places) => format!("{places:?}").hash(&mut hasher),
         }
         self.columns.hash(&mut hasher);
         hasher.finish()
@@ -227,31 +202,20 @@ fn hash([position, ..]: &[Vec<f64>; 3], hasher: &mut DefaultHasher) {
     position.iter().for_each(|value| value.to_bits().hash(hasher));
 }
 
-fn starts(mechanism: &Mechanism) -> Vec<BodyState> {
-    mechanism.bodies.iter().map(|body| body.start).collect()
-}
-
-/// As many of these joints, driven ones first, as determine the machine; none where they do not.
-fn independent<T>(
-    mechanism: &Mechanism,
-    mut from: Vec<(JointIndex, T)>,
-) -> Option<Vec<(JointIndex, T)>> {
-    let states = starts(mechanism);
-    let mut ideal = mechanism.without_clearance();
-    let driven = |joint| mechanism.actuators.iter().any(|drive| drive.joint == joint);
-    from.sort_by_key(|(joint, _)| !driven(*joint));
-    ideal.actuators.clear();
-    let mut found = Vec::new();
-    for (joint, of) in from {
-        ideal.actuators.push(Actuator::new("", joint, Drive::Prescribed));
-        if ideal.freedoms(&states).overdriven.is_empty() {
-            found.push((joint, of));
-        } else {
-            ideal.actuators.pop();
+/// What the sources of drives' coordinates, in their order, impose on a machine's geometry.
+fn of_places(geometry: &Mechanism, sources: &[CoordinateSource]) -> Imposed {
+    let places = sources.iter().enumerate().map(|(drive, source)| {
+        match source {
+            CoordinateSource::Place(sensor) => place(geometry, *sensor),
+            CoordinateSource::Sensor(_) | CoordinateSource::Command(_) => None,
         }
+        .unwrap_or(Place::Drive(drive))
+    });
+    let places: Vec<Place> = places.collect();
+    match places.iter().all(|place| matches!(place, Place::Drive(_))) {
+        true => Imposed::Drives,
+        false => Imposed::Places(places),
     }
-    let freedoms = ideal.freedoms(&states);
-    (freedoms.driven == freedoms.free).then_some(found)
 }
 
 fn imposed(mechanism: &Mechanism, point: Mark, angle: f64, motion: MeasuredPose) -> Imposed {
@@ -358,6 +322,32 @@ mod tests {
                 "without {without:?}: {given} of {}",
                 compliance * force
             );
+        }
+    }
+
+    /// A load swings at the tip of a crane's boom, whose one freedom a cylinder drives.
+    #[test]
+    fn an_angle_stands_in_for_a_joint_that_nobody_measures() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli_calibrate_mechanism");
+        let rig = Scenario::load(Some(&folder.join("crane.toml")), &[]).unwrap();
+        let sensors = crate::model::parts_of(&rig).unwrap().sensors;
+        let stands = [("q_cmd", 0.2865), ("q", 0.2865), ("F", 0.0), ("th", 0.6), ("al", -1.57)];
+        for (columns, expected) in [
+            ("q_cmd q th F", None),
+            ("q_cmd q th al", Some("q al at P T")),
+            ("q_cmd al", Some("al at P T")),
+        ] {
+            let recorded = |name: &str| columns.split(' ').any(|column| column == name);
+            let column = |(name, value)| recorded(name).then(|| vec![value; 8]);
+            let recording = Recording::of("run-a", 1e-3, 8, stands.map(column).to_vec());
+            let mechanism = machine(&rig, &[], &recording).unwrap();
+            let found = Basis::of(&mechanism, &recording).map(|basis| {
+                let joints = basis.joints.iter().map(|joint| mechanism.joint_name(*joint));
+                let joints = joints.collect::<Vec<_>>().join(" ");
+                format!("{} at {joints}", needed(&mechanism, &recording).unwrap().join(" "))
+            });
+            assert_eq!(found.as_deref(), expected, "{columns}");
+            assert!(sensors.iter().zip(stands).all(|(sensor, (name, _))| sensor.column == name));
         }
     }
 }

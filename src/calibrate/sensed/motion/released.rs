@@ -3,15 +3,14 @@
 
 use super::at_rest::let_go_at;
 use super::simulate::{deviation, record, record_counting};
-use super::start::{Closed, LEAD, StartError, closed, placed, release, still};
+use super::start::{Closed, HeldJoint, LEAD, StartError, closed, placed, release, still};
 use super::swinging::{OutputKicks, kicked, kicks_as_seen};
 use crate::calibrate::sensed::recorded::recording::Recording;
-use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::calibrate::values::least_squares::{Best, FitEffort, Free, least_squares};
 use crate::calibrate::values::normal::inverse_normal;
 use crate::effects::Setting;
 use crate::engine::{Halt, StepControl};
-use crate::mechanism::{Actuator, Drive, JointIndex, Mechanism};
+use crate::mechanism::{Actuator, Drive, Mechanism};
 use crate::scenario::Scenario;
 use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
@@ -122,9 +121,8 @@ pub fn released(
         }
         return Ok(Released::from(mechanism, Vec::new()));
     }
-    let joints = held.iter().map(|(joint, _)| *joint).collect();
-    let falling = Falling { rig, effects, recording, joints, control, steps: AtomicU64::new(0) };
-    let values = held.iter().map(|(_, value)| *value).collect();
+    let falling = Falling::of(rig, effects, recording, &held, control);
+    let values = held.iter().map(|joint| joint.value).collect();
     let (values, covariance) = falling.fitted(values);
     falling.released(values, covariance)
 }
@@ -142,8 +140,7 @@ pub fn released_near(
     control: StepControl,
 ) -> Result<Released, StartError> {
     let held = closed(rig, effects, recording, None)?.held;
-    let joints = held.iter().map(|(joint, _)| *joint).collect();
-    let falling = Falling { rig, effects, recording, joints, control, steps: AtomicU64::new(0) };
+    let falling = Falling::of(rig, effects, recording, &held, control);
     let best = falling.best(coordinates, recording.duration());
     let before = falling.missed(&known.coordinates, recording.duration());
     let (Some(best), Some(before)) = (best, before) else { return Ok(known) };
@@ -159,14 +156,25 @@ struct Falling<'a> {
     rig: &'a Scenario,
     effects: &'a [Setting],
     recording: &'a Recording,
-    /// The joints whose coordinates say where it was let go.
-    joints: Vec<JointIndex>,
+    /// Sensors that show where it was let go.
+    sensors: Vec<usize>,
     control: StepControl,
     /// Steps of bodies so far.
     steps: AtomicU64,
 }
 
-impl Falling<'_> {
+impl<'a> Falling<'a> {
+    fn of(
+        rig: &'a Scenario,
+        effects: &'a [Setting],
+        recording: &'a Recording,
+        held: &[HeldJoint],
+        control: StepControl,
+    ) -> Self {
+        let sensors = held.iter().map(|joint| joint.sensor).collect();
+        Self { rig, effects, recording, sensors, control, steps: AtomicU64::new(0) }
+    }
+
     fn let_go(&self, values: &[f64]) -> Result<Mechanism, StartError> {
         let held = let_go_at(self.rig, self.effects, self.recording, values, self.control)?;
         self.steps.fetch_add(held.steps(), Ordering::Relaxed);
@@ -222,7 +230,7 @@ impl Falling<'_> {
         least_squares(&look, &free, coordinates.to_vec(), EFFORT, None)
     }
 
-    /// By how much it misses what the first `seconds` of the recording show of these joints, in units of noise, let go at
+    /// By how much it misses what the first `seconds` of the recording show of that, in units of noise, let go at
     /// these coordinates; none where there is no such machine.
     fn missed(&self, values: &[f64], seconds: f64) -> Option<DVector<f64>> {
         let part = self.recording.first(seconds);
@@ -231,11 +239,10 @@ impl Falling<'_> {
             record_counting(&machine, self.control, &part, 0, u64::MAX).ok()?;
         self.steps.fetch_add(steps, Ordering::Relaxed);
         let mut left = Vec::new();
-        for joint in &self.joints {
-            let sensor = position_sensor(&machine, *joint);
-            let pair = sensor.and_then(|i| Some((i, part.get(i).zip(simulated.get(i))?)));
-            let Some((i, (measured, simulated))) = pair else { continue };
-            let unit = deviation(&machine.sensors[i], measured);
+        for &sensor in &self.sensors {
+            let pair = part.get(sensor).zip(simulated.get(sensor));
+            let Some((measured, simulated)) = pair else { continue };
+            let unit = deviation(&machine.sensors[sensor], measured);
             left.extend(measured.iter().zip(simulated).map(|(a, b)| (a - b) / unit));
         }
         Some(DVector::from_vec(left))

@@ -2,10 +2,11 @@
 
 use super::law::ServoLaw;
 use super::simulate::deviation;
+use super::sources::partner;
 use crate::calibrate::sensed::recorded::view::{View, effort_sensor};
 use crate::measure::filter::derivative;
 use crate::mechanism::motion::{Motion, PathPoint};
-use crate::mechanism::{Command, Commands, Drive, JointIndex, Mechanism, TrackerFrame};
+use crate::mechanism::{Command, Commands, Drive, JointIndex, Mechanism, Reads, TrackerFrame};
 use nalgebra::{UnitComplex, Vector2, Vector3};
 
 /// Coordinate, rate and acceleration that the sensor of a joint shows at each row.
@@ -88,16 +89,39 @@ fn derived(position: Vec<f64>, interval: f64) -> [Vec<f64>; 3] {
 
 /// The pose that sensors of x, y and angle show, in the world's axes.
 pub fn pose(view: &View, mechanism: &Mechanism, sensors: [usize; 3]) -> MeasuredPose {
-    let [x, y, angle] = sensors.map(|sensor| shown(view, mechanism, sensor));
+    let [x, y, angle] = sensors;
+    let [x, y] = point(view, mechanism, [x, y]);
+    let columns =
+        [x, y, turned(view, mechanism, angle)].map(|column| derived(column, view.interval));
+    MeasuredPose { interval: view.interval, columns }
+}
+
+/// Angle, rate and acceleration of a body, or one of the coordinates of a point, as the sensor of it shows at each row.
+pub fn placed(view: &View, mechanism: &Mechanism, sensor: usize) -> [Vec<f64>; 3] {
+    let other = || partner(mechanism, sensor, |other| view.smooth(other).is_some());
+    let column = match mechanism.sensors[sensor].reads {
+        Reads::X(_) => other().map(|y| point(view, mechanism, [sensor, y])[0].clone()),
+        Reads::Y(_) => other().map(|x| point(view, mechanism, [x, sensor])[1].clone()),
+        _ => None,
+    };
+    derived(column.unwrap_or_else(|| turned(view, mechanism, sensor)), view.interval)
+}
+
+/// Coordinates of a point in the world that the sensors of x and y show.
+fn point(view: &View, mechanism: &Mechanism, sensors: [usize; 2]) -> [Vec<f64>; 2] {
+    let [x, y] = sensors.map(|sensor| shown(view, mechanism, sensor));
     let frames = &mechanism.sensors[sensors[0]].frames;
-    let turned: f64 = mechanism.sensors[sensors[2]].frames.iter().map(|f| f.rotation).sum();
     let places = x.iter().zip(&y).map(|(x, y)| {
         frames.iter().rev().fold(Vector2::new(*x, *y), |point, frame| of_world(frame, point))
     });
     let (x, y) = places.map(|point| (point.x, point.y)).unzip();
-    let angle = angle.iter().map(|angle| angle - turned).collect();
-    let columns = [x, y, angle].map(|column| derived(column, view.interval));
-    MeasuredPose { interval: view.interval, columns }
+    [x, y]
+}
+
+/// Angle of a body in the world that a sensor shows.
+fn turned(view: &View, mechanism: &Mechanism, sensor: usize) -> Vec<f64> {
+    let turned: f64 = mechanism.sensors[sensor].frames.iter().map(|f| f.rotation).sum();
+    shown(view, mechanism, sensor).iter().map(|angle| angle - turned).collect()
 }
 
 /// The point of the world that a tracker's frame shows at `point` (m).

@@ -1,5 +1,6 @@
 //! The machine where a recording begins.
 
+use super::sources::{CoordinateSource, sources};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::position_sensor;
 use crate::effects::Setting;
@@ -119,18 +120,51 @@ pub(in crate::calibrate::sensed) fn told_by<'a>(
     recording.get(sensors.position(|sensor| same(&sensor.reads))?)
 }
 
-/// Coordinates at the first row of joints that no drive moves and that are measured, by sensor.
-fn free_coordinates(mechanism: &Mechanism, recording: &Recording) -> Vec<(JointIndex, f64)> {
-    let rows = ((FIRST / recording.interval) as usize + 1).clamp(1, recording.samples);
-    let first = |values: &[f64]| from_rest(&values[..rows]);
+/// A joint that no drive moves and that is held at a coordinate.
+pub(super) struct HeldJoint {
+    /// The joint.
+    pub joint: JointIndex,
+    /// The coordinate in m or rad.
+    pub value: f64,
+    /// The sensor that shows it.
+    pub sensor: usize,
+}
+
+/// Joints that no drive moves and that are measured, at their coordinates at the first row, by sensor.
+fn measured_joints(mechanism: &Mechanism, recording: &Recording) -> Vec<HeldJoint> {
     let sensors = mechanism.sensors.iter().enumerate();
-    let found = sensors.filter_map(|(i, sensor)| {
-        let Reads::Position(joint) = sensor.reads else { return None };
+    let found = sensors.filter_map(|(sensor, errors)| {
+        let Reads::Position(joint) = errors.reads else { return None };
         let driven = mechanism.actuators.iter().any(|drive| drive.joint == joint);
-        let value = (first(recording.get(i)?) - sensor.offset) / sensor.scale;
-        (!driven).then_some((joint, value))
+        let value = first(recording, sensor, errors)?;
+        (!driven).then_some(HeldJoint { joint, value, sensor })
     });
     found.collect()
+}
+
+/// Joints that only angles and places of bodies show, which turn as far from their start as an angle does; by how much the
+/// machine before them moves, that is wrong.
+fn seen_joints(mechanism: &Mechanism, recording: &Recording) -> Vec<HeldJoint> {
+    let sources = sources(mechanism, recording).unwrap_or_default().into_iter();
+    let seen = sources.filter_map(|(joint, source)| {
+        let CoordinateSource::Place(sensor) = source else { return None };
+        let errors = &mechanism.sensors[sensor];
+        let turned = match errors.reads {
+            Reads::Angle(Some(body), angle) => {
+                first(recording, sensor, errors)? - angle - mechanism.bodies[body].angle
+            }
+            _ => 0.0,
+        };
+        Some(HeldJoint { joint, value: mechanism.start_coordinate(joint) + turned, sensor })
+    });
+    seen.collect()
+}
+
+/// What a sensor looked at in the first row, of something that begins at rest.
+fn first(recording: &Recording, sensor: usize, errors: &Sensor) -> Option<f64> {
+    let rows = ((FIRST / recording.interval) as usize + 1).clamp(1, recording.samples);
+    let read = from_rest(&recording.get(sensor)?[..rows]);
+    Some((read - errors.offset) / errors.scale)
 }
 
 /// The `a` of `a + b k²`, by least squares over samples k = 0, 1, …
@@ -207,11 +241,11 @@ impl Commands for FixedCommands {
 pub(super) struct Closed {
     /// The machine, its drives first.
     pub mechanism: Mechanism,
-    /// Those joints, and the coordinate of each in m or rad.
-    pub held: Vec<(JointIndex, f64)>,
+    /// Those joints.
+    pub held: Vec<HeldJoint>,
 }
 
-/// That machine; the joints are held where they are measured, or at these `known` coordinates.
+/// That machine; the joints are held where they are measured or seen, or at these `known` coordinates.
 ///
 /// # Errors
 /// An effect that the machine cannot take, joints that do not close.
@@ -230,21 +264,30 @@ pub(super) fn closed(
         mechanism.epoch = 0.0;
         let starts: Vec<_> = mechanism.bodies.iter().map(|body| body.start).collect();
         // Joints that drives leave free start where they are measured, as far as they are independent.
-        for (joint, measured) in free_coordinates(mechanism, recording) {
-            let drive = Actuator::new("", joint, Drive::Prescribed);
+        let mut hold = |mechanism: &mut Mechanism, joint: HeldJoint| {
+            let drive = Actuator::new("", joint.joint, Drive::Prescribed);
             mechanism.actuators.push(drive);
             if mechanism.freedoms(&starts).overdriven.is_empty() {
                 let value = known.and_then(|known| known.get(held.len()).copied());
-                held.push((joint, value.unwrap_or(measured)));
+                held.push(HeldJoint { value: value.unwrap_or(joint.value), ..joint });
             } else {
                 mechanism.actuators.pop();
+            }
+        };
+        for joint in measured_joints(mechanism, recording) {
+            hold(mechanism, joint);
+        }
+        let freedoms = mechanism.freedoms(&starts);
+        if freedoms.driven < freedoms.free {
+            for joint in seen_joints(mechanism, recording) {
+                hold(mechanism, joint);
             }
         }
         let count = mechanism.actuators.len() - held.len();
         mechanism.commands = Arc::new(Holding {
             drives: Arc::clone(&mechanism.commands),
             count,
-            held: held.iter().map(|(_, value)| *value).collect(),
+            held: held.iter().map(|joint| joint.value).collect(),
         });
     })?;
     Ok(Closed { mechanism, held })

@@ -148,9 +148,9 @@ impl RigProblem {
     ) -> Result<Self, Stopped> {
         let declared = machine(&rig, &[], &recordings[0])?;
         let basis = Basis::of(&declared, &recordings[0]).ok_or_else(|| {
-            let message = "do not say how the machine stands: no body's place and angle are measured, and \
-                           fewer joints than it has freedoms";
-            let help = "add a [[sensor]] of quantity \"position\" for each freedom";
+            let message = "do not say how the machine stands: fewer joints, angles of bodies and points in x and y \
+                           are measured than it has freedoms";
+            let help = "add a [[sensor]] of quantity \"position\" or \"angle\" for each freedom";
             rig.problem("sensor", message, help)
         })?;
         let sensors = declared.sensors.len();
