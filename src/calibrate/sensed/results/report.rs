@@ -143,10 +143,11 @@ fn one_of(names: Vec<String>) -> String {
 fn not_ruled_out(outcome: &SensedOutcome) -> String {
     let all = lasting(outcome).filter_map(|effect| {
         let others = &round_of(outcome, effect)?.not_ruled_out;
+        let were = if others.len() == 1 { "was" } else { "were" };
         let others = others.iter().map(name).collect::<Vec<_>>().join(" or ");
         (!others.is_empty()).then(|| {
             format!(
-                " In place of {} residuals alone do not rule out {others}, which were not simulated.",
+                " In place of {} residuals alone do not rule out {others}, which {were} not simulated.",
                 name(effect)
             )
         })
