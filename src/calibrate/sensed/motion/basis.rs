@@ -2,8 +2,8 @@
 //!
 //! A body whose place and angle a tracker shows, and that leaves the machine no other freedom, is known better
 //! than the joints' encoders know it: between them lies the play of joints, and a body that floats in it
-//! accelerates otherwise than any encoder does. Without one [sources] of
-//! joints' coordinates say it.
+//! accelerates otherwise than any encoder does. Without one, sensors and commands of joints
+//! say it, and, where these do not, angles and places of bodies (`sources.rs`).
 
 use super::shown::{MeasuredCommands, MeasuredPose, commanded, coordinate, placed, pose};
 use super::sources::{CoordinateSource, freedoms, place, sources, starts};
