@@ -5,7 +5,9 @@
 //! accelerates otherwise than any encoder does. Without one, sensors and commands of joints
 //! say it, and, where these do not, angles and places of bodies (`sources.rs`).
 
-use super::shown::{Course, MeasuredCommands, MeasuredPose, commanded, coordinate, placed, pose};
+use super::shown::{
+    MeasuredCommands, MeasuredCoordinate, MeasuredPose, commanded, coordinate, placed, pose,
+};
 use super::sources::{CoordinateSource, freedoms, place, sources, starts};
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
@@ -146,7 +148,7 @@ impl Basis {
             }
             (Shown::Coordinates(sources), _) => {
                 let joints = self.joints.iter().zip(sources);
-                let measured: Vec<Course> = joints
+                let measured: Vec<MeasuredCoordinate> = joints
                     .map(|(joint, source)| match source {
                         CoordinateSource::Sensor(sensor) => {
                             coordinate(view, mechanism, *joint, *sensor)
@@ -198,7 +200,7 @@ impl Moved {
 }
 
 /// Rates and accelerations follow from positions.
-fn hash([position, ..]: &Course, hasher: &mut DefaultHasher) {
+fn hash([position, ..]: &MeasuredCoordinate, hasher: &mut DefaultHasher) {
     position.iter().for_each(|value| value.to_bits().hash(hasher));
 }
 

@@ -10,10 +10,15 @@ use crate::mechanism::{Command, Commands, Drive, JointIndex, Mechanism, Reads, T
 use nalgebra::{UnitComplex, Vector2, Vector3};
 
 /// A coordinate in m or rad, its rate and its acceleration, each at every row.
-pub type Course = [Vec<f64>; 3];
+pub type MeasuredCoordinate = [Vec<f64>; 3];
 
 /// Coordinate, rate and acceleration that the sensor of a joint shows at each row.
-pub fn coordinate(view: &View, mechanism: &Mechanism, joint: JointIndex, sensor: usize) -> Course {
+pub fn coordinate(
+    view: &View,
+    mechanism: &Mechanism,
+    joint: JointIndex,
+    sensor: usize,
+) -> MeasuredCoordinate {
     let mut position = shown(view, mechanism, sensor);
     if let Some(drive) = mechanism.actuators.iter().position(|drive| drive.joint == joint) {
         behind(view, mechanism, drive, &mut position);
@@ -23,7 +28,7 @@ pub fn coordinate(view: &View, mechanism: &Mechanism, joint: JointIndex, sensor:
 
 /// Coordinate, rate and acceleration that a drive is told at each row, less what it yields: a servo's error e follows
 /// from its effort, `k_p e + k_d ė = F`, which is zero where nobody measured it.
-pub fn commanded(view: &View, mechanism: &Mechanism, drive: usize) -> Course {
+pub fn commanded(view: &View, mechanism: &Mechanism, drive: usize) -> MeasuredCoordinate {
     let mut commands = vec![Command::default(); mechanism.actuators.len()];
     let mut told = |row: usize| {
         mechanism.commands.at(row as f64 * view.interval, &mut commands);
@@ -79,7 +84,7 @@ fn shown(view: &View, mechanism: &Mechanism, sensor: usize) -> Vec<f64> {
     (0..read.len()).map(|row| view.shown(errors, read, row)).collect()
 }
 
-fn derived(position: Vec<f64>, interval: f64) -> Course {
+fn derived(position: Vec<f64>, interval: f64) -> MeasuredCoordinate {
     let rate = derivative(&position, interval);
     let acceleration = derivative(&rate, interval);
     [position, rate, acceleration]
@@ -95,7 +100,7 @@ pub fn pose(view: &View, mechanism: &Mechanism, sensors: [usize; 3]) -> Measured
 }
 
 /// Angle, rate and acceleration of a body, or one of the coordinates of a point, as the sensor of it shows at each row.
-pub fn placed(view: &View, mechanism: &Mechanism, sensor: usize) -> Course {
+pub fn placed(view: &View, mechanism: &Mechanism, sensor: usize) -> MeasuredCoordinate {
     let other = || partner(mechanism, sensor, |other| view.smooth(other).is_some());
     let column = match mechanism.sensors[sensor].reads {
         Reads::X(_) => other().map(|y| point(view, mechanism, [sensor, y])[0].clone()),
@@ -128,7 +133,7 @@ fn of_world(frame: &TrackerFrame, point: Vector2<f64>) -> Vector2<f64> {
 }
 
 /// Position, rate and acceleration of each row, between rows on straight lines.
-fn between(columns: &Course, place: f64) -> [f64; 3] {
+fn between(columns: &MeasuredCoordinate, place: f64) -> [f64; 3] {
     let last = columns[0].len().saturating_sub(1);
     let i = (place.max(0.0) as usize).min(last);
     let (next, share) = ((i + 1).min(last), (place.max(0.0) - i as f64).min(1.0));
@@ -139,7 +144,7 @@ fn between(columns: &Course, place: f64) -> [f64; 3] {
 #[derive(Debug)]
 pub struct MeasuredCommands {
     pub interval: f64,
-    pub columns: Vec<Course>,
+    pub columns: Vec<MeasuredCoordinate>,
 }
 
 impl Commands for MeasuredCommands {
@@ -155,7 +160,7 @@ impl Commands for MeasuredCommands {
 #[derive(Debug)]
 pub struct MeasuredPose {
     pub interval: f64,
-    pub columns: [Course; 3],
+    pub columns: [MeasuredCoordinate; 3],
 }
 
 impl Motion for MeasuredPose {
