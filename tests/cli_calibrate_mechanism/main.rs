@@ -5,9 +5,39 @@ mod cli_common;
 mod crane;
 mod hidden;
 mod laws;
+mod linkages;
 mod refusals;
 mod rigs;
 mod shaper;
+
+use cli_common::Place;
+use serde_json::Value;
+
+/// What is found in recordings of a machine with these effects hidden in it, key by key: the values of as many effects, in the same order,
+/// of these kinds and at these places.
+pub fn found_of(rig: &str, effects: &[&[(&str, &str)]]) -> Vec<Value> {
+    let place = Place::new();
+    let rig = format!("{}/tests/cli_calibrate_mechanism/{rig}.toml", env!("CARGO_MANIFEST_DIR"));
+    let keys = effects.iter().enumerate().flat_map(|(i, effect)| {
+        effect.iter().map(move |(key, value)| format!(" --set effect.{i}.{key}={value}"))
+    });
+    place.good(&format!("record {rig} --out hidden --quiet{}", keys.collect::<String>()));
+    place.good(
+        "calibrate --rig hidden/rig.toml --data hidden/run-a.csv --validate hidden/run-b.csv --out found --quiet",
+    );
+    let report: Value = serde_json::from_str(&place.read("found/report.json")).unwrap();
+    assert_eq!(report["verdict"], "explained", "{}", report["summary"]);
+    let found = report["effects"].as_array().unwrap();
+    assert_eq!(found.len(), effects.len(), "{}", report["summary"]);
+    for (found, hidden) in found.iter().zip(effects) {
+        let names =
+            |key: &&(&str, &str)| ["kind", "joint", "body", "point", "sensor"].contains(&key.0);
+        for (key, value) in hidden.iter().filter(names) {
+            assert_eq!(found[key], *value, "{}", report["summary"]);
+        }
+    }
+    found.iter().map(|effect| effect["params"].clone()).collect()
+}
 
 /// A crank-rocker on a servo, with play in two joints, an encoder on either side and a torque.
 pub const FOUR_BAR: &str = r#"name = "four-bar"

@@ -1,27 +1,11 @@
 //! What is hidden in a machine whose bodies slide: a ram that does not turn, a lever that only turns.
 
-use crate::cli_common::Place;
+use crate::found_of;
 use serde_json::Value;
 
-const RIG: &str =
-    concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cli_calibrate_mechanism/quick-return.toml");
-
-/// What is found in recordings of the shaper with an effect: its one effect, by name and by values.
+/// The values of what is found in recordings of the shaper with an effect.
 fn found(effect: &[(&str, &str)]) -> Value {
-    let place = Place::new();
-    let set = effect.iter().map(|(key, value)| format!(" --set effect.0.{key}={value}"));
-    place.good(&format!("record {RIG} --out hidden --quiet{}", set.collect::<String>()));
-    place.good(
-        "calibrate --rig hidden/rig.toml --data hidden/run-a.csv --validate hidden/run-b.csv --out found --quiet",
-    );
-    let report: Value = serde_json::from_str(&place.read("found/report.json")).unwrap();
-    assert_eq!(report["verdict"], "explained", "{}", report["summary"]);
-    let effects = report["effects"].as_array().unwrap();
-    assert_eq!(effects.len(), 1, "{}", report["summary"]);
-    for (key, value) in &effect[..2] {
-        assert_eq!(effects[0][key], *value, "{}", report["summary"]);
-    }
-    effects[0]["params"].clone()
+    found_of("quick-return", &[effect]).remove(0)
 }
 
 /// Where it sits on the ram nothing tells: rounding sent it to the end of what makes sense, and it was struck off for that.

@@ -54,6 +54,10 @@ pub const NEARLY_SEEN: f64 = 0.02;
 /// is then at most three times less certain than it could be.
 pub const ALIKE: f64 = 3.0;
 
+/// By how many times noise and what two replicas are apart they miss a column of a recording that others need not be held against:
+/// the mean of two is off that of many by 0.7 of a replica's scatter, a tenth of that at most.
+pub const BY_FAR: f64 = 10.0;
+
 /// Drop of Σ of squares on data not used for the fit that an effect has to bring: twice the logarithm of a
 /// thousand candidates, 14, and as much again for what noise is not white. Where joints rattle bias and noise come
 /// from few replicas, and with others the same model may cost some 100 less: twice that (trials of the
@@ -76,6 +80,10 @@ pub const TWINS: [f64; 2] = [10.0, 200.0];
 pub const RIVALS: usize = 3;
 /// See [`RIVALS`].
 pub const RIVAL: f64 = 0.67;
+
+/// Most that are simulated so where looks tell that the best of each kind does as well: wrong points of the links about a worn joint
+/// took all three places, and were named in its place without the joint ever being simulated.
+pub const KINDS: usize = 8;
 
 /// Share of an effect's part by which looks are wrong: they do not rule out what takes up so little less of it. Of an oval
 /// ring that was all that a machine lacked they said 1.4 % less than of an encoder's scale; of wrong points, 22 % less than

@@ -12,7 +12,7 @@ use crate::calibrate::sensed::rounds::round::{Round, Tried};
 use crate::calibrate::sensed::rounds::search::Search;
 use crate::calibrate::sensed::rounds::words::names;
 use crate::calibrate::sensed::thresholds::{
-    BY_LOOKS, GAIN, GAIN_PER_VALUE, RIVAL, RIVALS, SIMULATED, TWINS,
+    BY_LOOKS, GAIN, GAIN_PER_VALUE, KINDS, RIVAL, RIVALS, SIMULATED, TWINS,
 };
 use crate::calibrate::sensed::values::linear::Derivatives;
 use crate::calibrate::sensed::values::model::{Model, price};
@@ -191,16 +191,16 @@ impl Search<'_> {
                 found.push((as_well, tried.effect));
             }
         }
-        // One of them is what would be named of those that do as well.
+        let simulated = best_of_kinds(&mut found);
         let alike = |place: &usize| found[*place].0;
         let places: Vec<usize> = (0..found.len()).filter(alike).collect();
         let named: Vec<&Setting> = places.iter().map(|&place| &found[place].1).collect();
         if let Some(place) = preferred(&named).map(|first| places[first])
-            && place >= RIVALS
+            && place >= simulated
         {
-            found[RIVALS - 1..=place].rotate_right(1);
+            found[simulated - 1..=place].rotate_right(1);
         }
-        let beyond = found.split_off(RIVALS.min(found.len()));
+        let beyond = found.split_off(simulated);
         let beyond = beyond.into_iter().filter(|(as_well, _)| *as_well);
         [
             found.into_iter().map(|(_, effect)| effect).collect(),
@@ -296,6 +296,22 @@ impl Search<'_> {
     }
 }
 
+/// How many rivals, the best first, are simulated, each with whether it does as well as what it would replace: the best, and of those
+/// that do as well the best of each kind, which is moved to its place among them.
+fn best_of_kinds(found: &mut [(bool, Setting)]) -> usize {
+    let best = RIVALS.min(found.len());
+    let mut simulated = best;
+    for i in best..found.len() {
+        let (as_well, own) = &found[i];
+        let first = !found[..i].iter().any(|(_, known)| known.kind.name == own.kind.name);
+        if simulated < KINDS && *as_well && first {
+            found[simulated..=i].rotate_right(1);
+            simulated += 1;
+        }
+    }
+    simulated
+}
+
 /// Akaike's price of the values of effects.
 fn price_of_values(effects: &[Setting]) -> f64 {
     let values: usize = effects.iter().map(|effect| effect.values().count()).sum();
@@ -309,8 +325,28 @@ fn enough(model: &Model, values: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{chosen, preferred};
+    use super::{best_of_kinds, chosen, preferred};
     use crate::effects::{Setting, Target, named};
+
+    /// Wrong points of the links about a joint do not hide that it is worn.
+    #[test]
+    fn the_best_of_each_kind_that_does_as_well_is_simulated() {
+        let wrong = |point: &str| {
+            let kind = named("point-offset").unwrap();
+            Setting::on(kind, Target::Point(point.to_owned()), &[("dx_m", 1e-4)])
+        };
+        let worn = |joint: &str| Setting::new(named("joint-wear").unwrap(), Some(joint), &[]);
+        let points = ["l.A", "l.B", "ground.A", "ground.B"].map(|point| (true, wrong(point)));
+        let slow = Setting::new(named("servo-lag").unwrap(), None, &[]);
+        let mut found = points.to_vec();
+        found.extend([(true, worn("A")), (false, slow), (true, worn("B"))]);
+        assert_eq!(best_of_kinds(&mut found), 4);
+        let names: Vec<String> = found.iter().map(|(_, effect)| effect.to_string()).collect();
+        assert_eq!(
+            names[2..5],
+            ["point-offset at ground.A", "joint-wear at A", "point-offset at ground.B"]
+        );
+    }
 
     /// A machine is blamed only where no instrument would explain as much, and of something seldom only where nothing common
     /// would; many values are no explanation where one is.

@@ -51,6 +51,28 @@ impl Search<'_> {
         Ok(best)
     }
 
+    /// The model, or one with fewer values of its last effect that leaves less: one that looks hardly tell, such as the rate at which
+    /// friction turns round, leads the others astray from simulation to simulation.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub(in crate::calibrate::sensed) fn steadier(&self, model: Model) -> Result<Model, Stopped> {
+        let Some((last, others)) = model.fit.effects.split_last() else { return Ok(model) };
+        let fewer = self.variants(last).into_iter().rev().filter(|fewer| fewer.is(last));
+        for fewer in fewer {
+            if self.problem.is_worn_out() {
+                break;
+            }
+            let effects = [others, std::slice::from_ref(&fewer)].concat();
+            (self.tell)(&format!("settling a simpler {}", name(&fewer)));
+            let settled = self.settle_within(&effects, 2, model.misfit)?;
+            if let Some(settled) = settled.filter(|settled| settled.misfit < model.misfit) {
+                return Ok(settled);
+            }
+        }
+        Ok(model)
+    }
+
     /// The model without effects of which nobody knows that there is any, where it leaves no more than noise without them.
     ///
     /// # Errors

@@ -163,14 +163,26 @@ pub fn deviation(sensor: &Sensor, values: &[f64]) -> f64 {
     (EXACT * (high - low)).max(f64::MIN_POSITIVE)
 }
 
-/// Largest root mean square of the difference of two recordings in a column, in units of its sensor's noise.
+/// Root mean square of the difference of two recordings in the column of a sensor, in units of its noise.
+fn apart_in(sensors: &[Sensor], i: usize, [a, b]: [&Recording; 2]) -> Option<f64> {
+    let (a, b) = (a.get(i)?, b.get(i)?);
+    let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+    Some((squares / a.len() as f64).sqrt() / deviation(&sensors[i], a))
+}
+
+/// The largest of all columns.
 pub fn apart(sensors: &[Sensor], a: &Recording, b: &Recording) -> f64 {
-    let of = |(i, sensor): (usize, &Sensor)| {
-        let (a, b) = (a.get(i)?, b.get(i)?);
-        let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
-        Some((squares / a.len() as f64).sqrt() / deviation(sensor, a))
+    (0..sensors.len()).filter_map(|i| apart_in(sensors, i, [a, b])).fold(0.0, f64::max)
+}
+
+/// By how many times noise and what it is apart from another replica a noiseless one of a model misses a recording, in the column
+/// where that is most.
+pub fn misses_by(sensors: &[Sensor], recording: &Recording, replicas: [&Recording; 2]) -> f64 {
+    let of = |i| {
+        let missed = apart_in(sensors, i, [replicas[0], recording])?;
+        Some(missed / apart_in(sensors, i, replicas)?.hypot(1.0))
     };
-    sensors.iter().enumerate().filter_map(of).fold(0.0, f64::max)
+    (0..sensors.len()).filter_map(of).fold(0.0, f64::max)
 }
 
 /// The recording with the noise of the machine's sensors and what controllers that read them make of it.

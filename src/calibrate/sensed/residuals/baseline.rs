@@ -3,11 +3,11 @@
 
 use super::problem::{RigProblem, Segment, Start, Stopped};
 use super::swing::{Likeliest, swing};
-use crate::calibrate::sensed::motion::simulate::with_noise;
+use crate::calibrate::sensed::motion::simulate::{misses_by, with_noise};
 use crate::calibrate::sensed::motion::start::machine;
 use crate::calibrate::sensed::recorded::recording::Recording;
 use crate::calibrate::sensed::recorded::view::View;
-use crate::calibrate::sensed::thresholds::{DRAWS, NEARLY_SEEN, SEEN};
+use crate::calibrate::sensed::thresholds::{BY_FAR, DRAWS, NEARLY_SEEN, SEEN};
 use crate::calibrate::values::draws::{Coefficients, difference, mean, without};
 use crate::calibrate::values::spectrum::{Covariances, Noise};
 use crate::effects::Setting;
@@ -297,25 +297,27 @@ impl Own<'_> {
 
 /// Noiseless recordings of a model, run by run, and whether they rattle. Of a machine that does as declared a model need
 /// not: what presses its journals on their rings makes it as predictable as any, and one simulation stands for it. Two that
-/// are nearly as far apart as sensors see may be so near each other by chance: then all replicas are asked.
+/// are nearly as far apart as sensors see may be so near each other by chance: then all replicas are asked, unless these two
+/// [miss](misses_by_far) what was recorded by so much that others could not say otherwise.
 fn replicas(
     problem: &RigProblem,
     effects: &[Setting],
     deviations: &[f64],
     starts: &[Start],
 ) -> Result<(Vec<Vec<Recording>>, bool), Stopped> {
-    let with_others = |mut own: Vec<Vec<Recording>>, kept: usize, deviations: &[f64]| {
-        own.iter_mut().for_each(|logs| logs.truncate(kept));
-        let others =
-            problem.simulated_about(effects, deviations, starts, kept..problem.replicas)?;
-        own.iter_mut().zip(others).for_each(|(logs, others)| logs.extend(others));
-        Ok::<_, Stopped>(own)
-    };
     let two = problem.replicas.min(2);
     let mut simulated = problem.simulated(starts, two)?;
     let gap = problem.apart(&simulated);
+    let afar = gap > NEARLY_SEEN && misses_by_far(problem, starts, &simulated);
+    let needed = if afar { two } else { problem.replicas };
+    let with_others = |mut own: Vec<Vec<Recording>>, kept: usize, deviations: &[f64]| {
+        own.iter_mut().for_each(|logs| logs.truncate(kept));
+        let others = problem.simulated_about(effects, deviations, starts, kept..needed)?;
+        own.iter_mut().zip(others).for_each(|(logs, others)| logs.extend(others));
+        Ok::<_, Stopped>(own)
+    };
     let about = gap > SEEN && !deviations.is_empty();
-    if gap > NEARLY_SEEN && !about {
+    if gap > NEARLY_SEEN && !about && !afar {
         simulated = with_others(simulated, two, &[])?;
     }
     let rattles = problem.apart(&simulated) > SEEN;
@@ -325,6 +327,16 @@ fn replicas(
         false => simulated.iter_mut().for_each(|logs| logs.truncate(1)),
     }
     Ok((simulated, rattles))
+}
+
+/// Whether a run is missed by [far](BY_FAR) more than noise and these replicas' scatter explain. What nothing holds may fall alike twice,
+/// and otherwise in the recording.
+fn misses_by_far(problem: &RigProblem, starts: &[Start], simulated: &[Vec<Recording>]) -> bool {
+    let held = starts.iter().all(|start| !start.is_fitted());
+    held && starts.iter().zip(simulated).any(|(start, clean)| {
+        let recording = &problem.runs[start.run].recording;
+        misses_by(&problem.declared.sensors, recording, [&clean[0], &clean[1]]) > BY_FAR
+    })
 }
 
 /// Draws of noise of so many replicas in units of what the others have of it, as a recording is seen: replicas that a
@@ -351,6 +363,7 @@ fn by_the_others(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::calibrate::sensed::thresholds::REPLICAS;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
@@ -375,6 +388,22 @@ mod tests {
         assert!(shrunk(0.0).abs() < 1e-6, "{}", shrunk(0.0));
         assert!(shrunk(-0.3) > 1.0, "{}", shrunk(-0.3));
         assert!(shrunk(0.3) < -1.0, "{}", shrunk(0.3));
+    }
+
+    /// A machine that rattles as its model does is held against all replicas, and one that carries a kilogram less than that against two.
+    #[test]
+    fn what_misses_by_far_needs_few_replicas() {
+        use crate::effects::named;
+        let rig = RigProblem::of("rigs/rig-1", "run-a.csv");
+        let recorded = rig.simulated(&rig.let_go(&[]).unwrap(), 1).unwrap().remove(0).remove(0);
+        let mut problem = rig.recorded_as(recorded);
+        problem.replicas = REPLICAS;
+        let segments = problem.split().hold;
+        let payload = Setting::new(named("payload").unwrap(), None, &[("mass_kg", 1.0)]);
+        let of = |effects: &[Setting]| Baseline::of(&problem, effects, &[], &segments).unwrap();
+        let [own, heavier] = [of(&[]), of(&[payload])];
+        assert!(own.rattles && heavier.rattles);
+        assert_eq!([own.replicas, heavier.replicas], [REPLICAS, 2]);
     }
 
     /// One replica of four that rattles three times as much as the others stands out as far as a recording that does so

@@ -16,6 +16,9 @@ use crate::mechanism::{Mechanism, Reads, Sensor};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
+/// Share of what was left below which a pass leaves less of a model that still comes nearer: another is worth its simulations.
+const HALVED: f64 = 0.5;
+
 impl Search<'_> {
     /// The best models with one effect more than this one has that residuals see.
     pub(super) fn beside(&self, model: &Model) -> Result<Beside, Stopped> {
@@ -41,8 +44,7 @@ impl Search<'_> {
                 [model.fit.effects.as_slice(), std::slice::from_ref(&candidate.effect)].concat();
             (self.tell)(&format!("simulating with {}", names(&effects)));
             if let Some(settled) = self.settle(&effects, 1)? {
-                candidate.simulated = true;
-                candidate.gain = model.cost() - settled.cost();
+                candidate.gains(model.cost() - settled.cost(), model);
                 found.push(settled);
             }
         }
@@ -96,13 +98,14 @@ impl Search<'_> {
         }
         if let Some(tried) = tried.iter_mut().find(|tried| tried.simulated && tried.effect.is(last))
         {
-            tried.gain = model.cost() - settled.cost();
+            tried.gains(model.cost() - settled.cost(), model);
         }
         Ok(Some(settled))
     }
 
     /// Simulates rivals again at the values that their first simulations led to, those that promise nearly as much
-    /// as the best of them.
+    /// as the best of them: once, and those that rattle, which are not fitted to whole simulations, as long as each time halves what
+    /// is left.
     fn again(
         &self,
         model: &Model,
@@ -112,16 +115,20 @@ impl Search<'_> {
         let best = found.iter().map(Model::cost).fold(model.cost(), f64::min);
         let enough = model.cost() - PROMISING * (model.cost() - best);
         for rival in found.iter_mut().filter(|rival| rival.cost() <= enough) {
-            let Some(settled) = self.settle(&rival.fit.effects, 1)? else { continue };
-            if !settled.baseline.rattles || settled.misfit < rival.misfit {
-                *rival = settled;
+            let mut before = f64::INFINITY;
+            while rival.held < HALVED * before {
+                let Some(settled) = self.settle(&rival.fit.effects, 1)? else { break };
+                before = if settled.baseline.rattles { rival.held } else { 0.0 };
+                if !settled.baseline.rattles || settled.misfit < rival.misfit {
+                    *rival = settled;
+                }
             }
             let last = rival.fit.effects.last();
             let own = |tried: &&mut Tried| {
                 tried.simulated && last.is_some_and(|effect| effect.is(&tried.effect))
             };
             if let Some(tried) = tried.iter_mut().find(own) {
-                tried.gain = model.cost() - rival.cost();
+                tried.gains(model.cost() - rival.cost(), model);
             }
         }
         Ok(())

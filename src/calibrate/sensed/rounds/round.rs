@@ -23,8 +23,16 @@ pub struct Tried {
 impl Tried {
     /// One that whole simulations were fitted with, beside a model that it gains so much over.
     pub(super) fn simulated(effect: Setting, gain: f64, beside: &Model) -> Self {
-        let share = (gain / beside.held).clamp(0.0, 1.0);
-        Self { effect, gain, share, fitted: true, chance: 0.0, simulated: true }
+        let mut tried =
+            Self { effect, gain, share: 0.0, fitted: true, chance: 0.0, simulated: true };
+        tried.gains(gain, beside);
+        tried
+    }
+
+    /// What it gains over a model by simulations, in place of what looks promised.
+    pub(super) fn gains(&mut self, gain: f64, beside: &Model) {
+        (self.simulated, self.gain) = (true, gain);
+        self.share = (gain / beside.held).clamp(0.0, 1.0);
     }
 }
 

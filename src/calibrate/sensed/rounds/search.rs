@@ -105,7 +105,7 @@ impl<'a> Search<'a> {
             let (before, cost) = (best.cost(), next[0].cost());
             let near =
                 next.into_iter().filter(|model| before - model.cost() > NEAR * (before - cost));
-            hypotheses = self.all_refined(near.take(HYPOTHESES).collect())?;
+            hypotheses = self.all_refined(near.take(HYPOTHESES).collect(), before)?;
             best = hypotheses[0].clone();
             round.added = best.fit.effects.last().cloned();
             let enough = best.cost() + TWINS[usize::from(best.baseline.rattles)];
@@ -129,8 +129,9 @@ impl<'a> Search<'a> {
         Ok(Found { best, declared, rounds, rest, lifts_off: false })
     }
 
-    /// Hypotheses with values from whole simulations, one after another until one leaves no more than noise; the best first.
-    fn all_refined(&self, mut hypotheses: Vec<Model>) -> Result<Vec<Model>, Stopped> {
+    /// Hypotheses with values from whole simulations, one after another until one leaves no more than noise, and the best of them, where
+    /// it takes most of what was there `before` and leaves more, with others; the best first.
+    fn all_refined(&self, mut hypotheses: Vec<Model>, before: f64) -> Result<Vec<Model>, Stopped> {
         for (i, model) in hypotheses.iter_mut().enumerate() {
             if i > 0 && self.problem.is_worn_out() {
                 break;
@@ -143,6 +144,15 @@ impl<'a> Search<'a> {
             }
         }
         hypotheses.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+        if let Some(best) = hypotheses.first_mut()
+            && before - best.cost() > MOSTLY * before
+            && !self.is_noise(best)
+        {
+            *best = self.steadier(best.clone())?;
+            if !self.is_noise(best) && !self.is_lost(best)? {
+                *best = self.otherwise_sized(best.clone())?;
+            }
+        }
         Ok(hypotheses)
     }
 

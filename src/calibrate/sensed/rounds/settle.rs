@@ -121,7 +121,7 @@ impl Search<'_> {
     }
 
     /// Whether a model's joints rattle, so that no simulation of it can be followed to the end.
-    fn is_lost(&self, model: &Model) -> Result<bool, Stopped> {
+    pub(super) fn is_lost(&self, model: &Model) -> Result<bool, Stopped> {
         let followed = || followed(self.problem, &model.fit.effects, &self.split.on);
         Ok(model.baseline.rattles && followed()?.last() != Some(&None))
     }
@@ -149,7 +149,7 @@ impl Search<'_> {
     }
 
     /// What whole simulations of a model say, over as much of the runs that values are fitted to as they can be followed.
-    fn over_whole<T>(
+    pub(super) fn over_whole<T>(
         &self,
         Model { fit, baseline, .. }: &Model,
         said: impl FnOnce(&Whole, &[Setting]) -> T,
@@ -218,18 +218,23 @@ impl Search<'_> {
             return Ok(None);
         }
         let effects = &model.fit.effects;
-        let closer = if effects.is_empty() {
-            None
-        } else if model.baseline.rattles {
-            self.foretold(model)?
-        } else {
+        let mut closer: Option<Model> = None;
+        if !effects.is_empty() && !model.baseline.rattles {
             (self.tell)(&format!("fitting whole simulations with {}", names(effects)));
-            self.fitted(effects, Far::All).ok().flatten().filter(|closer| self.is_noise(closer))
+            closer = self.fitted(effects, Far::All)?.filter(|closer| self.is_noise(closer));
+        }
+        let met = |closer: &Option<Model>| match closer {
+            Some(closer) => Ok(!self.misses(closer, on)?),
+            None => Ok::<_, Stopped>(false),
         };
-        if let Some(closer) = &closer
-            && !self.misses(closer, on)?
-        {
-            return Ok(Some((closer.clone(), None)));
+        let mut is_met = met(&closer)?;
+        // Looks may hardly depend on what predictions do.
+        if !effects.is_empty() && !is_met {
+            closer = self.foretold(closer.as_ref().unwrap_or(model))?.or(closer);
+            is_met = met(&closer)?;
+        }
+        if is_met {
+            return Ok(closer.map(|closer| (closer, None)));
         }
         let mut round = Round::default();
         let found = self.unseen(closer.as_ref().unwrap_or(model), &mut round.tried)?;
@@ -304,8 +309,18 @@ impl Search<'_> {
             (self.tell)(&format!("simulating without {}", name(&dropped)));
             // Looks move values that only simulations tell away from where these have put them.
             let simpler = [self.settle(&fewer, 2)?, self.at(&fewer, &[])?].into_iter().flatten();
-            match simpler.min_by(|a, b| a.cost().total_cmp(&b.cost())) {
-                Some(simpler) if simpler.cost() < model.cost() + price(&model) => model = simpler,
+            let mut simpler = simpler.min_by(|a, b| a.cost().total_cmp(&b.cost()));
+            let as_good = |simpler: &Model| simpler.cost() < model.cost() + price(&model);
+            // What takes off less than noise leaves may make up for values of another effect, which whole simulations tell.
+            let little = self.is_noise(&model)
+                && simpler.as_ref().is_some_and(|simpler| {
+                    !as_good(simpler) && simpler.cost() < 2.0 * model.cost()
+                });
+            if little && let Some(near) = simpler {
+                simpler = Some(self.refined(near, Far::All)?);
+            }
+            match simpler {
+                Some(simpler) if as_good(&simpler) => model = simpler,
                 _ => i += 1,
             }
         }

@@ -265,7 +265,7 @@ impl Search<'_> {
 fn heard(tried: &mut Vec<Tried>, model: &Model, there: &Model, gain: f64) {
     let Some(effect) = there.fit.effects.last().cloned() else { return };
     match tried.iter_mut().find(|tried| tried.effect.is(&effect)) {
-        Some(tried) => (tried.simulated, tried.gain) = (true, gain),
+        Some(tried) => tried.gains(gain, model),
         None => tried.push(Tried::simulated(effect, gain, model)),
     }
 }
