@@ -221,7 +221,8 @@ impl Search<'_> {
         let mut closer: Option<Model> = None;
         if !effects.is_empty() && !model.baseline.rattles {
             (self.tell)(&format!("fitting whole simulations with {}", names(effects)));
-            closer = self.fitted(effects, Far::All)?.filter(|closer| self.is_noise(closer));
+            let fitted = self.fitted(effects, Far::All).ok().flatten();
+            closer = fitted.filter(|closer| self.is_noise(closer));
         }
         let met = |closer: &Option<Model>| match closer {
             Some(closer) => Ok(!self.misses(closer, on)?),

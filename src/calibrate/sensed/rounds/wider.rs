@@ -19,9 +19,9 @@ const SIZES: [f64; 6] = [0.125, 0.25, 0.5, 2.0, 4.0, 8.0];
 impl Search<'_> {
     /// A model that meets the predictions of all runs in place of one that leaves no more than noise and misses a run that its values
     /// were not fitted to: with values of its effects from predictions of the first run, or at which a fit to that did not
-    /// [end](Self::elsewhere), or with an effect in place of one that it contains, and the round that led to that. What two such models differ by may show along
-    /// the other run alone: values are fitted to the first one still. None where the model misses none, and where no such model
-    /// meets them.
+    /// [end](Self::elsewhere), or with an effect in place of one that it contains, and the round that led to that. What two such
+    /// models differ by may show along the other run alone: values are fitted to the first one still. None where the model misses
+    /// none, and where no such model meets them.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
@@ -84,7 +84,7 @@ impl Search<'_> {
         })?;
         let Some((_, sized)) = least else { return Ok(model) };
         (self.tell)(&format!("fitting whole simulations with {}", names(&with(sized))));
-        let fitted = self.fitted(&with(sized), Far::All)?;
+        let fitted = self.fitted(&with(sized), Far::All).ok().flatten();
         Ok(fitted.filter(|fitted| fitted.misfit < model.misfit).unwrap_or(model))
     }
 
