@@ -310,18 +310,8 @@ impl Search<'_> {
             (self.tell)(&format!("simulating without {}", name(&dropped)));
             // Looks move values that only simulations tell away from where these have put them.
             let simpler = [self.settle(&fewer, 2)?, self.at(&fewer, &[])?].into_iter().flatten();
-            let mut simpler = simpler.min_by(|a, b| a.cost().total_cmp(&b.cost()));
-            let as_good = |simpler: &Model| simpler.cost() < model.cost() + price(&model);
-            // What takes off less than noise leaves may make up for values of another effect, which whole simulations tell.
-            let little = self.is_noise(&model)
-                && simpler.as_ref().is_some_and(|simpler| {
-                    !as_good(simpler) && simpler.cost() < 2.0 * model.cost()
-                });
-            if little && let Some(near) = simpler {
-                simpler = Some(self.refined(near, Far::All)?);
-            }
-            match simpler {
-                Some(simpler) if as_good(&simpler) => model = simpler,
+            match simpler.min_by(|a, b| a.cost().total_cmp(&b.cost())) {
+                Some(simpler) if simpler.cost() < model.cost() + price(&model) => model = simpler,
                 _ => i += 1,
             }
         }
