@@ -170,7 +170,7 @@ fn apart_in(sensors: &[Sensor], i: usize, [a, b]: [&Recording; 2]) -> Option<f64
     Some((squares / a.len() as f64).sqrt() / deviation(&sensors[i], a))
 }
 
-/// The largest of all columns.
+/// Largest root mean square of the difference of two recordings in a column, in units of its sensor's noise.
 pub fn apart(sensors: &[Sensor], a: &Recording, b: &Recording) -> f64 {
     (0..sensors.len()).filter_map(|i| apart_in(sensors, i, [a, b])).fold(0.0, f64::max)
 }
