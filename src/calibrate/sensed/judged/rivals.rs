@@ -59,8 +59,8 @@ struct Rival {
 }
 
 impl Search<'_> {
-    /// The model, or one with rivals in place of its effects that explains all runs better; `rounds` hear what is as
-    /// good as each effect.
+    /// The model, or one with rivals in place of its effects that explains all runs better, without what that does not need; `rounds`
+    /// hear what is as good as each effect.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
@@ -70,7 +70,11 @@ impl Search<'_> {
         rounds: &mut [Round],
     ) -> Result<Model, Stopped> {
         let mut best = model;
-        for i in 0..best.fit.effects.len() {
+        let mut held: Vec<Setting> = Vec::new();
+        let open = |best: &Model, held: &[Setting]| {
+            best.fit.effects.iter().position(|own| !held.iter().any(|held| held.is(own)))
+        };
+        while let Some(i) = open(&best, &held) {
             let own = best.fit.effects[i].clone();
             let [simulated, beyond] = self.rivals(&best, i);
             let mut all = self.in_its_place(&best, i, simulated)?;
@@ -96,7 +100,9 @@ impl Search<'_> {
                 };
                 round.add_instead(&won, near, not_ruled_out);
             }
-            best = model;
+            // Beside the wrong effect another one may stand in for what that lacks of the right one.
+            best = if won.is(&own) { model } else { self.needed(model)? };
+            held.push(won);
         }
         Ok(best)
     }
@@ -114,7 +120,8 @@ impl Search<'_> {
         let rattles = model.baseline.rattles;
         let mut all = vec![Rival { effect: own.clone(), model: model.clone(), cost: 0.0 }];
         for rival in rivals {
-            let effects = [others.as_slice(), std::slice::from_ref(&rival)].concat();
+            let mut effects = others.clone();
+            effects.insert(place, rival.clone());
             (self.tell)(&format!("simulating with {} in place of {own}", names(&effects)));
             // What is told apart by ten units of thousands has to stand at its own best values.
             let times = if rattles { 1 } else { 4 };
@@ -122,9 +129,12 @@ impl Search<'_> {
             let settled = self.settle_within(&effects, times, enough)?;
             let Some(settled) = settled else { continue };
             // What does not come down to noise explains nothing, whatever it costs.
-            let imitates = settled.fit.effects.last().is_some_and(|own| self.imitates(own));
-            if self.is_noise(&settled) && !imitates {
-                let cost = self.dearer(model, &settled);
+            if self.is_noise(&settled) && !self.imitates(&settled.fit.effects[place]) {
+                let cost = match rattles {
+                    true => self.dearer(model, &settled),
+                    // Simulations are compared once values settle.
+                    false => self.whole(&settled) - self.whole(model),
+                };
                 all.push(Rival { effect: rival, model: settled, cost });
             }
         }
@@ -142,12 +152,22 @@ impl Search<'_> {
         Ok(all)
     }
 
-    /// What a rival costs on all data more than a model; where joints of both rattle, in the [noise](Baseline::in_common) that they
-    /// have in common: what each costs in its own differs by luck of few replicas.
+    /// What a rival costs on all data more than a model, by what the two have in common: [noise](Baseline::in_common) where joints
+    /// of both rattle, [looks](Baseline::leaves_more) where none does. What each costs by its own differs by luck.
     fn dearer(&self, model: &Model, rival: &Model) -> f64 {
-        let both_rattle = model.baseline.rattles && rival.baseline.rattles;
-        let in_common = both_rattle.then(|| self.dearer_in_common(model, rival)).flatten();
+        let in_common = match (model.baseline.rattles, rival.baseline.rattles) {
+            (true, true) => self.dearer_in_common(model, rival),
+            (false, false) => self.dearer_by_looks(model, rival),
+            _ => None,
+        };
         in_common.unwrap_or_else(|| self.whole(rival) - self.whole(model))
+    }
+
+    /// The same by looks that both have in common; none where one of the two cannot move as it was measured.
+    fn dearer_by_looks(&self, model: &Model, rival: &Model) -> Option<f64> {
+        let left = Baseline::leaves_more(self.problem, [&model.baseline, &rival.baseline])?;
+        let price = |model: &Model| 2.0 * price_of_values(&model.fit.effects);
+        Some(left + price(rival) - price(model))
     }
 
     /// The same by looks in common noise; none where one of the two cannot move as it was measured.

@@ -1,6 +1,11 @@
-//! Models whose joints rattle, held against each other in the same noise. What few replicas make of a model's bias and of the
-//! determinant of its noise differs from one set of replicas to the next, and stands in its cost: one and the same model costs some
-//! hundreds more or less. Of two models most of that need not be asked at all.
+//! Two models held against each other by what does not differ between them but for themselves.
+//!
+//! Where joints rattle, in the same noise: what few replicas make of a model's bias and of the determinant of its noise differs from
+//! one set of replicas to the next, and stands in its cost. One and the same model costs some hundreds more or less.
+//!
+//! Where none does, by the same looks: where a journal leans is told by forces, whose noise moves it the more, the larger its
+//! clearance is. What each leaves of the data in its own look differs by luck of that noise: of a worn joint and a link too short,
+//! whose simulations are twins, by tens.
 
 use super::baseline::{Baseline, BiasAndNoise};
 use super::problem::RigProblem;
@@ -37,7 +42,29 @@ impl Baseline {
     }
 }
 
+impl Baseline {
+    /// How much more of the data the second of two models leaves than the first, Σ of squares in units of noise, by one simulation of
+    /// each, both seen through the first one's machine, and through the second one's: the mean of the two. None where the machines cannot
+    /// move so.
+    pub fn leaves_more(problem: &RigProblem, two: [&Self; 2]) -> Option<f64> {
+        let [a, b] = two;
+        let mut sum = 0.0;
+        for (a, b) in a.parts.iter().zip(b.parts.iter()) {
+            sum += 0.5 * (a.left_by(problem, b)? - a.left_by(problem, a)?);
+            sum += 0.5 * (b.left_by(problem, b)? - b.left_by(problem, a)?);
+        }
+        Some(sum)
+    }
+}
+
 impl BiasAndNoise {
+    /// Σ of squares of what the first simulation of a model leaves of the data, seen through this one's machine and in its noise.
+    fn left_by(&self, problem: &RigProblem, other: &Self) -> Option<f64> {
+        let simulated = problem.coefficients(other.clean.first()?, &self.machine, &self.segment)?;
+        let left = difference(&self.left, &difference(&simulated, &self.bias));
+        Some(self.noise.whiten(&left).norm_squared())
+    }
+
     /// The same in that noise, with the `mean` of biases where they are `alike`.
     fn beside(&self, noise: &Noise, mean: &Coefficients, alike: bool) -> Self {
         let bias = if alike { mean } else { &self.bias };
@@ -136,5 +163,27 @@ mod tests {
         assert!(gap(both) < 0.2 * TWINS[0], "{both:?}");
         let differ = Baseline::in_common(&problem, [&one, &apart]).unwrap();
         assert_ne!(differ[0].parts[0].bias, differ[1].parts[0].bias);
+    }
+
+    /// Of two models the one leaves as much more as the other leaves less, whichever is asked first, and a machine leaves less of its own
+    /// recording than one with a joint worn to half a millimetre; by more than by looks of each one's own, for noise moves a leaning
+    /// journal the more, the larger its clearance is.
+    #[test]
+    fn what_leaves_more_leaves_it_in_both_looks() {
+        let rig = RigProblem::of("rigs/rig-1", "run-a.csv");
+        let recorded = rig.simulated(&rig.let_go(&[]).unwrap(), 1).unwrap().remove(0).remove(0);
+        let problem = rig.recorded_as(recorded);
+        let segments = problem.split().hold;
+        let joint = problem.declared.joint_name(JointIndex::Revolute(0)).to_owned();
+        let kind = named("joint-wear").unwrap();
+        let worn = [Setting::on(kind, Target::Joints(vec![joint]), &[("clearance_m", 5e-4)])];
+        let of = |effects: &[Setting]| Baseline::of(&problem, effects, &[], &segments).unwrap();
+        let [own, other] = [of(&[]), of(&worn)];
+        let more = |two: [&Baseline; 2]| Baseline::leaves_more(&problem, two).unwrap();
+        assert!(more([&own, &own]).abs() < 1e-9);
+        let further = more([&own, &other]);
+        assert!((further + more([&other, &own])).abs() < 1e-9 * further);
+        let by_its_own = left(&problem, &worn, &other)[1] - left(&problem, &[], &own)[1];
+        assert!(by_its_own > 100.0 && further > 2.0 * by_its_own, "{further} {by_its_own}");
     }
 }

@@ -11,12 +11,19 @@ use crate::calibrate::sensed::values::fit::Fit;
 use crate::calibrate::sensed::values::model::{Model, price};
 use crate::calibrate::sensed::values::trajectory::{Far, fitted, followed, predicted, shorter};
 use crate::calibrate::sensed::values::whole::Whole;
-use crate::calibrate::values::least_squares::values;
+use crate::calibrate::values::least_squares::{free, values, with_values};
 use crate::effects::Setting;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// A change of a value, in its standard deviations, that is none.
 const SETTLED: f64 = 0.3;
+
+/// A change above which passes are held against the ones before: what looks make of a worn joint's clearance, by which way its journal
+/// leans, turned round at each pass, by three fifths of the last one.
+const FAR: f64 = 10.0 * SETTLED;
+
+/// Most of what a pass moves values by that they are moved: passes that bring half of what is missing bring all of it so.
+const MOST: f64 = 2.0;
 
 impl Search<'_> {
     /// Fits the values of a model, simulating it anew each time: what a look is wrong by depends on them.
@@ -38,6 +45,7 @@ impl Search<'_> {
         let segments = [self.split.on.as_slice(), &self.split.hold].concat();
         let mut effects = effects.to_vec();
         let mut settled: Option<Model> = None;
+        let mut last: Option<(DVector<f64>, f64)> = None;
         for _ in 0..times.max(1) {
             let deviations = settled.as_ref().map(|model| model.fit.deviations());
             let deviations = deviations.unwrap_or_default();
@@ -52,8 +60,12 @@ impl Search<'_> {
             let Some(fit) = target.fit(&effects, steps) else { break };
             let fit = target.settled(fit);
             let Some(held) = self.target(&baseline, true).look(&fit.effects) else { break };
-            let change = change(&effects, &fit);
-            effects.clone_from(&fit.effects);
+            let moved = moved(&effects, &fit);
+            let change = moved.amax();
+            let far = !baseline.rattles && change > FAR;
+            let share = last.filter(|_| far).map_or(1.0, |last| share(&last, &moved));
+            effects = part_way(&effects, &fit.effects, share);
+            last = Some((moved, share));
             let own = self.noisiness(&baseline, &self.split.hold);
             let noise = own + baseline.lost(&self.split.hold);
             let (rattles, known) = (baseline.rattles, !deviations.is_empty());
@@ -302,7 +314,7 @@ impl Search<'_> {
     }
 
     /// The model without effects that it does not need.
-    pub(super) fn needed(&self, mut model: Model) -> Result<Model, Stopped> {
+    pub(in crate::calibrate::sensed) fn needed(&self, mut model: Model) -> Result<Model, Stopped> {
         let mut i = 0;
         while model.fit.effects.len() > 1 && i < model.fit.effects.len() {
             let mut fewer = model.fit.effects.clone();
@@ -328,12 +340,36 @@ fn twins(round: &Round, chance: f64) -> Vec<Setting> {
     near.map(|tried| tried.effect.clone()).collect()
 }
 
-/// Largest change of a value by a fit, in its standard deviations, each by itself.
-fn change(before: &[Setting], fit: &Fit) -> f64 {
-    let Some(jacobian) = &fit.jacobian else { return 0.0 };
+/// Changes of values by a fit, in their standard deviations, each by itself.
+fn moved(before: &[Setting], fit: &Fit) -> DVector<f64> {
+    let Some(jacobian) = &fit.jacobian else { return DVector::zeros(1) };
     let sizes = jacobian.column_iter().map(|column| column.norm());
     let pairs = values(before).into_iter().zip(values(&fit.effects)).zip(sizes);
-    pairs.map(|((before, after), size)| (after - before).abs() * size).fold(0.0, f64::max)
+    DVector::from_iterator(
+        jacobian.ncols(),
+        pairs.map(|((before, after), size)| (after - before) * size),
+    )
+}
+
+/// The share `ω` of what a pass moves values by, `d`, that leads where further ones would, if what they move them by hangs on the values
+/// as a straight line does along the last one, which went by `ω′ d′`: `ω = −ω′ d′·(d − d′) / |d − d′|²`; [at most](MOST) some. (Aitken's
+/// Δ² process, for vectors by Irons and Tuck, Int. J. Numer. Meth. Eng. 1, 1969.)
+fn share((before, share): &(DVector<f64>, f64), moved: &DVector<f64>) -> f64 {
+    if before.len() != moved.len() {
+        return 1.0;
+    }
+    let turned = moved - before;
+    let whole = -share * before.dot(&turned) / turned.norm_squared();
+    if whole.is_finite() && whole > 0.0 { whole.min(MOST) } else { 1.0 }
+}
+
+/// Values that share of the way from one place to another, within bounds.
+fn part_way(from: &[Setting], to: &[Setting], share: f64) -> Vec<Setting> {
+    let pairs = values(from).into_iter().zip(values(to)).zip(free(to));
+    let there = pairs.map(|((from, to), free)| {
+        (to + (share - 1.0) * (to - from)).clamp(free.bounds[0], free.bounds[1])
+    });
+    with_values(to, &there.collect::<Vec<f64>>())
 }
 
 #[cfg(test)]
@@ -359,6 +395,26 @@ mod tests {
         };
         let [all, few] = [f64::INFINITY, f64::NEG_INFINITY].map(simulations);
         assert!(all > few && all.is_multiple_of(few / 2), "{all} simulations, and {few}");
+    }
+
+    /// What turns round at each pass by three fifths of the last one, and what brings half of what is missing, is there after two; what
+    /// flees is followed no further than twice as far, and what turns from its way is no line.
+    #[test]
+    fn passes_lead_where_further_ones_would() {
+        let of = |before: f64, moved: f64| {
+            share(&(DVector::from_vec(vec![before]), 1.0), &DVector::from_vec(vec![moved]))
+        };
+        let ends = |place: f64, factor: f64| {
+            let [first, second] = [-place, -place * factor].map(|away| away * (1.0 - factor));
+            place * factor + of(first, second) * second
+        };
+        for factor in [-0.6, 0.2, 0.5] {
+            assert!(ends(1.0, factor).abs() < 1e-12, "{factor}: {}", ends(1.0, factor));
+        }
+        assert_eq!([of(1.0, 0.9), of(1.0, 1.5)], [MOST, 1.0]);
+        let two = |x: f64, y: f64| DVector::from_vec(vec![x, y]);
+        assert!((share(&(two(1.0, 0.0), 1.0), &two(0.0, 1.0)) - 0.5).abs() < 1e-12);
+        assert_eq!(share(&(two(1.0, 0.0), 1.0), &DVector::zeros(1)), 1.0);
     }
 
     /// An oil film so stiff that no step is short enough for it is no model, and stops no search.
