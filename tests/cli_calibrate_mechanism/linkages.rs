@@ -1,6 +1,6 @@
 //! What is hidden in linkages with play in most joints: what looks show, and whole simulations have to tell.
 
-use crate::found_of;
+use crate::{found_of, report_of};
 use serde_json::Value;
 
 /// Asserts that a value is within a share of the hidden one.
@@ -45,4 +45,51 @@ fn two_large_effects_are_found_where_joints_rattle() {
     near(&found[0], "time_constant_s", 0.0015, 0.01);
     near(&found[1], "coulomb", 0.05, 0.05);
     near(&found[1], "viscous", 0.01, 0.1);
+}
+
+/// Looks blame the wrong body, and a point 3.5 µm off for what that lacks of the right one: dropped with it.
+#[test]
+#[ignore = "three minutes"]
+fn what_a_wrong_effect_needed_is_dropped_with_it() {
+    let payload = [
+        ("kind", "payload"),
+        ("body", "head"),
+        ("mass_kg", "0.5"),
+        ("com_x_m", "0.15"),
+        ("com_y_m", "0.075"),
+    ];
+    let ripple = [
+        ("kind", "torque-ripple"),
+        ("joint", "O"),
+        ("amplitude", "0.2"),
+        ("per_turn", "18"),
+        ("phase_rad", "0.4"),
+    ];
+    let found = found_of("lift", &[&payload, &ripple]);
+    near(&found[0], "mass_kg", 0.5, 0.001);
+    near(&found[0], "com_x_m", 0.15, 0.2);
+    near(&found[1], "amplitude", 0.2, 0.01);
+}
+
+/// A worn joint that leans one way all along is a link too short: which of the two it is nothing tells, and the report says so. What
+/// looks make of its clearance turned round from pass to pass, and four did not settle it.
+#[test]
+#[ignore = "five minutes"]
+fn a_worn_joint_is_not_told_from_a_short_link() {
+    let payload = [
+        ("kind", "payload"),
+        ("body", "platform"),
+        ("mass_kg", "0.3"),
+        ("com_x_m", "0"),
+        ("com_y_m", "0.05"),
+    ];
+    let worn = [("kind", "joint-wear"), ("joint", "S1"), ("clearance_m", "2e-4")];
+    let report = report_of("three-prr", &[&payload, &worn]);
+    let found = report["effects"].as_array().unwrap();
+    assert_eq!(found.len(), 2, "{}", report["summary"]);
+    assert_eq!([&found[0]["kind"], &found[0]["body"]], ["payload", "platform"]);
+    let own = format!("{} at {}", found[1]["kind"], found[1]["joint"]).replace('"', "");
+    let alike = found[1]["as_good"].as_array().unwrap().iter().filter_map(Value::as_str);
+    let mut all = alike.chain([own.as_str()]);
+    assert!(all.any(|effect| effect == "joint-wear at S1"), "{}", report["summary"]);
 }

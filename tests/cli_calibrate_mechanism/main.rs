@@ -16,16 +16,7 @@ use serde_json::Value;
 /// What is found in recordings of a machine with these effects hidden in it, key by key: the values of as many effects, in the same order,
 /// of these kinds and at these places.
 pub fn found_of(rig: &str, effects: &[&[(&str, &str)]]) -> Vec<Value> {
-    let place = Place::new();
-    let rig = format!("{}/tests/cli_calibrate_mechanism/{rig}.toml", env!("CARGO_MANIFEST_DIR"));
-    let keys = effects.iter().enumerate().flat_map(|(i, effect)| {
-        effect.iter().map(move |(key, value)| format!(" --set effect.{i}.{key}={value}"))
-    });
-    place.good(&format!("record {rig} --out hidden --quiet{}", keys.collect::<String>()));
-    place.good(
-        "calibrate --rig hidden/rig.toml --data hidden/run-a.csv --validate hidden/run-b.csv --out found --quiet",
-    );
-    let report: Value = serde_json::from_str(&place.read("found/report.json")).unwrap();
+    let report = report_of(rig, effects);
     assert_eq!(report["verdict"], "explained", "{}", report["summary"]);
     let found = report["effects"].as_array().unwrap();
     assert_eq!(found.len(), effects.len(), "{}", report["summary"]);
@@ -37,6 +28,20 @@ pub fn found_of(rig: &str, effects: &[&[(&str, &str)]]) -> Vec<Value> {
         }
     }
     found.iter().map(|effect| effect["params"].clone()).collect()
+}
+
+/// The report of a calibration of that machine with these effects hidden in its recordings.
+pub fn report_of(rig: &str, effects: &[&[(&str, &str)]]) -> Value {
+    let place = Place::new();
+    let rig = format!("{}/tests/cli_calibrate_mechanism/{rig}.toml", env!("CARGO_MANIFEST_DIR"));
+    let keys = effects.iter().enumerate().flat_map(|(i, effect)| {
+        effect.iter().map(move |(key, value)| format!(" --set effect.{i}.{key}={value}"))
+    });
+    place.good(&format!("record {rig} --out hidden --quiet{}", keys.collect::<String>()));
+    place.good(
+        "calibrate --rig hidden/rig.toml --data hidden/run-a.csv --validate hidden/run-b.csv --out found --quiet",
+    );
+    serde_json::from_str(&place.read("found/report.json")).unwrap()
 }
 
 /// A crank-rocker on a servo, with play in two joints, an encoder on either side and a torque.
