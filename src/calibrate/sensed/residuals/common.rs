@@ -40,9 +40,7 @@ impl Baseline {
         };
         Some(two.map(with))
     }
-}
 
-impl Baseline {
     /// How much more of the data the second of two models leaves than the first, Σ of squares in units of noise, by one simulation of
     /// each, both seen through the first one's machine, and through the second one's: the mean of the two. None where the machines cannot
     /// move so.
