@@ -108,6 +108,17 @@ fn a_singular_pose_ahead_is_refused() {
     place.refused("run bad.toml --out x", &["motion: passes a singular pose at t = "]);
 }
 
+/// What is wrong with a sensor of a joint that is not there is that, and not its drive besides.
+#[test]
+fn a_joint_that_is_not_there_is_told_once() {
+    let place = Place::new();
+    let sensor = "[[sensor]]\ncolumn = \"T\"\nquantity = \"force\"\nof = \"Oo\"\n";
+    place.write("bad.toml", &format!("{FOUR_BAR}{sensor}"));
+    let told = place.freeplay("run bad.toml --out x");
+    assert_eq!((told.code, told.err.matches("error: ").count()), (2, 1), "{}", told.err);
+    assert!(told.err.contains("there is no joint \"Oo\""), "{}", told.err);
+}
+
 #[test]
 fn sensors_and_motions_that_mean_nothing() {
     let sensor = |keys: &str| format!("{FOUR_BAR}[[sensor]]\n{keys}");

@@ -228,14 +228,16 @@ impl DescribedChecks<'_> {
             }
             let of = format!("{path}.of");
             match sensor.quantity {
-                Quantity::Position => self.movable(&of, &sensor.of),
-                Quantity::Command | Quantity::Force | Quantity::Output | Quantity::Added => {
+                Quantity::Position => {
                     self.movable(&of, &sensor.of);
+                }
+                Quantity::Command | Quantity::Force | Quantity::Output | Quantity::Added => {
+                    let known = self.movable(&of, &sensor.of);
                     let driven = |drive: &&JointDrive| drive.joint() == sensor.of;
                     let of_controller =
                         matches!(sensor.quantity, Quantity::Output | Quantity::Added);
                     match self.described.drives.iter().find(driven) {
-                        None => {
+                        None if known => {
                             let message = format!("\"{}\" has no drive to read", sensor.of);
                             self.complain(&of, message, "write a [[drive]] of this joint");
                         }
@@ -246,7 +248,7 @@ impl DescribedChecks<'_> {
                                 format!("the drive of \"{}\" has no sampled controller", sensor.of);
                             self.complain(&of, message, "its effort is quantity = \"force\"");
                         }
-                        Some(_) => {}
+                        _ => {}
                     }
                 }
                 Quantity::X | Quantity::Y | Quantity::Angle | Quantity::Acceleration => {

@@ -62,13 +62,13 @@ impl DescribedChecks<'_> {
         }
     }
 
-    /// A joint that moves.
-    pub(super) fn movable(&mut self, path: &str, name: &str) {
+    /// Complains of a joint that does not move or is not there, and says whether it moves.
+    pub(super) fn movable(&mut self, path: &str, name: &str) -> bool {
         let movable = |joint: &&Joint| !matches!(joint, Joint::Fixed(_));
         let known: Vec<&str> =
             self.described.joints.iter().filter(movable).map(Joint::name).collect();
         if known.contains(&name) {
-            return;
+            return true;
         }
         let message = if self.described.joints.iter().any(|joint| joint.name() == name) {
             format!("the joint \"{name}\" is fixed")
@@ -76,6 +76,7 @@ impl DescribedChecks<'_> {
             format!("there is no joint \"{name}\"")
         };
         self.complain(path, message, &suggest(name, &known));
+        false
     }
 
     pub(super) fn above_zero(&mut self, path: &str, value: f64) {
